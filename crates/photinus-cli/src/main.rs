@@ -1,0 +1,3 @@
+//! The program `photinus`.
+
+fn main() {}

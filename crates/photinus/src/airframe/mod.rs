@@ -1,0 +1,1 @@
+//! Where the LEDs of a neighbour sit and how they shine.

@@ -1,0 +1,16 @@
+//! Photinus tells a flying robot where its neighbours are from one ultraviolet camera.
+//!
+//! The data flow is the architecture, and the modules carry its names in its order:
+//!
+//! ```text
+//! frame -> spots -> bearings (camera) -> ranges (airframe, ranging) -> neighbours (locator)
+//! ```
+//!
+//! No files, threads, clocks or printing happen here. Transcendental functions come from the `libm`
+//! crate, because those of the C library give other last bits on other processors.
+
+pub mod airframe;
+pub mod camera;
+pub mod frame;
+pub mod ranging;
+pub mod spots;

@@ -1,0 +1,1 @@
+//! Spot size and marker pairs -> distance with bounds.

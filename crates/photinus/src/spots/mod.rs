@@ -1,1 +1,114 @@
 //! A frame -> spots: what is bright, what belongs together, where its centre is, and what is no marker.
+//!
+//! The stages, a module each, in the order of the flow:
+//!
+//! ```text
+//! background  the level of the surroundings, tile by tile      -> a threshold per tile
+//! runs        rows of pixels at or above their threshold       -> runs
+//! grouping    runs that touch, also by a corner                -> components
+//! splitting   one component with several summits               -> parts
+//! patch       the pixels around a part, less their background  -> signal
+//! centroid    where the light fell: window, or skirt if saturated
+//! rejection   what is no marker, and why
+//! ```
+//!
+//! Every pixel at or above its threshold belongs to exactly one part, and every part is either a [`Spot`] or a
+//! [`Rejected`] with its [`Reason`]; nothing is dropped in silence.
+
+mod background;
+mod centroid;
+mod detector;
+mod grouping;
+mod patch;
+mod rejection;
+mod runs;
+mod settings;
+mod skirt;
+mod splitting;
+
+use nalgebra::Matrix2;
+
+use crate::camera::Pixel;
+
+pub use detector::Detector;
+pub use rejection::Reason;
+pub use settings::{Brightness, Noise, Settings, SettingsError, Shape};
+
+/// One bright spot that may be a marker.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Spot {
+    /// Where the light fell: sub-pixel, background subtracted, aware of saturation.
+    pub centre: Pixel,
+    /// Covariance of `centre` in (u, v), px^2: of the estimate, not the extent of the spot.
+    pub covariance_px2: Matrix2<f64>,
+    /// Pixels at or above the threshold (the paper's S).
+    pub area_px: u32,
+    /// Highest value, 0 to 255.
+    pub peak: u8,
+    /// Pixels at 255.
+    pub saturated_px: u32,
+    /// Signal above the background in the window around the spot, grey levels; a lower limit when saturated.
+    pub flux: f64,
+    /// Level of the surroundings, grey levels.
+    pub background: f64,
+    /// The paper's position: the middle pixel (column, row) in the order of a scan-line fill.
+    pub middle: (u32, u32),
+    /// Columns and rows that the spot spans, for drawing and for masks.
+    pub extent: Extent,
+}
+
+impl Spot {
+    /// One number for the uncertainty of the centre: root of the mean variance of the two axes, px.
+    pub fn sigma_px(&self) -> f64 {
+        (self.covariance_px2.trace() / 2.0).sqrt()
+    }
+}
+
+/// A box of pixels, both ends included.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Extent {
+    /// First column.
+    pub left: u32,
+    /// First row.
+    pub top: u32,
+    /// Last column.
+    pub right: u32,
+    /// Last row.
+    pub bottom: u32,
+}
+
+impl Extent {
+    /// Columns spanned.
+    pub fn width(&self) -> u32 {
+        self.right - self.left + 1
+    }
+
+    /// Rows spanned.
+    pub fn height(&self) -> u32 {
+        self.bottom - self.top + 1
+    }
+}
+
+/// Something bright that is no marker, and why.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rejected {
+    /// Its middle, px.
+    pub centre: Pixel,
+    /// Pixels at or above the threshold.
+    pub area_px: u32,
+    /// Highest value, 0 to 255.
+    pub peak: u8,
+    /// Why.
+    pub reason: Reason,
+    /// Columns and rows that it spans.
+    pub extent: Extent,
+}
+
+/// What one frame holds.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Detections {
+    /// In the order of a scan by rows of their first pixel.
+    pub spots: Vec<Spot>,
+    /// In the same order.
+    pub rejected: Vec<Rejected>,
+}

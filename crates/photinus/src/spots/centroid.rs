@@ -1,0 +1,120 @@
+//! Where the light fell: the centre of a window that is balanced on it.
+//!
+//! In: the signal around a spot and a first guess. Out: the centre with its covariance. The centre (x, y) is where the
+//! windowed first moment vanishes,
+//!
+//! ```text
+//! S(x, y) = sum G(r) I (p - c) = 0,   G(r) = (1 - r^2/R^2)^2 for r < R,
+//! ```
+//!
+//! found by Newton's method. A background that is off by a constant cancels, the soft edge makes the answer steady in the
+//! phase of the pixel grid, and the covariance follows from the same sums: J^-1 V J^-T, with V the noise of S and J its
+//! derivative (the sandwich of an M-estimator), whatever the shape of the spot.
+
+use nalgebra::{Matrix2, Vector2};
+
+use super::patch::{LANES, Patch};
+use crate::camera::Pixel;
+
+/// Newton steps from the first guess; each squares the error, the guess is good to a few tenths.
+const STEPS: usize = 2;
+
+/// Noise of a pixel with signal s: `dark` + `shot` x max(s, 0), grey levels^2.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PixelVariance {
+    pub(super) dark: f32,
+    pub(super) shot: f32,
+}
+
+/// Balances a window of radius `radius_px` on the light near `guess`: the centre with its covariance, px^2; `None` where
+/// there is no light to balance on.
+pub(super) fn balance(
+    patch: &Patch,
+    guess: Pixel,
+    radius_px: f32,
+    variance: PixelVariance,
+) -> Option<(Pixel, Matrix2<f64>)> {
+    let mut centre = guess;
+    for _ in 0..STEPS {
+        let sums = sums::<false>(patch, centre, radius_px, variance);
+        centre = step(centre, guess, radius_px, sums.newton_step()?);
+    }
+    let sums = sums::<true>(patch, centre, radius_px, variance);
+    let inverse = sums.derivative().try_inverse()?;
+    centre = step(centre, guess, radius_px, sums.newton_step()?);
+    Some((centre, inverse * sums.noise() * inverse.transpose()))
+}
+
+/// One step, never further from the guess than half the window: beyond lies other light.
+fn step(from: Pixel, guess: Pixel, radius_px: f32, step: Vector2<f64>) -> Pixel {
+    let reach = f64::from(radius_px) / 2.0;
+    let within = |at: f64, guess: f64| at.clamp(guess - reach, guess + reach);
+    Pixel::new(within(from.u + step.x, guess.u), within(from.v + step.y, guess.v))
+}
+
+#[derive(Clone, Copy, Debug, Default)]
+struct Sums {
+    first: [f32; 2],
+    weight: f32,
+    slope: [f32; 3],
+    noise: [f32; 3],
+    radius_px: f32,
+}
+
+impl Sums {
+    /// dS/dc: the window moves with the centre.
+    fn derivative(&self) -> Matrix2<f64> {
+        let scale = 4.0 / f64::from(self.radius_px * self.radius_px);
+        let [xx, xy, yy] = self.slope.map(|slope| scale * f64::from(slope));
+        let weight = f64::from(self.weight);
+        Matrix2::new(xx - weight, xy, xy, yy - weight)
+    }
+
+    fn noise(&self) -> Matrix2<f64> {
+        let [xx, xy, yy] = self.noise.map(f64::from);
+        Matrix2::new(xx, xy, xy, yy)
+    }
+
+    /// -J^-1 S. Where the window does not hold a peak (J not negative definite) the plain moment of it.
+    fn newton_step(&self) -> Option<Vector2<f64>> {
+        let first = Vector2::new(f64::from(self.first[0]), f64::from(self.first[1]));
+        let derivative = self.derivative();
+        if derivative.m11 < 0.0 && derivative.determinant() > 0.0 {
+            return derivative.try_inverse().map(|inverse| -(inverse * first));
+        }
+        let weight = f64::from(self.weight);
+        (weight > 0.0).then(|| first / weight)
+    }
+}
+
+fn sums<const NOISE: bool>(patch: &Patch, centre: Pixel, radius_px: f32, variance: PixelVariance) -> Sums {
+    let (x, y) = ((centre.u - f64::from(patch.left)) as f32, (centre.v - f64::from(patch.top)) as f32);
+    let inverse = 1.0 / (radius_px * radius_px);
+    let mut lanes = [[0f32; LANES]; 9];
+    for ((_, row), j) in patch.rows().zip(0u16..) {
+        let dy = f32::from(j) - y;
+        for (signal, first) in row.chunks_exact(LANES).zip((0u16..).step_by(LANES)) {
+            for (lane, &signal) in signal.iter().enumerate() {
+                let dx = f32::from(first + lane as u16) - x;
+                let t = (1.0 - (dx * dx + dy * dy) * inverse).max(0.0);
+                let window = t * t;
+                let light = window * signal;
+                let edge = t * signal;
+                lanes[0][lane] += light;
+                lanes[1][lane] += light * dx;
+                lanes[2][lane] += light * dy;
+                lanes[3][lane] += edge * dx * dx;
+                lanes[4][lane] += edge * dx * dy;
+                lanes[5][lane] += edge * dy * dy;
+                if NOISE {
+                    let noise = window * window * (variance.dark + variance.shot * signal.max(0.0));
+                    lanes[6][lane] += noise * dx * dx;
+                    lanes[7][lane] += noise * dx * dy;
+                    lanes[8][lane] += noise * dy * dy;
+                }
+            }
+        }
+    }
+    let [weight, x, y, xx, xy, yy, nxx, nxy, nyy] = lanes.map(|lanes| lanes.iter().sum::<f32>());
+    Sums { first: [x, y], weight, slope: [xx, xy, yy], noise: [nxx, nxy, nyy], radius_px }
+}

@@ -44,6 +44,16 @@ struct Part {
     reason: Option<Reason>,
 }
 
+impl Part {
+    /// Width (sigma) of the Gaussian spot that shows this area above this threshold, px: area = 2 pi sigma^2 ln(peak /
+    /// threshold), both above the background.
+    fn width_px(&self, level: f32) -> f64 {
+        let above = |value: u8| (f64::from(value) - f64::from(level)).max(1.0);
+        let over = libm::log(above(self.outline.peak) / above(self.bright)).max(0.2);
+        self.outline.radius_px() / (2.0 * over).sqrt()
+    }
+}
+
 impl Detector {
     /// A detector with these settings.
     ///
@@ -147,19 +157,30 @@ impl Detector {
         let others = self.parts[..i].iter().chain(&self.parts[i + 1..]);
         others.fold(f64::INFINITY, |room, other| {
             let (du, dv) = (other.guess.u - own.guess.u, other.guess.v - own.guess.v);
-            let far = room + other.outline.radius_px() + 0.5;
-            if du * du + dv * dv > far * far { room } else { (du * du + dv * dv).sqrt() - far + room }
+            room.min((du * du + dv * dv).sqrt() - other.outline.radius_px() - 0.5)
         })
     }
 
     fn measure(&mut self, frame: &FrameView<'_>, part: &Part, room_px: f64) -> Result<Spot, Reason> {
         let Outline { extent, area_px, peak, saturated_px, .. } = part.outline;
         let radius = part.outline.radius_px();
-        let window = (1.6 * radius + 2.0).min(room_px.max(radius + 0.8).max(1.9));
-        let reach = window.ceil() as i32 + 1;
+        let room = room_px.max(radius + 0.8).max(1.9);
         let middle = (part.guess.u.round() as i32, part.guess.v.round() as i32);
-        let around = patch::surroundings(frame, middle, reach, part.bright)
-            .unwrap_or(Surroundings { level: 0.0, variance: 0.0 });
+        let around = |window: f64| {
+            patch::surroundings(frame, middle, reach_px(window), part.bright)
+                .unwrap_or(Surroundings { level: 0.0, variance: 0.0 })
+        };
+        let mut window = (1.6 * radius + 2.0).min(room);
+        let mut surroundings = around(window);
+        if saturated_px == 0 {
+            let whole = (3.5 * part.width_px(surroundings.level) + 1.0).min(room);
+            if whole > window {
+                surroundings = around(whole);
+            }
+            window = whole;
+        }
+        let around = surroundings;
+        let reach = reach_px(window);
         let height = f64::from(peak) - f64::from(around.level);
         if let Brightness::Contrast(step) = self.settings.brightness {
             if 2.0 * height < f64::from(step) {
@@ -241,6 +262,11 @@ fn blur_of_sampling(share: f64) -> f64 {
 /// Variance of the centre of a saturated core that shows no skirt, px^2: its outline is known to a pixel all around.
 fn blur_of_saturation(saturated_px: u32) -> f64 {
     WITHIN_A_PIXEL * WITHIN_A_PIXEL / (f64::from(saturated_px) + 4.0)
+}
+
+/// Pixels from the middle of a patch to its edge that hold a window of this radius, wherever in a pixel it settles.
+fn reach_px(window_px: f64) -> i32 {
+    window_px.ceil() as i32 + 1
 }
 
 fn touches_border(extent: &Extent, frame: &FrameView<'_>) -> bool {

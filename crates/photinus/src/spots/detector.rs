@@ -9,7 +9,7 @@ use super::patch::{self, Patch, Surroundings};
 use super::rejection::{Outline, Reason};
 use super::runs::{self, Run};
 use super::settings::{Brightness, Settings, SettingsError};
-use super::skirt::{self, Logarithms};
+use super::skirt;
 use super::splitting::Splitter;
 use super::{Detections, Extent, Rejected, Spot};
 use crate::camera::Pixel;
@@ -22,7 +22,6 @@ const WITHIN_A_PIXEL: f64 = 0.288_675_134_594_812_9;
 #[derive(Debug)]
 pub struct Detector {
     settings: Settings,
-    logarithms: Logarithms,
     background: Background,
     bright_tiles: Vec<u16>,
     runs: Vec<Run>,
@@ -38,6 +37,7 @@ pub struct Detector {
 #[derive(Clone, Copy, Debug)]
 struct Part {
     outline: Outline,
+    radius_px: f64,
     guess: Pixel,
     middle: (u32, u32),
     bright: u8,
@@ -50,7 +50,7 @@ impl Part {
     fn width_px(&self, level: f32) -> f64 {
         let above = |value: u8| (f64::from(value) - f64::from(level)).max(1.0);
         let over = libm::log(above(self.outline.peak) / above(self.bright)).max(0.2);
-        self.outline.radius_px() / (2.0 * over).sqrt()
+        self.radius_px / (2.0 * over).sqrt()
     }
 }
 
@@ -63,7 +63,6 @@ impl Detector {
         settings.check()?;
         Ok(Self {
             settings,
-            logarithms: Logarithms::new(),
             background: Background::default(),
             bright_tiles: Vec::new(),
             runs: Vec::new(),
@@ -155,22 +154,26 @@ impl Detector {
     fn room_px(&self, i: usize) -> f64 {
         let own = &self.parts[i];
         let others = self.parts[..i].iter().chain(&self.parts[i + 1..]);
-        others.fold(f64::INFINITY, |room, other| {
+        others.fold(2.0 * own.radius_px + 4.0, |room, other| {
             let (du, dv) = (other.guess.u - own.guess.u, other.guess.v - own.guess.v);
-            room.min((du * du + dv * dv).sqrt() - other.outline.radius_px() - 0.5)
+            let near = room + other.radius_px + 0.5;
+            if du.abs() > near || dv.abs() > near {
+                return room;
+            }
+            room.min((du * du + dv * dv).sqrt() - other.radius_px - 0.5)
         })
     }
 
     fn measure(&mut self, frame: &FrameView<'_>, part: &Part, room_px: f64) -> Result<Spot, Reason> {
         let Outline { extent, area_px, peak, saturated_px, .. } = part.outline;
-        let radius = part.outline.radius_px();
+        let radius = part.radius_px;
         let room = room_px.max(radius + 0.8).max(1.9);
         let middle = (part.guess.u.round() as i32, part.guess.v.round() as i32);
         let around = |window: f64| {
             patch::surroundings(frame, middle, reach_px(window), part.bright)
                 .unwrap_or(Surroundings { level: 0.0, variance: 0.0 })
         };
-        let mut window = (1.6 * radius + 2.0).min(room);
+        let mut window = (radius + 2.5).min(room);
         let mut surroundings = around(window);
         if saturated_px == 0 {
             let whole = (3.5 * part.width_px(surroundings.level) + 1.0).min(room);
@@ -195,8 +198,7 @@ impl Detector {
         let skirt = || {
             let radius = (radius + 2.5).min(window + 1.0) as f32;
             let saturation = f32::from(u8::MAX) - around.level;
-            let (centre, covariance) =
-                skirt::fit(&self.patch, part.guess, radius, saturation, variance, &self.logarithms)?;
+            let (centre, covariance) = skirt::fit(&self.patch, part.guess, radius, saturation, variance)?;
             let good = covariance.trace() < 2.0 * blur_of_saturation(saturated_px);
             good.then_some((centre, covariance))
         };
@@ -266,7 +268,7 @@ fn blur_of_saturation(saturated_px: u32) -> f64 {
 
 /// Pixels from the middle of a patch to its edge that hold a window of this radius, wherever in a pixel it settles.
 fn reach_px(window_px: f64) -> i32 {
-    window_px.ceil() as i32 + 1
+    window_px as i32 + 2
 }
 
 fn touches_border(extent: &Extent, frame: &FrameView<'_>) -> bool {
@@ -310,8 +312,10 @@ fn outline(frame: &FrameView<'_>, background: &Background, runs: &[Run], mask: O
     }
     let light = light.max(1) as f64;
     let thresholds = background.row(usize::from(first.v) / TILE_PX).0;
+    let outline = Outline { extent, area_px, peak, saturated_px, masked_px, moments };
     Part {
-        outline: Outline { extent, area_px, peak, saturated_px, masked_px, moments },
+        outline,
+        radius_px: outline.radius_px(),
         guess: Pixel::new(light_u as f64 / light, light_v as f64 / light),
         middle: middle_pixel(runs, area_px),
         bright: thresholds[usize::from(first.start) / TILE_PX] as u8,

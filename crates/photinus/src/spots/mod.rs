@@ -19,6 +19,7 @@ mod background;
 mod centroid;
 mod detector;
 mod grouping;
+mod lanes;
 mod patch;
 mod rejection;
 mod runs;

@@ -3,11 +3,9 @@
 //! In: the frame, a place and a reach. Out: the signal in a square window, in rows of whole lanes so that the sums over it
 //! vectorise alike on every machine, and the background with its noise from a frame of pixels around the window.
 
+use super::lanes::{self, LANES, Lanes};
 use crate::camera::Pixel;
 use crate::frame::FrameView;
-
-/// Sums run in this many independent lanes; rows of a patch are padded to a multiple.
-pub(super) const LANES: usize = 8;
 
 /// Width of the ring of background pixels, px.
 const RING_PX: i32 = 2;
@@ -18,7 +16,7 @@ const FEWEST_PX: u32 = 8;
 /// The level around a spot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Surroundings {
-    /// Mean level, a multiple of 1/16 grey level.
+    /// Mean level, grey levels.
     pub(super) level: f32,
     /// Variance of a background pixel, grey levels^2.
     pub(super) variance: f32,
@@ -28,8 +26,8 @@ pub(super) struct Surroundings {
 #[derive(Debug, Default)]
 pub(super) struct Patch {
     /// First column and row.
-    pub(super) left: i32,
-    pub(super) top: i32,
+    left: i32,
+    top: i32,
     rows: usize,
     stride: usize,
     signal: Vec<f32>,
@@ -56,25 +54,39 @@ impl Patch {
         }
     }
 
-    /// The rows of signal, each a whole number of lanes, with the row's v.
-    pub(super) fn rows(&self) -> impl Iterator<Item = (i32, &[f32])> {
-        (self.top..).zip(self.signal.chunks_exact(self.stride))
+    /// The signal in columns `column` to `column` + 3, from the first row to the last.
+    pub(super) fn columns(&self, column: usize) -> impl Iterator<Item = Lanes> {
+        self.signal.chunks_exact(self.stride).map(move |row| {
+            let four = row[column..].first_chunk::<LANES>();
+            four.map_or(Lanes::default(), |&four| Lanes::new(four))
+        })
+    }
+
+    /// Where the first of each four columns lies.
+    pub(super) fn column_starts(&self) -> impl Iterator<Item = usize> {
+        (0..self.stride).step_by(LANES)
+    }
+
+    /// A place in the image as seen from the patch's first pixel.
+    pub(super) fn local(&self, place: Pixel) -> (f32, f32) {
+        ((place.u - f64::from(self.left)) as f32, (place.v - f64::from(self.top)) as f32)
     }
 
     /// Signal within `radius_px` of `centre`, grey levels.
     pub(super) fn flux(&self, centre: Pixel, radius_px: f32) -> f64 {
-        let (x, y) = ((centre.u - f64::from(self.left)) as f32, (centre.v - f64::from(self.top)) as f32);
-        let mut lanes = [0f32; LANES];
-        for ((_, row), j) in self.rows().zip(0u16..) {
-            let dy = f32::from(j) - y;
-            for (signal, first) in row.chunks_exact(LANES).zip((0u16..).step_by(LANES)) {
-                for (lane, &signal) in signal.iter().enumerate() {
-                    let dx = f32::from(first + lane as u16) - x;
-                    lanes[lane] += if dx * dx + dy * dy < radius_px * radius_px { signal } else { 0.0 };
-                }
+        let (x, y) = self.local(centre);
+        let room = Lanes::splat(radius_px * radius_px);
+        let mut flux = Lanes::default();
+        for column in self.column_starts() {
+            let dx = lanes::counting_from(column as f32 - x);
+            let across = dx * dx;
+            let mut dy = -y;
+            for signal in self.columns(column) {
+                flux += signal * lanes::less(across + Lanes::splat(dy * dy), room);
+                dy += 1.0;
             }
         }
-        f64::from(lanes.iter().sum::<f32>())
+        f64::from(lanes::sum(flux))
     }
 }
 
@@ -92,8 +104,7 @@ pub(super) fn surroundings(
     let all = ring_sums(frame, (u, v), reach, bright);
     let ring = all.filter(|ring| ring.variance() <= calm * calm);
     let ring = ring.or_else(|| ring_sums(frame, (u, v), reach, all?.mean().min(254.0) as u8 + 1))?;
-    let level = (ring.mean() * 16.0).round() / 16.0;
-    Some(Surroundings { level, variance: ring.variance() })
+    Some(Surroundings { level: ring.mean(), variance: ring.variance() })
 }
 
 #[derive(Clone, Copy, Default)]
@@ -161,7 +172,7 @@ mod tests {
         let frame = FrameView::packed(&pixels, 20, 20).unwrap();
         let mut patch = Patch::default();
         patch.read(&frame, (0, 0), 3, 10.0);
-        let total: f32 = patch.rows().flat_map(|(_, row)| row).sum();
+        let total: f32 = patch.signal.iter().sum();
         assert_eq!((patch.left, patch.top, total), (-3, -3, 20.0 * 16.0));
         assert!(surroundings(&frame, (0, 0), 3, 60).is_some());
         assert_eq!(surroundings(&frame, (0, 0), 40, 60), None);

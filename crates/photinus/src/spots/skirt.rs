@@ -15,33 +15,16 @@
 use nalgebra::{Matrix2, Matrix2x4, Matrix4, Vector4};
 
 use super::centroid::PixelVariance;
+use super::lanes::{self, Lanes};
 use super::patch::Patch;
 use crate::camera::Pixel;
 
-/// Steps of the table of logarithms per grey level: backgrounds are rounded to them.
-const STEPS_PER_LEVEL: usize = 16;
 /// Skirt pixels needed: twice the unknowns.
-const FEWEST_PX: u32 = 8;
+const FEWEST_PX: f32 = 8.0;
 /// Noise below this many sigma is no skirt.
 const FAINTEST_SIGMAS: f32 = 4.0;
 /// ... nor is signal below this, grey levels: ripples of lens and processing.
 const FAINTEST_DN: f32 = 6.0;
-
-/// Logarithms of all signals there are, so that no pixel computes one.
-#[derive(Debug)]
-pub(super) struct Logarithms(Vec<f32>);
-
-impl Logarithms {
-    pub(super) fn new() -> Self {
-        let log = |step: usize| libm::log(step as f64 / STEPS_PER_LEVEL as f64) as f32;
-        Self((0..=256 * STEPS_PER_LEVEL).map(log).collect())
-    }
-
-    #[inline]
-    fn of(&self, signal: f32) -> f32 {
-        self.0[(signal * STEPS_PER_LEVEL as f32) as usize]
-    }
-}
 
 /// Fits the skirt of a saturated spot near `guess`, within `radius_px` of it; `None` where too little of it shows.
 pub(super) fn fit(
@@ -50,58 +33,93 @@ pub(super) fn fit(
     radius_px: f32,
     saturation: f32,
     variance: PixelVariance,
-    logarithms: &Logarithms,
 ) -> Option<(Pixel, Matrix2<f64>)> {
-    let x0 = (guess.u - f64::from(patch.left)) as f32;
-    let y0 = (guess.v - f64::from(patch.top)) as f32;
-    let faintest = FAINTEST_DN.max(FAINTEST_SIGMAS * variance.dark.sqrt());
+    let (x0, y0) = patch.local(guess);
+    let faintest = Lanes::splat(FAINTEST_DN.max(FAINTEST_SIGMAS * variance.dark.sqrt()));
+    let saturation = Lanes::splat(saturation);
+    let (dark, shot) = (Lanes::splat(variance.dark), Lanes::splat(variance.shot));
     let mut normal = Normal::default();
-    for ((_, row), j) in patch.rows().zip(0u16..) {
-        let y = f32::from(j) - y0;
-        let half = (radius_px * radius_px - y * y).max(0.0).sqrt();
-        let first = (x0 - half).ceil().max(0.0) as usize;
-        let end = ((x0 + half).floor() + 1.0).clamp(0.0, row.len() as f32) as usize;
-        for (i, &signal) in row.iter().enumerate().take(end).skip(first) {
-            if signal > faintest && signal < saturation {
-                let weight = signal * signal / (variance.dark + variance.shot * signal);
-                normal.add(i as f32 - x0, y, weight, logarithms.of(signal));
-            }
+    for column in patch.column_starts() {
+        let x = lanes::counting_from(column as f32 - x0);
+        let across = x * x;
+        let mut sums = ColumnSums::default();
+        let mut y = -y0;
+        for signal in patch.columns(column) {
+            let near = lanes::less(across, Lanes::splat(radius_px * radius_px - y * y));
+            let shows = lanes::less(faintest, signal) * lanes::less(signal, saturation) * near;
+            let weight = shows * (signal * signal) / (dark + shot * lanes::positive(signal));
+            sums.add(Lanes::splat(y), weight, lanes::ln(signal));
+            sums.pixels += shows;
+            y += 1.0;
         }
+        normal.add(&sums, x);
     }
     normal.solve(guess, f64::from(radius_px))
 }
 
-/// The normal equations of the parabola, by moments of the weighted pixels.
+/// Moments down four columns: the parabola's terms differ from column to column by powers of x alone.
+#[derive(Clone, Copy, Debug, Default)]
+struct ColumnSums {
+    pixels: Lanes,
+    /// Sums of w y^k, k from 0 to 4.
+    weights: [Lanes; 5],
+    /// Sums of w ln I y^k, k from 0 to 2.
+    values: [Lanes; 3],
+    /// Sum of w (ln I)^2.
+    squares: Lanes,
+}
+
+impl ColumnSums {
+    #[inline(always)]
+    fn add(&mut self, y: Lanes, weight: Lanes, log: Lanes) {
+        let mut term = weight;
+        for sum in &mut self.weights {
+            *sum += term;
+            term = term * y;
+        }
+        let mut term = weight * log;
+        self.squares += term * log;
+        for sum in &mut self.values {
+            *sum += term;
+            term = term * y;
+        }
+    }
+}
+
+/// The normal equations of the parabola.
 #[derive(Clone, Copy, Debug, Default)]
 struct Normal {
-    pixels: u32,
+    pixels: Lanes,
     /// Sums of w times 1, x, y, q, xx, xy, xq, yy, yq, qq.
-    weights: [f64; 10],
+    weights: [Lanes; 10],
     /// Sums of w ln I times 1, x, y, q, ln I.
-    values: [f64; 5],
+    values: [Lanes; 5],
 }
 
 impl Normal {
-    #[inline]
-    fn add(&mut self, x: f32, y: f32, weight: f32, log: f32) {
-        let (x, y, weight, log) = (f64::from(x), f64::from(y), f64::from(weight), f64::from(log));
-        let q = x * x + y * y;
-        let (wx, wy, wq, wl) = (weight * x, weight * y, weight * q, weight * log);
-        let terms = [weight, wx, wy, wq, wx * x, wx * y, wx * q, wy * y, wy * q, wq * q];
+    #[inline(always)]
+    fn add(&mut self, columns: &ColumnSums, x: Lanes) {
+        let [w, wy, wyy, wyyy, wyyyy] = columns.weights;
+        let [l, ly, lyy] = columns.values;
+        let xx = x * x;
+        let (wq, wyq) = (wyy + xx * w, wyyy + xx * wy);
+        let wqq = wyyyy + xx * (wyy + wyy + xx * w);
+        let terms = [w, w * x, wy, wq, w * xx, wy * x, wq * x, wyy, wyq, wqq];
         for (sum, term) in self.weights.iter_mut().zip(terms) {
             *sum += term;
         }
-        for (sum, term) in self.values.iter_mut().zip([wl, wl * x, wl * y, wl * q, wl * log]) {
+        for (sum, term) in self.values.iter_mut().zip([l, l * x, ly, lyy + xx * l, columns.squares]) {
             *sum += term;
         }
-        self.pixels += 1;
+        self.pixels += columns.pixels;
     }
 
     fn solve(&self, guess: Pixel, radius_px: f64) -> Option<(Pixel, Matrix2<f64>)> {
-        if self.pixels < FEWEST_PX {
+        let pixels = lanes::sum(self.pixels);
+        if pixels < FEWEST_PX {
             return None;
         }
-        let [n, x, y, q, xx, xy, xq, yy, yq, qq] = self.weights;
+        let [n, x, y, q, xx, xy, xq, yy, yq, qq] = self.weights.map(|lanes| f64::from(lanes::sum(lanes)));
         #[rustfmt::skip]
         let matrix = Matrix4::new(
             n, x,  y,  q,
@@ -109,19 +127,19 @@ impl Normal {
             y, xy, yy, yq,
             q, xq, yq, qq,
         );
-        let [l, lx, ly, lq, ll] = self.values;
+        let [l, lx, ly, lq, ll] = self.values.map(|lanes| f64::from(lanes::sum(lanes)));
         let right = Vector4::new(l, lx, ly, lq);
-        let inverse = matrix.cholesky()?.inverse();
+        let inverse = matrix.try_inverse()?;
         let parabola = inverse * right;
         let curvature = parabola[3];
-        if curvature >= 0.0 {
+        if !(curvature < 0.0 && inverse.m11 > 0.0) {
             return None;
         }
         let (du, dv) = (-parabola[1] / (2.0 * curvature), -parabola[2] / (2.0 * curvature));
         if libm::hypot(du, dv) > radius_px / 2.0 {
             return None;
         }
-        let misfit = (ll - parabola.dot(&right)) / f64::from(self.pixels - 4);
+        let misfit = (ll - parabola.dot(&right)) / f64::from(pixels - 4.0);
         #[rustfmt::skip]
         let slope = Matrix2x4::new(
             0.0, 0.5, 0.0, du,

@@ -1,0 +1,62 @@
+//! Frames to time: saturated spots with soft edges on a dark, noisy background.
+
+use rand_distr::{Distribution, Normal, Uniform};
+use rand_pcg::Pcg64;
+
+pub const WIDTH: usize = 752;
+pub const HEIGHT: usize = 480;
+const FRAMES: u64 = 8;
+
+/// Eight frames of `count` spots of 1 to 30 px (log-uniform), at least 16 px apart, with the sun on demand.
+pub fn markers(count: usize, sun: bool) -> Vec<Vec<u8>> {
+    (0..FRAMES).map(|seed| frame(count, sun, &mut Pcg64::new(seed.into(), 5))).collect()
+}
+
+fn frame(count: usize, sun: bool, rng: &mut Pcg64) -> Vec<u8> {
+    let background = Normal::new(5.0, 2.0).unwrap();
+    let mut light: Vec<f64> = (0..WIDTH * HEIGHT).map(|_| background.sample(rng)).collect();
+    let (across, down) =
+        (Uniform::new(20.0, WIDTH as f64 - 20.0).unwrap(), Uniform::new(20.0, HEIGHT as f64 - 20.0).unwrap());
+    let log_area = Uniform::new(0.0, libm::log(30.0)).unwrap();
+    let mut places: Vec<(f64, f64)> = Vec::new();
+    if sun {
+        places.push((560.0, 120.0));
+        add_sun(&mut light, places[0]);
+    }
+    while places.len() < count + usize::from(sun) {
+        let place = (across.sample(rng), down.sample(rng));
+        let clear = if sun { 120.0 } else { 16.0 };
+        let free = places.iter().enumerate().all(|(i, other)| {
+            libm::hypot(place.0 - other.0, place.1 - other.1) > if i == 0 { clear } else { 16.0 }
+        });
+        if free {
+            add_disc(&mut light, place, (libm::exp(log_area.sample(rng)) / std::f64::consts::PI).sqrt(), 1.0);
+            places.push(place);
+        }
+    }
+    light.into_iter().map(|light| light.round().clamp(0.0, 255.0) as u8).collect()
+}
+
+/// A saturated disc whose edge falls off over `edge` px.
+fn add_disc(light: &mut [f64], (u, v): (f64, f64), radius: f64, edge: f64) {
+    let reach = (radius + 4.0 * edge).ceil() as usize;
+    for row in (v as usize).saturating_sub(reach)..(v as usize + reach + 1).min(HEIGHT) {
+        for column in (u as usize).saturating_sub(reach)..(u as usize + reach + 1).min(WIDTH) {
+            let beyond = libm::hypot(column as f64 - u, row as f64 - v) - radius;
+            light[row * WIDTH + column] += 300.0 / (1.0 + libm::exp(beyond / (0.35 * edge)));
+        }
+    }
+}
+
+/// A saturated disc of 20 px, a halo, and six streaks.
+fn add_sun(light: &mut [f64], (u, v): (f64, f64)) {
+    add_disc(light, (u, v), 20.0, 2.0);
+    for (i, light) in light.iter_mut().enumerate() {
+        let (du, dv) = ((i % WIDTH) as f64 - u, (i / WIDTH) as f64 - v);
+        let distance = libm::hypot(du, dv);
+        *light += 120.0 * libm::exp(-distance / 25.0);
+        let angle = libm::atan2(dv, du) * 6.0 / std::f64::consts::TAU;
+        let off = (angle - angle.round()).abs() * distance;
+        *light += 200.0 * libm::exp(-off * off - distance / 40.0);
+    }
+}

@@ -14,6 +14,7 @@
 
 mod query;
 mod subsets;
+mod symmetry;
 mod table;
 mod view;
 

@@ -1,10 +1,11 @@
 //! What an airframe can show, over boxes of elevation and distance: filled once, by branch and bound.
 
-use core::f64::consts::{FRAC_PI_2, PI};
+use core::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use nalgebra::Vector3;
 
 use super::subsets::{PairValues, least_diameters};
+use super::symmetry;
 use super::view::{Pair, Range, ViewBox, Views};
 use crate::airframe::Airframe;
 
@@ -15,14 +16,14 @@ const COLUMNS: usize = 20;
 /// More spots than this are bounded as this many: the widest angle only grows with their number.
 const MAX_SPOTS: usize = 64;
 
-/// Boxes first looked at, around the yaw.
-const FIRST_YAWS: usize = 8;
+/// Boxes first looked at, side by side in yaw.
+const FIRST_YAWS: usize = 4;
 /// A box is split while it may hold more than this share beyond what is already seen ...
-const GAIN: f64 = 0.01;
+const GAIN: f64 = 0.015;
 /// ... and more than this share of the airframe's reach ...
-const GAIN_OF_REACH: f64 = 0.005;
+const GAIN_OF_REACH: f64 = 0.0075;
 /// ... until the pairs looked at in one row and column reach this number.
-const PAIR_BUDGET: usize = 12_000;
+const PAIR_BUDGET: usize = 4_000;
 
 /// Bounds of distance times angle, m, over a box of camera places; `lo` above `hi` where so many markers never show.
 #[derive(Clone, Copy, Debug)]
@@ -92,6 +93,8 @@ impl Table {
         let inverse_m = |edge: usize| (edge as f64 / COLUMNS as f64).powi(2) / near_m;
         let sizes = airframe.markers().len().min(MAX_SPOTS) - 1;
         let mut search = Search::new(airframe, sizes);
+        let sector_rad = Range { lo: 0.0, hi: TAU / symmetry::turns(airframe) as f64 };
+        let mirrored = symmetry::is_mirrored(airframe);
         let mut columns = Vec::with_capacity(COLUMNS);
         let mut extents = vec![Extents::NONE; sizes * COLUMNS * ROWS];
         let mut any_row = vec![Extents::NONE; sizes * COLUMNS];
@@ -103,15 +106,16 @@ impl Table {
             // A spot's centre is up to the spread off its marker's mean position.
             let extra_m = 2.0 * min_m * angle_within(spread_m, min_m - airframe.max_radius_m());
             columns.push(column);
-            for row in 0..ROWS {
-                let found = search.run(ViewBox {
-                    yaw_rad: ViewBox::ALL_YAWS,
-                    elevation_rad: row_elevations_rad(row),
-                    inverse_m,
-                });
+            for row in 0..if mirrored { ROWS / 2 } else { ROWS } {
+                let elevation_rad = row_elevations_rad(row);
+                let found = search.run(ViewBox { yaw_rad: sector_rad, elevation_rad, inverse_m });
                 for (size, found) in found.iter().enumerate() {
                     let widened = found.widened(extra_m);
-                    extents[(size * COLUMNS + index) * ROWS + row] = widened;
+                    let rows = &mut extents[(size * COLUMNS + index) * ROWS..][..ROWS];
+                    rows[row] = widened;
+                    if mirrored {
+                        rows[ROWS - 1 - row] = widened;
+                    }
                     any_row[size * COLUMNS + index].include(&widened);
                 }
             }

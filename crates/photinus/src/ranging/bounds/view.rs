@@ -10,8 +10,6 @@
 //! which is exact from the near limit to infinity, where it is the inverse of the pair's lateral extent. It grows with
 //! |y|, falls with w, and is monotone in sin(psi): ranges of the three give its range.
 
-use core::f64::consts::TAU;
-
 use nalgebra::Vector3;
 
 use crate::airframe::{Airframe, Lobe};
@@ -54,9 +52,6 @@ pub(super) struct ViewBox {
 }
 
 impl ViewBox {
-    /// All yaws.
-    pub(super) const ALL_YAWS: Range = Range { lo: 0.0, hi: TAU };
-
     /// The two halves in yaw.
     pub(super) fn split_yaw(&self) -> [Self; 2] {
         self.yaw_rad.split().map(|yaw_rad| Self { yaw_rad, ..*self })
@@ -221,6 +216,8 @@ fn sin_range(sin: f64, cos: f64, sin_turn: f64) -> Range {
 
 #[cfg(test)]
 mod tests {
+    use core::f64::consts::TAU;
+
     use super::*;
 
     fn exact_cot_per_m(a_m: &Vector3<f64>, b_m: &Vector3<f64>, u: &Vector3<f64>, inverse_m: f64) -> f64 {

@@ -16,7 +16,7 @@ const MAX_BOUND_RAD: f64 = 0.02;
 const TILT_RAD: f64 = DistanceBounds::DEFAULT_MAX_TILT_RAD;
 
 fn ring(arms: usize, radius_m: f64, leds_per_arm: usize, splay_rad: f64) -> Airframe {
-    Airframe::from_ring("ring", Ring { arms, radius_m, leds_per_arm, splay_rad }).unwrap()
+    Airframe::from_ring("ring", Ring { arms, radius_m, leds_per_arm, splay_rad }).expect("a ring")
 }
 
 fn hexarotor() -> Airframe {
@@ -128,7 +128,7 @@ fn disturbed(draw: &mut Draw, view: &View) -> Vec<BoundedBearing> {
         };
         let side = (aim - ray * ray.dot(&aim)).try_normalize(1e-9).unwrap_or_else(Vector3::zeros);
         let (sin, cos) = libm::sincos(error_rad);
-        BoundedBearing { bearing: Bearing::new(ray * cos + side * sin).unwrap(), bound_rad }
+        BoundedBearing { bearing: Bearing::new(ray * cos + side * sin).expect("a direction"), bound_rad }
     };
     view.rays.iter().map(disturb).collect()
 }
@@ -168,7 +168,7 @@ fn octorotor_is_never_outside_its_bounds() {
 /// Perfect bearings to everything that shows, the world being the camera's frame.
 fn spots_from(airframe: &Airframe, camera_m: Vector3<f64>) -> Vec<BoundedBearing> {
     let spot = |marker: usize| BoundedBearing {
-        bearing: Bearing::new(airframe.markers()[marker].position_m - camera_m).unwrap(),
+        bearing: Bearing::new(airframe.markers()[marker].position_m - camera_m).expect("a camera elsewhere"),
         bound_rad: 0.0,
     };
     airframe.visible(camera_m).map(spot).collect()
@@ -183,7 +183,7 @@ fn median_ratio(airframe: &Airframe) -> f64 {
         .map(|step| {
             let place = f64::from(step) / 2000.0;
             let camera_m = 5.0 * towards(place * TAU, 0.26 * libm::sin(place * 300.0));
-            let interval = bounds.interval(&spots_from(airframe, camera_m), Some(&down)).unwrap();
+            let interval = bounds.interval(&spots_from(airframe, camera_m), Some(&down)).expect("a distance");
             interval.max_m() / interval.min_m()
         })
         .collect();
@@ -247,5 +247,8 @@ fn gravity_narrows_what_it_can() {
     let spots = spots_from(&hexarotor(), 5.0 * towards(0.1, 1.0));
     let known = bounds.interval(&spots[..2], Some(&down)).unwrap();
     let unknown = bounds.interval(&spots[..2], None).unwrap();
-    assert!(known.min_m() > 1.2 * unknown.min_m() && known.max_m() <= unknown.max_m(), "{known:?} {unknown:?}");
+    assert!(
+        known.min_m() > 1.2 * unknown.min_m() && known.max_m() <= unknown.max_m(),
+        "{known:?} {unknown:?}"
+    );
 }

@@ -1,9 +1,9 @@
 //! Strict bounds on distance: the angles between spots -> the distances at which an airframe can show them.
 //!
-//! Only where the camera is in the body frame matters: in direction u, at distance l. At construction, [`table`]
-//! bounds the widest and the narrowest angle that any m visible markers can show, times l, over boxes of elevation
-//! of u and of l and every yaw. A query then asks of each box whether its angles meet the measured ones; what is
-//! left is the interval. The truth never leaves it, over
+//! Only where the camera is in the body frame matters: in direction u, at distance l. Construction fills a table, over
+//! boxes of the elevation of u and of l and every yaw: between what the widest and the narrowest angle that any m visible
+//! markers show, times l, must lie. A query then asks of each box whether its angles meet the measured ones; what is left
+//! is the interval. The truth never leaves it, over
 //!
 //! - every yaw, and every tilt of the target up to the limit where gravity is known; any attitude where it is not;
 //! - each bearing off by up to its own bound, so that an angle is off by up to the sum of two;

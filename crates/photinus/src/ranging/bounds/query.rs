@@ -37,11 +37,16 @@ impl DistanceBounds {
     }
 
     /// The distances at which two spots `angle_rad` apart, known to `slack_rad` (the sum of their bounds), can be
-    /// markers of one such airframe in any attitude, alone or among others; `None` when there are none.
+    /// markers of one such airframe in any attitude, alone or among others; `None` when there are none. An angle outside
+    /// 0 to pi says nothing.
     pub fn pair_interval(&self, angle_rad: f64, slack_rad: f64) -> Option<Interval> {
-        let slack_rad = if angle_rad.is_finite() { known_angle_rad(slack_rad) } else { PI };
-        let angle_rad = if angle_rad.is_finite() { angle_rad } else { 0.0 };
-        let angle = Range { lo: angle_rad - slack_rad, hi: angle_rad + slack_rad };
+        let is_angle = (0.0..=PI).contains(&angle_rad);
+        let slack_rad = known_angle_rad(slack_rad);
+        let angle = if is_angle {
+            Range { lo: angle_rad - slack_rad, hi: angle_rad + slack_rad }
+        } else {
+            Range { lo: 0.0, hi: PI }
+        };
         self.hull(2, &Measured::new(angle, angle), |_| Some((0, ROWS - 1)))
     }
 

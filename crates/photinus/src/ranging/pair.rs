@@ -2,7 +2,8 @@
 //!
 //! Both are for a level target seen from the side. Perpendicular (case A) supposes that the line of sight halves
 //! the pair, inline (case B) that one marker of the pair lies on it. For a front pair, one whose middle is within
-//! pi / n of the line of sight, the truth lies between: l_B <= l <= l_A.
+//! pi / n of the line of sight, the truth lies between: l_B <= l <= l_A. The upper half, l <= l_A, holds for every
+//! adjacent pair in any attitude, because no view of a pair is wider than the perpendicular one.
 //!
 //! Known limitation: an adjacent pair further to the side looks narrower than case B allows for, so l_B > l for it.
 //! Such pairs show whenever a lobe reaches past 2 pi / n: on a hexarotor of bare LEDs with markers 20 and 80 deg from
@@ -79,6 +80,8 @@ fn is_pair_angle(alpha_rad: f64) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use nalgebra::Vector3;
+
     use super::*;
 
     fn pair(markers: usize, radius_m: f64) -> AdjacentPair {
@@ -135,6 +138,21 @@ mod tests {
                     assert!(l_b <= distance_m + 1e-9 && distance_m <= l_a + 1e-9, "{l_b} {distance_m} {l_a}");
                 }
             }
+        }
+    }
+
+    #[test]
+    fn perpendicular_is_the_farthest_for_every_pair_in_any_attitude() {
+        let (radius_m, distance_m) = (0.4, 3.0);
+        let pair = pair(6, radius_m);
+        let marker = |yaw: f64| Vector3::new(libm::cos(yaw), libm::sin(yaw), 0.0) * radius_m;
+        for step in 0..5000 {
+            let z = f64::from(2 * step + 1) / 5000.0 - 1.0;
+            let (sin, cos) = libm::sincos(2.4 * f64::from(step));
+            let camera_m =
+                Vector3::new((1.0 - z * z).sqrt() * cos, (1.0 - z * z).sqrt() * sin, z) * distance_m;
+            let alpha_rad = (marker(0.0) - camera_m).angle(&(marker(TAU / 6.0) - camera_m));
+            assert!(pair.perpendicular_m(alpha_rad).unwrap() > distance_m - 1e-9);
         }
     }
 

@@ -32,8 +32,8 @@ pub struct BoundedBearing {
     pub bound_rad: f64,
 }
 
-/// Strict bounds on the distance of one kind of airframe. Built once (tens of milliseconds), then asked per group of
-/// spots (well under a microsecond).
+/// Strict bounds on the distance of one kind of airframe. Built once: about 0.1 s for a regular ring, 0.3 s for a layout
+/// without symmetry, 1 s for the largest. Asked per group of spots: 0.2 to 0.6 us for up to 8 spots, without allocation.
 #[derive(Clone, Debug)]
 pub struct DistanceBounds {
     table: Table,

@@ -141,9 +141,9 @@ fn row_elevations_rad(row: usize) -> Range {
     Range { lo: edge_rad(row), hi: edge_rad(row + 1) }
 }
 
-/// Largest angle between two points `apart_m` apart, one of them `distance_m` away; pi/2 covers the rest.
+/// Largest angle between two points up to `apart_m` apart, one of them at least `distance_m` away, rad.
 fn angle_within(apart_m: f64, distance_m: f64) -> f64 {
-    libm::asin((apart_m / distance_m).clamp(0.0, 1.0))
+    if apart_m < distance_m { libm::asin(apart_m / distance_m) } else { PI }
 }
 
 /// Branch and bound over the camera places of one row and column, for every number of spots at once.

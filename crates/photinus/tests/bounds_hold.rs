@@ -1,5 +1,6 @@
-//! Strict bounds on distance hold: a million random views per airframe, every one with gravity known and unknown,
-//! without one violation. And they are not wide for nothing: they are held against the extremes of dense grids of views.
+//! Strict bounds on distance hold: a million random views per airframe, every one with gravity known and
+//! unknown, without one violation. And they are not wide for nothing: they are held against the extremes of
+//! dense grids of views.
 
 use core::f64::consts::{FRAC_PI_2, TAU};
 
@@ -106,8 +107,8 @@ fn random_view(draw: &mut Draw, airframe: &Airframe, near_m: f64) -> View {
     }
 }
 
-/// Bearings off by up to their bounds: by a part or the whole of it, each anywhere, or all together closer, apart, or
-/// along gravity.
+/// Bearings off by up to their bounds: by a part or the whole of it, each anywhere, or all together closer,
+/// apart, or along gravity.
 fn disturbed(draw: &mut Draw, view: &View) -> Vec<BoundedBearing> {
     let middle: Vector3<f64> = view.rays.iter().sum();
     let (scheme, whole) = (draw.below(5), draw.below(2) == 0);
@@ -174,8 +175,8 @@ fn spots_from(airframe: &Airframe, camera_m: Vector3<f64>) -> Vec<BoundedBearing
     airframe.visible(camera_m).map(spot).collect()
 }
 
-/// Median ratio of farthest to nearest distance at 5 m, for everything that shows of a level target within 15 deg of
-/// the camera's height.
+/// Median ratio of farthest to nearest distance at 5 m, for everything that shows of a level target within 15
+/// deg of the camera's height.
 fn median_ratio(airframe: &Airframe) -> f64 {
     let bounds = DistanceBounds::new(airframe, TILT_RAD);
     let down = Unit::new_unchecked(-Vector3::z());
@@ -202,7 +203,8 @@ fn ratio_of_farthest_to_nearest_stays_as_tight_as_it_is() {
     }
 }
 
-/// The narrowest and the widest angle of any two visible markers from `distance_m`, over a grid of every direction.
+/// The narrowest and the widest angle of any two visible markers from `distance_m`, over a grid of every
+/// direction.
 fn pair_extremes_rad(airframe: &Airframe, distance_m: f64) -> (f64, f64) {
     let mut extremes = (f64::INFINITY, 0.0_f64);
     for row in -89..=89 {

@@ -18,7 +18,7 @@ pub struct Marker {
     pub spread_m: f64,
 }
 
-/// Groups LEDs that are closer than [`MARKER_GAP_M`], transitively, in the order of the first LED of each group.
+/// Groups LEDs closer than [`MARKER_GAP_M`], transitively, in the order of the first LED of each group.
 pub(super) fn group(leds: &[Led]) -> Vec<Marker> {
     let mut grouped = vec![false; leds.len()];
     let mut markers = Vec::new();

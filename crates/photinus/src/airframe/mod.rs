@@ -1,8 +1,8 @@
 //! Where the LEDs of a neighbour sit and how they shine.
 //!
-//! A list of LEDs (or a [`Ring`] that stands for one) enters; an [`Airframe`] leaves: its *markers*, the places
-//! that a camera sees as one spot, and how brightly each shines towards a camera. Everything is in the body
-//! frame (x forward, y left, z up). What cannot be ranged, such as a single marker, does not construct.
+//! A list of LEDs (or a [`Ring`] that stands for one) enters; an [`Airframe`] leaves: its *markers*, the
+//! places that a camera sees as one spot, and how brightly each shines towards a camera. Everything is in the
+//! body frame (x forward, y left, z up). What cannot be ranged, such as a single marker, does not construct.
 
 mod error;
 mod led;
@@ -81,9 +81,9 @@ impl Airframe {
         self.max_radius_m
     }
 
-    /// How brightly marker `marker` shines towards a camera at `camera_m` (body frame, m): the sum of its LEDs'
-    /// lobes, each at its own angle to the camera. 1 is one LED straight ahead; the falling off with distance is
-    /// not included. 0 for a marker that does not exist or a camera that is not somewhere.
+    /// How brightly marker `marker` shines towards a camera at `camera_m` (body frame, m): the sum of its
+    /// LEDs' lobes, each at its own angle to the camera. 1 is one LED straight ahead; the falling off with
+    /// distance is not included. 0 for a marker that does not exist or a camera that is not somewhere.
     pub fn intensity(&self, marker: usize, camera_m: &Vector3<f64>) -> f64 {
         let leds = self.markers.get(marker).map_or(&[][..], |marker| &marker.leds);
         leds.iter().map(|&led| self.leds[led].intensity(camera_m)).sum()

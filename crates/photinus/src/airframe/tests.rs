@@ -17,7 +17,7 @@ fn ring(arms: usize, radius_m: f64, leds_per_arm: usize, splay_deg: f64) -> Resu
     Airframe::from_ring("ring", Ring { arms, radius_m, leds_per_arm, splay_rad: splay_deg.to_radians() })
 }
 
-/// A camera so far away that only its direction matters, at `yaw_deg` from straight ahead of an LED at the origin.
+/// A camera so far away that only its direction matters, `yaw_deg` from straight ahead.
 fn far(yaw_deg: f64) -> Vector3<f64> {
     let (sin, cos) = libm::sincos(yaw_deg.to_radians());
     Vector3::new(cos, sin, 0.0) * 1e9

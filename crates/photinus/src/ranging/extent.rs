@@ -1,7 +1,7 @@
 //! One estimate of distance for any airframe: how wide the markers that show are, on average over the views.
 //!
-//! For a ring of few markers the paper's two estimates say more; this one needs no ring. It is an estimate with a
-//! sigma, not a bound.
+//! For a ring of few markers the paper's two estimates say more; this one needs no ring. It is an estimate
+//! with a sigma, not a bound.
 
 use core::f64::consts::TAU;
 
@@ -42,9 +42,9 @@ pub struct ExtentTable {
 }
 
 impl ExtentTable {
-    /// Averages over every yaw, and elevations of the line of sight in the body frame up to `max_elevation_rad`
-    /// either way (clamped to a right angle). A view counts for m markers by as much as the m-th brightest is brighter
-    /// than the next: the chance that a detection limit falls between the two.
+    /// Averages over every yaw, and elevations of the line of sight in the body frame up to
+    /// `max_elevation_rad` either way (clamped to a right angle). A view counts for m markers by as much as
+    /// the m-th brightest is brighter than the next: the chance that a detection limit falls between the two.
     pub fn new(airframe: &Airframe, max_elevation_rad: f64) -> Self {
         let max_elevation_rad = max_elevation_rad.clamp(0.0, core::f64::consts::FRAC_PI_2);
         let mut samples = vec![Vec::new(); airframe.markers().len() - 1];
@@ -59,8 +59,8 @@ impl ExtentTable {
         Self { extents: samples.iter().map(|samples| average(samples)).collect() }
     }
 
-    /// The distance at which `spots` markers have a widest angle of `widest_rad`, on average. `None` when so many never
-    /// show, or the angle is not inside (0, pi).
+    /// The distance at which `spots` markers have a widest angle of `widest_rad`, on average. `None` when so
+    /// many never show, or the angle is not inside (0, pi).
     pub fn estimate(&self, spots: usize, widest_rad: f64) -> Option<Estimate> {
         let extent = self.extents.get(spots.checked_sub(2)?).filter(|extent| extent.weight > 0.0)?;
         if !(widest_rad > 0.0 && widest_rad < core::f64::consts::PI) {

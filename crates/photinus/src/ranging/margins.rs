@@ -1,14 +1,14 @@
 //! What the paper predicts of its two estimates at a true distance: equations (7) to (12), as printed.
 //!
-//! They are here to reproduce the paper's figures 13 and 14, not to bound anything: the paper widens an angle by one
-//! bearing error although two bearings enter, and (10) adds the error to the *half* angle, so that it equals
-//! l_A(alpha_A + 2 eps) where its counterpart (9) is l_A(alpha_B - eps). Strict bounds are
+//! They are here to reproduce the paper's figures 13 and 14, not to bound anything: the paper widens an angle
+//! by one bearing error although two bearings enter, and (10) adds the error to the *half* angle, so that it
+//! equals l_A(alpha_A + 2 eps) where its counterpart (9) is l_A(alpha_B - eps). Strict bounds are
 //! [`DistanceBounds`](super::DistanceBounds).
 
 use super::AdjacentPair;
 
-/// The margins of a pair at a true distance. Each is `None` where an angle it needs leaves (0, pi): at too small a
-/// distance, or where the error exceeds the angle, so that there is no farthest distance.
+/// The margins of a pair at a true distance. Each is `None` where an angle it needs leaves (0, pi): at too
+/// small a distance, or where the error exceeds the angle, so that there is no farthest distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Margins {
     pair: AdjacentPair,
@@ -37,7 +37,8 @@ impl Margins {
         self.pair.perpendicular_m(self.pair.inline_angle_rad(self.distance_m)? - self.eps_rad)
     }
 
-    /// (10): the smallest l_A, (d/2) cot(atan((d/2) / (l - v)) + eps) + v, m: the error is added to the half angle.
+    /// (10): the smallest l_A, (d/2) cot(atan((d/2) / (l - v)) + eps) + v, m: the error is added to the half
+    /// angle.
     pub fn min_perpendicular_m(&self) -> Option<f64> {
         let half_rad = self.pair.perpendicular_angle_rad(self.distance_m)? / 2.0;
         self.pair.perpendicular_from_half_m(half_rad + self.eps_rad)

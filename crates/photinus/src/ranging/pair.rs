@@ -1,13 +1,14 @@
 //! The angle between two adjacent markers of a ring -> the paper's two distances.
 //!
-//! Both are for a level target seen from the side. Perpendicular (case A) supposes that the line of sight halves
-//! the pair, inline (case B) that one marker of the pair lies on it. For a front pair, one whose middle is within
-//! pi / n of the line of sight, the truth lies between: l_B <= l <= l_A. The upper half, l <= l_A, holds for every
-//! adjacent pair in any attitude, because no view of a pair is wider than the perpendicular one.
+//! Both are for a level target seen from the side. Perpendicular (case A) supposes that the line of sight
+//! halves the pair, inline (case B) that one marker of the pair lies on it. For a front pair, one whose
+//! middle is within pi / n of the line of sight, the truth lies between: l_B <= l <= l_A. The upper half, l
+//! <= l_A, holds for every adjacent pair in any attitude, because no view of a pair is wider than the
+//! perpendicular one.
 //!
-//! Known limitation: an adjacent pair further to the side looks narrower than case B allows for, so l_B > l for it.
-//! Such pairs show whenever a lobe reaches past 2 pi / n: on a hexarotor of bare LEDs with markers 20 and 80 deg from
-//! the line of sight, l_B is a third too far. The tests pin both; strict bounds are
+//! Known limitation: an adjacent pair further to the side looks narrower than case B allows for, so l_B > l
+//! for it. Such pairs show whenever a lobe reaches past 2 pi / n: on a hexarotor of bare LEDs with markers 20
+//! and 80 deg from the line of sight, l_B is a third too far. The tests pin both; strict bounds are
 //! [`DistanceBounds`](super::DistanceBounds).
 
 use core::f64::consts::{PI, TAU};
@@ -54,15 +55,15 @@ impl AdjacentPair {
         })
     }
 
-    /// alpha_A: the angle of a perpendicular pair at `distance_m` from the centre, rad, the inverse of (5). `None`
-    /// at or inside the middle of the pair.
+    /// alpha_A: the angle of a perpendicular pair at `distance_m` from the centre, rad, the inverse of (5).
+    /// `None` at or inside the middle of the pair.
     pub fn perpendicular_angle_rad(&self, distance_m: f64) -> Option<f64> {
         let ahead_m = distance_m - self.apothem_m;
         (ahead_m > 0.0).then(|| 2.0 * libm::atan2(self.half_side_m, ahead_m))
     }
 
-    /// alpha_B: the angle of an inline pair at `distance_m` from the centre, rad, the inverse of (6). `None` where
-    /// the farther marker is beside or behind the camera.
+    /// alpha_B: the angle of an inline pair at `distance_m` from the centre, rad, the inverse of (6). `None`
+    /// where the farther marker is beside or behind the camera.
     pub fn inline_angle_rad(&self, distance_m: f64) -> Option<f64> {
         let ahead_m = distance_m - self.inline_ahead_m;
         (ahead_m > 0.0).then(|| libm::atan2(self.inline_side_m, ahead_m))
@@ -88,7 +89,8 @@ mod tests {
         AdjacentPair::of(&RingGeometry { markers, radius_m })
     }
 
-    /// Angle between two markers of a level ring at `yaws_rad` from the line of sight, seen from `distance_m`.
+    /// Angle between two markers of a level ring at `yaws_rad` from the line of sight, seen from
+    /// `distance_m`.
     fn angle_rad(radius_m: f64, yaws_rad: [f64; 2], distance_m: f64) -> f64 {
         let side = |yaw: f64| libm::atan2(radius_m * libm::sin(yaw), distance_m - radius_m * libm::cos(yaw));
         (side(yaws_rad[0]) - side(yaws_rad[1])).abs()

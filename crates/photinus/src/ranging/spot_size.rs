@@ -2,7 +2,8 @@
 
 use super::Interval;
 
-/// The area of a spot over distance, S(l) = round(offset + scale / (l + shift)^2): the form of the paper's (13).
+/// The area of a spot over distance, S(l) = round(offset + scale / (l + shift)^2): the form of the paper's
+/// (13).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Envelope {
     /// What remains far away, px.
@@ -62,8 +63,8 @@ pub struct SpotCurve {
 }
 
 impl SpotCurve {
-    /// A curve from its envelopes: `upper` for the largest spot, `lower` for the smallest of an LED that faces the
-    /// camera, `limit_m` for the distance past which no LED makes a spot at all.
+    /// A curve from its envelopes: `upper` for the largest spot, `lower` for the smallest of an LED that
+    /// faces the camera, `limit_m` for the distance past which no LED makes a spot at all.
     ///
     /// # Errors
     /// [`SpotCurveError`] for an illegal envelope or limit, or envelopes that cross between 0.1 m and 100 m.
@@ -89,8 +90,9 @@ impl SpotCurve {
         }
     }
 
-    /// Paper (13): camera and LED of the paper, 1000 us, threshold 200 of 255. The paper prints the shift with
-    /// either sign; taken is the one of its equation, -0.0154 m, which gives the larger spot and so the safe bound.
+    /// Paper (13): camera and LED of the paper, 1000 us, threshold 200 of 255. The paper prints the shift
+    /// with either sign; taken is the one of its equation, -0.0154 m, which gives the larger spot and so the
+    /// safe bound.
     pub fn paper_1000_us() -> Self {
         let upper = Envelope { offset_px: 1.3398, scale_px_m2: 31.4704, shift_m: -0.0154 };
         Self { upper, lower: None, limit_m: None }
@@ -101,13 +103,14 @@ impl SpotCurve {
         self.upper.area_px(distance_m).round() as u32 // saturates
     }
 
-    /// Smallest area of the spot of an LED that faces the camera at a distance, px; 1 without a lower envelope.
+    /// Smallest area of the spot of an LED that faces the camera at a distance, px; 1 without a lower
+    /// envelope.
     pub fn min_area_px(&self, distance_m: f64) -> u32 {
         self.lower.map_or(1, |lower| lower.area_px(distance_m).round() as u32)
     }
 
-    /// The distances at which an LED that faces the camera can make a spot of `area_px` pixels; `None` when there
-    /// are none. An LED turned away looks smaller and so farther: for it, only the maximum holds.
+    /// The distances at which an LED that faces the camera can make a spot of `area_px` pixels; `None` when
+    /// there are none. An LED turned away looks smaller and so farther: for it, only the maximum holds.
     pub fn distances(&self, area_px: u32) -> Option<Interval> {
         if area_px == 0 {
             return None;

@@ -10,11 +10,11 @@ use super::{BoundedBearing, DistanceBounds};
 use crate::ranging::Interval;
 
 impl DistanceBounds {
-    /// The distances at which these spots can be markers of one such airframe; `None` when there are none, that is,
-    /// when they cannot be.
+    /// The distances at which these spots can be markers of one such airframe; `None` when there are none,
+    /// that is, when they cannot be.
     ///
-    /// `gravity` is down in the camera frame; without it (or when it is not finite) every attitude is allowed. Fewer
-    /// than two spots bound nothing but the near limit.
+    /// `gravity` is down in the camera frame; without it (or when it is not finite) every attitude is
+    /// allowed. Fewer than two spots bound nothing but the near limit.
     pub fn interval(
         &self,
         spots: &[BoundedBearing],
@@ -36,9 +36,9 @@ impl DistanceBounds {
         })
     }
 
-    /// The distances at which two spots `angle_rad` apart, known to `slack_rad` (the sum of their bounds), can be
-    /// markers of one such airframe in any attitude, alone or among others; `None` when there are none. An angle outside
-    /// 0 to pi says nothing.
+    /// The distances at which two spots `angle_rad` apart, known to `slack_rad` (the sum of their bounds),
+    /// can be markers of one such airframe in any attitude, alone or among others; `None` when there are
+    /// none. An angle outside 0 to pi says nothing.
     pub fn pair_interval(&self, angle_rad: f64, slack_rad: f64) -> Option<Interval> {
         let is_angle = (0.0..=PI).contains(&angle_rad);
         let slack_rad = known_angle_rad(slack_rad);
@@ -50,8 +50,8 @@ impl DistanceBounds {
         self.hull(2, &Measured::new(angle, angle), |_| Some((0, ROWS - 1)))
     }
 
-    /// Elevations of the camera above the target's horizon that every spot allows, widened by the tilt, were the spots
-    /// at the airframe's origin.
+    /// Elevations of the camera above the target's horizon that every spot allows, widened by the tilt, were
+    /// the spots at the airframe's origin.
     fn elevation_rad(&self, spots: &[BoundedBearing], down: &Vector3<f64>) -> Option<Range> {
         let mut band = Range { lo: -FRAC_PI_2, hi: FRAC_PI_2 };
         for spot in spots {
@@ -90,7 +90,8 @@ impl DistanceBounds {
     }
 }
 
-/// The ranges of the widest and the narrowest angle among the spots, as the inverses that a query multiplies by.
+/// The ranges of the widest and the narrowest angle among the spots, as the inverses that a query multiplies
+/// by.
 struct Measured {
     widest: Range,
     narrowest: Range,

@@ -1,7 +1,8 @@
 //! Which m of n markers lie closest together: the least diameter over all subsets of each size.
 //!
-//! With the value of a pair growing with its angle, the least diameter is the smallest widest angle that m spots can
-//! show; with a value that falls with the angle it is, mirrored, the largest narrowest angle. One function does both.
+//! With the value of a pair growing with its angle, the least diameter is the smallest widest angle that m
+//! spots can show; with a value that falls with the angle it is, mirrored, the largest narrowest angle. One
+//! function does both.
 
 /// Up to this many markers the least diameters are exact: 2^8 subsets.
 const EXACT: usize = 8;
@@ -29,8 +30,8 @@ impl PairValues {
     }
 }
 
-/// For each m from 2, in `least[m - 2]`: a lower bound of the least diameter (largest pair value) among the m-subsets
-/// of the first `count` markers, exact up to [`EXACT`] of them. Sizes past `count` are left alone.
+/// For each m from 2, in `least[m - 2]`: a lower bound of the least diameter (largest pair value) among the
+/// m-subsets of the first `count` markers, exact up to [`EXACT`] of them. Sizes past `count` are left alone.
 pub(super) fn least_diameters(values: &PairValues, count: usize, least: &mut [f64]) {
     if count <= EXACT {
         exact(values, count, least);

@@ -9,8 +9,8 @@ use crate::airframe::{Airframe, Lobe};
 /// How far LEDs may be from coinciding, m and in the axis; far below what the table is widened by.
 const TOLERANCE: f64 = 1e-12;
 
-/// How many turns of the airframe about its z axis, each by the same part of a circle, leave its LEDs as they were: at
-/// least 1.
+/// How many turns of the airframe about its z axis, each by the same part of a circle, leave its LEDs as they
+/// were: at least 1.
 pub(super) fn turns(airframe: &Airframe) -> usize {
     let leaves_as_is = |count: &usize| {
         let turn = Rotation3::from_axis_angle(&Vector3::z_axis(), TAU / *count as f64);

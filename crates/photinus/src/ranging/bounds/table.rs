@@ -25,7 +25,8 @@ const GAIN_OF_REACH: f64 = 0.0075;
 /// ... until the pairs looked at in one row and column reach this number.
 const PAIR_BUDGET: usize = 4_000;
 
-/// Bounds of distance times angle, m, over a box of camera places; `lo` above `hi` where so many markers never show.
+/// Bounds of distance times angle, m, over a box of camera places; `lo` above `hi` where so many markers
+/// never show.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Extents {
     /// Of the widest angle among the spots.

@@ -1,14 +1,14 @@
 //! What two markers show over a box of camera places: interval arithmetic on the angle of a pair.
 //!
-//! The camera is at u / w: u a direction in the body frame, w the inverse of its distance, 0 for infinitely far. With
-//! the middle m of a pair, its vector d and y = u - w m, the angle theta of the pair obeys
+//! The camera is at u / w: u a direction in the body frame, w the inverse of its distance, 0 for infinitely
+//! far. With the middle m of a pair, its vector d and y = u - w m, the angle theta of the pair obeys
 //!
 //! ```text
 //! w cot(theta) = (|y| / |d| - w^2 |d| / (4 |y|)) / sin(psi),    psi = angle between d and y
 //! ```
 //!
-//! which is exact from the near limit to infinity, where it is the inverse of the pair's lateral extent. It grows with
-//! |y|, falls with w, and is monotone in sin(psi): ranges of the three give its range.
+//! which is exact from the near limit to infinity, where it is the inverse of the pair's lateral extent. It
+//! grows with |y|, falls with w, and is monotone in sin(psi): ranges of the three give its range.
 
 use nalgebra::Vector3;
 
@@ -176,7 +176,8 @@ impl Pair {
         let y = views.direction - views.inverse_m * self.middle_m;
         let square = y.norm_squared();
         let norm = square.sqrt();
-        // How far y moves, and how much its square changes: first the direction turns, then the distance changes.
+        // How far y moves, and how much its square changes: first the direction turns, then the distance
+        // changes.
         let shift = views.turn + self.middle_norm_m * views.half_inverse_m;
         let square_change = 2.0 * views.inverse_m * self.middle_norm_m * views.turn
             + 2.0 * views.half_inverse_m * (self.middle_m.dot(&y).abs() + self.middle_norm_m * shift);
@@ -205,8 +206,8 @@ impl Pair {
     }
 }
 
-/// The range of the sine of an angle in [0, pi/2], given its sine and cosine, when the angle moves by up to the
-/// arcsine of `sin_turn`.
+/// The range of the sine of an angle in [0, pi/2], given its sine and cosine, when the angle moves by up to
+/// the arcsine of `sin_turn`.
 fn sin_range(sin: f64, cos: f64, sin_turn: f64) -> Range {
     let cos_turn = (1.0 - sin_turn * sin_turn).sqrt();
     let lo = if sin <= sin_turn { 0.0 } else { sin * cos_turn - cos * sin_turn };

@@ -1,6 +1,7 @@
 //! The one error of this crate: which file, where in it, what is wrong, what to do.
 
 use std::fmt;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 /// Shorthand for a result with this crate's [`Error`].
@@ -49,6 +50,19 @@ impl Error {
     /// An error in `file` with `cause`; add the rest with [`Error::at`] and [`Error::advise`].
     pub fn new(file: impl AsRef<Path>, cause: impl Into<Cause>) -> Self {
         Self { file: file.as_ref().to_owned(), place: None, cause: cause.into(), advice: String::new() }
+    }
+
+    /// The operating system refused to read or write `file`.
+    pub fn io(file: impl AsRef<Path>, cause: std::io::Error) -> Self {
+        let advice = match cause.kind() {
+            ErrorKind::NotFound => "check the path, which is taken from the current folder",
+            ErrorKind::PermissionDenied => "check the permissions of the file and its folder",
+            ErrorKind::IsADirectory => "name a file, not a folder",
+            ErrorKind::InvalidData => "check that it is a text file in UTF-8",
+            ErrorKind::StorageFull => "free some space and run again",
+            _ => "",
+        };
+        Self::new(file, cause).advise(advice)
     }
 
     /// A file that does not follow its format, for this reason.

@@ -1,8 +1,17 @@
 //! Every file format and stream that Photinus reads and writes.
 //!
 //! A reader returns a checked value of the `photinus` crate, or an [`Error`] that names the file, the place in it,
-//! the reason and what to do.
+//! the reason and what to do. A number from a file is never trusted: it may be NaN, infinite, huge or negative.
+//!
+//! ```text
+//! image, video, dataset -> frames -> (photinus) -> results
+//! mask, airframe, blink: what the method is told beforehand
+//! ```
 
 mod error;
+pub mod image;
+#[cfg(test)]
+mod scratch;
+mod whole;
 
 pub use error::{Cause, Error, Place, Result};

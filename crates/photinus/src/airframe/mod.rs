@@ -1,1 +1,104 @@
 //! Where the LEDs of a neighbour sit and how they shine.
+//!
+//! A list of LEDs (or a [`Ring`] that stands for one) enters; an [`Airframe`] leaves: its *markers*, the places
+//! that a camera sees as one spot, and how brightly each shines towards a camera. Everything is in the body
+//! frame (x forward, y left, z up). What cannot be ranged, such as a single marker, does not construct.
+
+mod error;
+mod led;
+mod marker;
+mod ring;
+
+use nalgebra::Vector3;
+
+pub use error::AirframeError;
+pub use led::{Led, Lobe};
+pub use marker::{MARKER_GAP_M, Marker};
+pub use ring::{Ring, RingGeometry};
+
+/// A neighbour's LEDs, checked, and the markers they form.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Airframe {
+    name: String,
+    leds: Vec<Led>,
+    markers: Vec<Marker>,
+    ring: Option<RingGeometry>,
+    max_radius_m: f64,
+}
+
+impl Airframe {
+    /// Most LEDs that an airframe may have.
+    pub const MAX_LEDS: usize = 256;
+    /// Farthest that an LED may sit from the body's origin, m.
+    pub const MAX_REACH_M: f64 = 100.0;
+
+    /// An airframe from its LEDs; those closer than [`MARKER_GAP_M`], transitively, form one marker.
+    ///
+    /// # Errors
+    /// [`AirframeError`] for more than [`Self::MAX_LEDS`], for an LED that is not finite, has no axis, sits too far
+    /// out or appears twice, and for fewer than two markers, since distance comes from the angle between two.
+    pub fn new(name: impl Into<String>, leds: Vec<Led>) -> Result<Self, AirframeError> {
+        led::check(&leds)?;
+        let markers = marker::group(&leds);
+        if markers.len() < 2 {
+            return Err(AirframeError::TooFewMarkers { leds: leds.len(), markers: markers.len() });
+        }
+        let ring = RingGeometry::detect(&markers);
+        let max_radius_m = markers.iter().map(|marker| marker.position_m.norm()).fold(0.0, f64::max);
+        Ok(Self { name: name.into(), leds, markers, ring, max_radius_m })
+    }
+
+    /// An airframe with its LEDs on a regular ring.
+    ///
+    /// # Errors
+    /// [`AirframeError`] when the ring itself is impossible, or as [`Airframe::new`].
+    pub fn from_ring(name: impl Into<String>, ring: Ring) -> Result<Self, AirframeError> {
+        Self::new(name, ring.leds()?)
+    }
+
+    /// What the airframe is called.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// The LEDs, in the order given.
+    pub fn leds(&self) -> &[Led] {
+        &self.leds
+    }
+
+    /// The markers, in the order of their first LEDs; at least two.
+    pub fn markers(&self) -> &[Marker] {
+        &self.markers
+    }
+
+    /// The regular ring that the markers form, if they do: what the paper's equations need.
+    pub fn ring(&self) -> Option<RingGeometry> {
+        self.ring
+    }
+
+    /// Largest distance of a marker from the body's origin, m.
+    pub fn max_radius_m(&self) -> f64 {
+        self.max_radius_m
+    }
+
+    /// How brightly marker `marker` shines towards a camera at `camera_m` (body frame, m): the sum of its LEDs'
+    /// lobes, each at its own angle to the camera. 1 is one LED straight ahead; the falling off with distance is
+    /// not included. 0 for a marker that does not exist or a camera that is not somewhere.
+    pub fn intensity(&self, marker: usize, camera_m: &Vector3<f64>) -> f64 {
+        let leds = self.markers.get(marker).map_or(&[][..], |marker| &marker.leds);
+        leds.iter().map(|&led| self.leds[led].intensity(camera_m)).sum()
+    }
+
+    /// Whether marker `marker` shines at all towards a camera at `camera_m` (body frame, m).
+    pub fn is_visible(&self, marker: usize, camera_m: &Vector3<f64>) -> bool {
+        self.intensity(marker, camera_m) > 0.0
+    }
+
+    /// Indices of the markers that shine towards a camera at `camera_m` (body frame, m).
+    pub fn visible(&self, camera_m: Vector3<f64>) -> impl Iterator<Item = usize> + '_ {
+        (0..self.markers.len()).filter(move |&marker| self.is_visible(marker, &camera_m))
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -12,6 +12,7 @@ mod error;
 pub mod image;
 #[cfg(test)]
 mod scratch;
+pub mod video;
 mod whole;
 
 pub use error::{Cause, Error, Place, Result};

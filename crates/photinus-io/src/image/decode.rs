@@ -88,12 +88,11 @@ fn pnm_maximum(bytes: &[u8]) -> std::result::Result<u32, String> {
 }
 
 /// Refuses what no frame may be.
-pub(super) fn check_size(width: usize, height: usize) -> std::result::Result<(), String> {
-    let side = 1..=FrameView::MAX_SIDE_PX;
-    if side.contains(&width) && side.contains(&height) && width * height <= MAX_PIXELS {
+pub(crate) fn check_size(width: usize, height: usize) -> std::result::Result<(), String> {
+    let max = FrameView::MAX_SIDE_PX;
+    if (1..=max).contains(&width) && (1..=max).contains(&height) && width * height <= MAX_PIXELS {
         return Ok(());
     }
-    let max = FrameView::MAX_SIDE_PX;
     Err(format!("{width}x{height} pixels: each side must be 1 to {max}, {MAX_PIXELS} pixels in all"))
 }
 

@@ -15,6 +15,7 @@ use std::path::Path;
 use photinus::frame::FrameView;
 
 use crate::{Error, Result, whole};
+pub(crate) use decode::check_size;
 pub use decode::decode_image;
 pub use grey::GreyImage;
 

@@ -44,6 +44,9 @@ pub enum Cause {
     /// The pixels do not make a frame.
     #[error("{0}")]
     Frame(#[from] photinus::frame::FrameError),
+    /// The LEDs do not make an airframe.
+    #[error("{0}")]
+    Airframe(#[from] photinus::airframe::AirframeError),
 }
 
 impl Error {
@@ -59,6 +62,7 @@ impl Error {
             ErrorKind::PermissionDenied => "check the permissions of the file and its folder",
             ErrorKind::IsADirectory => "name a file, not a folder",
             ErrorKind::InvalidData => "check that it is a text file in UTF-8",
+            ErrorKind::AlreadyExists => "remove it, or write elsewhere",
             ErrorKind::StorageFull => "free some space and run again",
             _ => "",
         };

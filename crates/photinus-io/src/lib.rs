@@ -8,10 +8,16 @@
 //! mask, airframe, blink: what the method is told beforehand
 //! ```
 
+pub mod airframe;
+pub mod blink;
+pub mod dataset;
 mod error;
 pub mod image;
+mod lines;
+pub mod mask;
 #[cfg(test)]
 mod scratch;
+mod table;
 pub mod video;
 mod whole;
 

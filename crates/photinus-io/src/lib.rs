@@ -12,9 +12,11 @@ pub mod airframe;
 pub mod blink;
 pub mod dataset;
 mod error;
+pub mod frames;
 pub mod image;
 mod lines;
 pub mod mask;
+pub mod results;
 #[cfg(test)]
 mod scratch;
 mod table;

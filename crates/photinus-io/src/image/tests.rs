@@ -135,3 +135,21 @@ fn real_photographs_are_read_and_cut_ones_are_not() {
         assert!(decode_image(&jpeg[..jpeg.len() - cut], "cut").is_err(), "{cut} bytes short");
     }
 }
+
+#[test]
+fn no_damaged_jpeg_panics() {
+    let Some(data) = real_data() else { return };
+    let jpeg = std::fs::read(data.join("grid-752x480/image_01.jpg")).unwrap();
+    let mut state = 1_u64;
+    let mut random = |below: usize| {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 33) as usize % below
+    };
+    for round in 0..200 {
+        let mut damaged = jpeg.clone();
+        // Every other time in the headers, which steer the decoder.
+        let reach = if round % 2 == 0 { 700 } else { jpeg.len() };
+        (0..3).for_each(|_| damaged[random(reach)] = random(256) as u8);
+        let _ = decode_image(&damaged, "damaged");
+    }
+}

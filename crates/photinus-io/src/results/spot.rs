@@ -80,7 +80,8 @@ impl TryFrom<Given> for SpotRecord {
     type Error = String;
 
     fn try_from(given: Given) -> Result<Self, String> {
-        let side = 0.0..=FrameView::MAX_SIDE_PX as f64;
+        // The outer edge of the first pixel is at -0.5.
+        let side = -0.5..=FrameView::MAX_SIDE_PX as f64;
         let (u_px, v_px) = (given.u_px, given.v_px);
         if !side.contains(&u_px) || !side.contains(&v_px) {
             return Err(format!("a spot at ({u_px}, {v_px}) px is in no image"));

@@ -94,10 +94,10 @@ mod tests {
 
     #[test]
     fn a_bad_line_is_named_and_the_next_one_is_read() {
-        let read: Vec<Result<[f64; 2]>> =
+        let read: Vec<Result<[u32; 2]>> =
             JsonLines::new(b"[1,2]\r\n\n[1,\n[3,4]".as_slice(), "t.jsonl").collect();
         assert_eq!(read.len(), 3);
-        assert_eq!(*read[2].as_ref().unwrap(), [3.0, 4.0]);
+        assert_eq!(*read[2].as_ref().unwrap(), [3, 4]);
         let message = read[1].as_ref().unwrap_err().to_string();
         assert!(message.starts_with("t.jsonl, line 3: column "), "{message}");
         assert!(message.ends_with("; the line is cut: remove it, or run again"), "{message}");

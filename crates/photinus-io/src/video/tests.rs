@@ -34,7 +34,7 @@ fn a_stream_cut_anywhere_gives_the_frames_before_and_one_error() {
     let first_frame = bytes.len() - 3 * (6 + 12);
     for length in first_frame..bytes.len() {
         let whole = (length - first_frame) / 18;
-        let at_boundary = (length - first_frame) % 18 == 0;
+        let at_boundary = (length - first_frame).is_multiple_of(18);
         let frames = read(&bytes[..length]);
         assert_eq!(frames.iter().filter(|frame| frame.is_ok()).count(), whole, "cut to {length}");
         assert_eq!(frames.len(), whole + usize::from(!at_boundary), "cut to {length}");

@@ -118,3 +118,18 @@ impl std::error::Error for Error {
         Some(&self.cause)
     }
 }
+
+/// What a deserializer says, in the words of a file rather than of Rust.
+pub(crate) fn in_plain_words(reason: &str) -> String {
+    let mut words = reason.trim().replace('\n', ", ").replace(" field `", " key `");
+    for (rust, plain) in [
+        ("expected f64", "expected a number"),
+        ("expected u8", "expected a whole number of 0 to 255"),
+        ("expected u32", "expected a whole number, 0 or more"),
+        ("expected u64", "expected a whole number, 0 or more"),
+        ("expected usize", "expected a whole number, 0 or more"),
+    ] {
+        words = words.replace(rust, plain);
+    }
+    words
+}

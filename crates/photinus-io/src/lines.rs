@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
+use crate::error::in_plain_words;
 use crate::{Error, Place, Result};
 
 /// Longest line: thousands of spots.
@@ -70,7 +71,7 @@ impl<R, T> JsonLines<R, T> {
     fn refuse(&self, error: &serde_json::Error) -> Error {
         // Its place is one within the line.
         let reason = error.to_string();
-        let reason = reason.split(" at line ").next().unwrap_or_default().replace(" field `", " key `");
+        let reason = in_plain_words(reason.split(" at line ").next().unwrap_or_default());
         let advice = match error.classify() {
             serde_json::error::Category::Eof => "the line is cut: remove it, or run again",
             _ => "see docs/file-formats.md for an example",

@@ -4,12 +4,13 @@ use std::path::Path;
 
 use serde::de::DeserializeOwned;
 
+use crate::error::in_plain_words;
 use crate::{Error, Place, Result};
 
 /// Reads TOML into `T`, which lists the keys it knows and refuses others.
 pub(crate) fn parse<T: DeserializeOwned>(text: &str, path: &Path) -> Result<T> {
     toml::from_str(text).map_err(|error| {
-        let reason = error.message().trim().replace('\n', ", ").replace(" field `", " key `");
+        let reason = in_plain_words(error.message());
         let advice = if reason.starts_with("unknown key") {
             "correct its name or remove it"
         } else if reason.starts_with("missing key") {
@@ -52,7 +53,10 @@ mod tests {
             "t.toml, line 2: unknown key `widht`, expected `width` or `name`; correct its name or remove it"
         );
         assert_eq!(message("\nname = \"a\"\n"), "t.toml, line 1: missing key `width`; add it");
-        assert!(message("width = -1").starts_with("t.toml, line 1: invalid value"));
+        assert!(
+            message("width = -1")
+                .contains("line 1: invalid value: integer `-1`, expected a whole number, 0 or more")
+        );
         assert!(message("width = 1\nwidth = 2").starts_with("t.toml, line 2: duplicate key"));
         assert!(message("width = [[[").starts_with("t.toml, line 1: "));
     }

@@ -1,6 +1,6 @@
 //! From the bytes of an image file to 8-bit grey.
 
-use std::io::Cursor;
+use std::io::{Cursor, ErrorKind};
 use std::path::Path;
 
 use image::codecs::pnm::PnmDecoder;
@@ -26,23 +26,48 @@ pub(super) struct Samples<S> {
 /// As [`super::read_image`].
 pub fn decode_image(bytes: &[u8], path: impl AsRef<Path>) -> Result<ImageFile> {
     let path = path.as_ref();
-    let corrupt = |reason: String| {
-        Error::format(path, reason).advise("the image is cut, corrupt or too large: copy or record it again")
+    let refuse = |refused: Refused| match refused {
+        Refused::Cut => Error::format(path, "the file ends before the end of the image").advise(RENEW),
+        Refused::Damaged(reason) => {
+            Error::format(path, format!("the image is damaged: {reason}")).advise(RENEW)
+        }
+        Refused::Unusable(reason) => {
+            Error::format(path, reason).advise("use a frame as the camera gives it: see docs/file-formats.md")
+        }
     };
     match image::guess_format(bytes) {
-        Ok(ImageFormat::Jpeg) => {
-            to_grey(jpeg::decode(bytes, FrameView::MAX_SIDE_PX).map_err(corrupt)?).map_err(corrupt)
-        }
+        Ok(ImageFormat::Jpeg) => jpeg::decode(bytes).and_then(to_grey).map_err(refuse),
         Ok(ImageFormat::Bmp) if run_length_coded(bytes) => {
             // Its decoder fills what is missing from a cut file with black.
-            Err(Error::format(path, "the BMP is run-length compressed")
-                .advise("save it without compression, or as PNG"))
+            Err(refuse(Refused::Unusable("the BMP is run-length compressed".to_owned())))
         }
         Ok(format @ (ImageFormat::Png | ImageFormat::Bmp | ImageFormat::Tiff | ImageFormat::Pnm)) => {
-            decode_as(bytes, format).map_err(corrupt)
+            decode_as(bytes, format).map_err(refuse)
         }
         _ => Err(Error::format(path, "this is no image that Photinus reads")
             .advise("use PNG, JPEG, BMP, TIFF or PGM/PPM; for video, Y4M")),
+    }
+}
+
+/// What to do about a file that is not what was written.
+const RENEW: &str = "copy or record it again";
+
+/// Why bytes give no image.
+pub(super) enum Refused {
+    Cut,
+    Damaged(String),
+    Unusable(String),
+}
+
+impl From<image::ImageError> for Refused {
+    fn from(error: image::ImageError) -> Self {
+        use image::ImageError as E;
+        match error {
+            E::IoError(error) if error.kind() == ErrorKind::UnexpectedEof => Self::Cut,
+            E::Limits(_) => Self::Unusable(format!("it is larger than an image may be, {MAX_PIXELS} pixels")),
+            E::Unsupported(error) => Self::Unusable(error.to_string()),
+            error => Self::Damaged(error.to_string()),
+        }
     }
 }
 
@@ -50,7 +75,7 @@ fn run_length_coded(bmp: &[u8]) -> bool {
     matches!(bmp.get(30), Some(1 | 2))
 }
 
-fn decode_as(bytes: &[u8], format: ImageFormat) -> std::result::Result<ImageFile, String> {
+fn decode_as(bytes: &[u8], format: ImageFormat) -> std::result::Result<ImageFile, Refused> {
     let maximum = match format {
         ImageFormat::Pnm => Some(pnm_maximum(bytes)?),
         _ => None,
@@ -61,10 +86,10 @@ fn decode_as(bytes: &[u8], format: ImageFormat) -> std::result::Result<ImageFile
     limits.max_alloc = Some(4 * MAX_PIXELS as u64);
     let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
     reader.limits(limits);
-    let image = reader.decode().map_err(|error| error.to_string())?;
+    let image = reader.decode()?;
     let (width, height) = (image.width() as usize, image.height() as usize);
     let channels = usize::from(image.color().channel_count());
-    check_size(width, height)?;
+    check_size(width, height).map_err(Refused::Unusable)?;
     use image::ColorType::{L8, L16, La8, La16, Rgb8, Rgb16, Rgba8, Rgba16};
     match image.color() {
         L8 | La8 | Rgb8 | Rgba8 => {
@@ -75,15 +100,15 @@ fn decode_as(bytes: &[u8], format: ImageFormat) -> std::result::Result<ImageFile
             let values = words.map(|word| u16::from_ne_bytes([word[0], word[1]])).collect();
             to_grey(Samples { values, channels, width, height, maximum })
         }
-        _ => Err("its samples are not integers of 8 or 16 bit".to_owned()),
+        _ => Err(Refused::Unusable("its samples are not integers of 8 or 16 bit".to_owned())),
     }
 }
 
-fn pnm_maximum(bytes: &[u8]) -> std::result::Result<u32, String> {
-    let decoder = PnmDecoder::new(bytes).map_err(|error| error.to_string())?;
+fn pnm_maximum(bytes: &[u8]) -> std::result::Result<u32, Refused> {
+    let decoder = PnmDecoder::new(bytes)?;
     let (width, height) = decoder.dimensions();
     // Before the pixels: the decoder allocates by the header.
-    check_size(width as usize, height as usize)?;
+    check_size(width as usize, height as usize).map_err(Refused::Unusable)?;
     Ok(decoder.header().maximal_sample())
 }
 
@@ -107,7 +132,7 @@ impl Sample for u16 {
     const LARGEST: u32 = 65_535;
 }
 
-fn to_grey<S: Sample>(samples: Samples<S>) -> std::result::Result<ImageFile, String> {
+fn to_grey<S: Sample>(samples: Samples<S>) -> std::result::Result<ImageFile, Refused> {
     let Samples { values, channels, width, height, maximum } = samples;
     let mut conversions = Vec::new();
     let pixels: Vec<u32> = if channels < 3 {
@@ -131,6 +156,6 @@ fn to_grey<S: Sample>(samples: Samples<S>) -> std::result::Result<ImageFile, Str
         _ => {}
     }
     let pixels = pixels.into_iter().map(|p| ((p * 255 + S::LARGEST / 2) / S::LARGEST) as u8).collect();
-    let image = GreyImage::new(pixels, width, height).map_err(|error| error.to_string())?;
+    let image = GreyImage::new(pixels, width, height).map_err(|error| Refused::Damaged(error.to_string()))?;
     Ok(ImageFile { image, conversions })
 }

@@ -96,7 +96,8 @@ fn garbage_before_the_frames_is_refused_with_its_reason() {
         ("YUV4MPEG2 W4 H3 Cmono40\n", "8 to 16 bit"),
         ("YUV4MPEG2 W4 H3 It\n", "two exposures"),
         ("YUV4MPEG2 W4 H3", "never ends"),
-        ("", "never ends"),
+        ("", "does not begin"),
+        ("RIFF", "does not begin"),
     ] {
         let message = refused(header.as_bytes());
         assert!(message.contains(reason) && message.contains("ffmpeg"), "{header:?}: {message}");

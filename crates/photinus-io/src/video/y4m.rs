@@ -4,7 +4,7 @@ use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 
 use super::y4m_header::Header;
-use super::{VideoFrame, cut, read_plane};
+use super::{VideoFrame, cut, read_plane, y4m_header};
 use crate::image::{Conversion, GreyImage};
 use crate::{Error, Place, Result};
 
@@ -34,8 +34,8 @@ impl<R: Read> Y4mFrames<R> {
         let mut source = BufReader::new(source);
         let line = read_line(&mut source).map_err(|error| Error::io(&name, error))?;
         let header = match line.strip_suffix('\n') {
-            Some(line) => Header::parse(line),
-            None => Err("its first line never ends".to_owned()),
+            None if line.starts_with(y4m_header::MAGIC) => Err("its first line never ends".to_owned()),
+            ended => Header::parse(ended.unwrap_or(&line)),
         }
         .map_err(|reason| {
             Error::format(&name, format!("no Y4M stream that Photinus reads: {reason}")).advise(

@@ -2,6 +2,9 @@
 
 use crate::image::{Conversion, check_size};
 
+/// The first word of a stream.
+pub(super) const MAGIC: &str = "YUV4MPEG2";
+
 /// What the first line says.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Header {
@@ -34,8 +37,8 @@ enum Chroma {
 impl Header {
     pub(super) fn parse(line: &str) -> Result<Self, String> {
         let mut words = line.split(' ');
-        if words.next() != Some("YUV4MPEG2") {
-            return Err("it does not begin with YUV4MPEG2".to_owned());
+        if words.next() != Some(MAGIC) {
+            return Err(format!("it does not begin with {MAGIC}"));
         }
         let (mut width, mut height, mut rate_hz, mut limited_range) = (None, None, None, false);
         let mut layout = Layout { chroma: Chroma::Quarter, bits: 8 };

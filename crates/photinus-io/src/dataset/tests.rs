@@ -48,7 +48,22 @@ fn a_folder_written_is_read_back() {
     let rows: Vec<_> = dataset.frames().iter().map(|row| (row.frame, row.time_s, row.gravity)).collect();
     assert_eq!(rows, [(0, 0.0, None), (1, 1.0 / 60.0, Some(down))]);
     assert_eq!(crate::image::read_image(dataset.path(&dataset.frames()[1].image)).unwrap().image, image);
-    assert_eq!(dataset.truth().unwrap().unwrap(), [truth]);
+    assert_eq!(dataset.truth().unwrap().unwrap(), [truth.clone()]);
+
+    for time_s in [1.0 / 60.0, 0.0, f64::NAN] {
+        let message = writer.frame(&image.view(), time_s, None).unwrap_err().to_string();
+        assert!(message.contains("frames.csv, frame 2: "), "{message}");
+    }
+    let mut broken = truth;
+    broken.neighbours[0].leds[0].u_px = f64::NAN;
+    assert!(
+        writer
+            .truth(&broken)
+            .unwrap_err()
+            .to_string()
+            .contains("truth.jsonl, frame 1: a number of the truth")
+    );
+    assert_eq!(Dataset::read(&folder).unwrap(), dataset, "what was refused is not written");
 
     let again = DatasetWriter::create(&folder, &info).unwrap_err().to_string();
     assert!(again.ends_with("; remove it, or write elsewhere"), "{again}");

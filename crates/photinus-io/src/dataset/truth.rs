@@ -44,6 +44,22 @@ pub struct TruthLed {
     pub led: Option<u32>,
 }
 
+impl TruthFrame {
+    /// Whether every number of it is one: JSON has no others.
+    pub(super) fn is_finite(&self) -> bool {
+        let numbers = |n: &TruthNeighbour| {
+            let leds = n.leds.iter().all(|led| led.u_px.is_finite() && led.v_px.is_finite());
+            leds && n
+                .position_m
+                .iter()
+                .chain(&n.orientation_xyzw)
+                .chain([&n.distance_m])
+                .all(|x| x.is_finite())
+        };
+        self.time_s.is_finite() && self.neighbours.iter().all(numbers)
+    }
+}
+
 /// Reads a truth.jsonl.
 ///
 /// # Errors

@@ -9,7 +9,7 @@ use photinus::frame::FrameView;
 
 use super::frames_csv::COLUMNS;
 use super::{DATASET_FILE, DatasetInfo, FRAMES_FILE, TRUTH_FILE, TruthFrame};
-use crate::{Error, Result, image, lines};
+use crate::{Error, Place, Result, image, lines};
 
 /// Writes a dataset folder. What was written before a crash is a dataset of its own.
 #[derive(Debug)]
@@ -18,6 +18,7 @@ pub struct DatasetWriter {
     frames: LineWriter<File>,
     truth: Option<LineWriter<File>>,
     next: u64,
+    last_time_s: f64,
 }
 
 impl DatasetWriter {
@@ -35,14 +36,14 @@ impl DatasetWriter {
         let mut file = File::create_new(&dataset_file).map_err(|error| Error::io(&dataset_file, error))?;
         file.write_all(text.as_bytes()).map_err(|error| Error::io(&dataset_file, error))?;
         let frames = create(&folder.join(FRAMES_FILE), &format!("{}\n", COLUMNS.join(",")))?;
-        Ok(Self { folder, frames, truth: None, next: 0 })
+        Ok(Self { folder, frames, truth: None, next: 0, last_time_s: f64::NEG_INFINITY })
     }
 
     /// Adds a frame taken at `time_s`, with the direction of gravity in the camera frame where that is known, and
     /// gives its number.
     ///
     /// # Errors
-    /// [`Error`] when a file cannot be written.
+    /// [`Error`] when a file cannot be written, or when the time is no time after that of the frame before.
     pub fn frame(
         &mut self,
         frame: &FrameView<'_>,
@@ -50,12 +51,20 @@ impl DatasetWriter {
         gravity: Option<Unit<Vector3<f64>>>,
     ) -> Result<u64> {
         let number = self.next;
+        if !(time_s.is_finite() && time_s > self.last_time_s) {
+            return Err(Error::format(
+                self.folder.join(FRAMES_FILE),
+                format!("{time_s} s is no time after the frame before"),
+            )
+            .at(Place::Frame(number))
+            .advise("write frames in the order in which they were taken"));
+        }
         let name = format!("images/{number:06}.png");
         image::write_png(self.folder.join(&name), frame)?;
         let down = gravity.map_or(",,".to_owned(), |g| format!("{},{},{}", g.x, g.y, g.z));
         writeln!(self.frames, "{number},{time_s},{name},{down}")
             .map_err(|error| Error::io(self.folder.join(FRAMES_FILE), error))?;
-        self.next += 1;
+        (self.next, self.last_time_s) = (number + 1, time_s);
         Ok(number)
     }
 
@@ -65,6 +74,11 @@ impl DatasetWriter {
     /// [`Error`] when the file cannot be written or a number is not finite.
     pub fn truth(&mut self, truth: &TruthFrame) -> Result<()> {
         let path = self.folder.join(TRUTH_FILE);
+        if !truth.is_finite() {
+            return Err(Error::format(path, "a number of the truth is not finite")
+                .at(Place::Frame(truth.frame))
+                .advise("leave out what is not known"));
+        }
         let file = match &mut self.truth {
             Some(file) => file,
             none => none.insert(create(&path, "")?),

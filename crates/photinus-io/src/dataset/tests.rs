@@ -48,7 +48,7 @@ fn a_folder_written_is_read_back() {
     let rows: Vec<_> = dataset.frames().iter().map(|row| (row.frame, row.time_s, row.gravity)).collect();
     assert_eq!(rows, [(0, 0.0, None), (1, 1.0 / 60.0, Some(down))]);
     assert_eq!(crate::image::read_image(dataset.path(&dataset.frames()[1].image)).unwrap().image, image);
-    assert_eq!(dataset.truth().unwrap().unwrap(), [truth.clone()]);
+    assert_eq!(dataset.truth().unwrap().unwrap(), std::slice::from_ref(&truth));
 
     for time_s in [1.0 / 60.0, 0.0, f64::NAN] {
         let message = writer.frame(&image.view(), time_s, None).unwrap_err().to_string();

@@ -1,6 +1,7 @@
 //! The one error of this crate: which file, where in it, what is wrong, what to do.
 
 use std::fmt;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 /// Shorthand for a result with this crate's [`Error`].
@@ -43,12 +44,29 @@ pub enum Cause {
     /// The pixels do not make a frame.
     #[error("{0}")]
     Frame(#[from] photinus::frame::FrameError),
+    /// The LEDs do not make an airframe.
+    #[error("{0}")]
+    Airframe(#[from] photinus::airframe::AirframeError),
 }
 
 impl Error {
     /// An error in `file` with `cause`; add the rest with [`Error::at`] and [`Error::advise`].
     pub fn new(file: impl AsRef<Path>, cause: impl Into<Cause>) -> Self {
         Self { file: file.as_ref().to_owned(), place: None, cause: cause.into(), advice: String::new() }
+    }
+
+    /// The operating system refused to read or write `file`.
+    pub fn io(file: impl AsRef<Path>, cause: std::io::Error) -> Self {
+        let advice = match cause.kind() {
+            ErrorKind::NotFound => "check the path, which is taken from the current folder",
+            ErrorKind::PermissionDenied => "check the permissions of the file and its folder",
+            ErrorKind::IsADirectory => "name a file, not a folder",
+            ErrorKind::InvalidData => "check that it is a text file in UTF-8",
+            ErrorKind::AlreadyExists => "remove it, or write elsewhere",
+            ErrorKind::StorageFull => "free some space and run again",
+            _ => "",
+        };
+        Self::new(file, cause).advise(advice)
     }
 
     /// A file that does not follow its format, for this reason.
@@ -99,4 +117,19 @@ impl std::error::Error for Error {
     fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
         Some(&self.cause)
     }
+}
+
+/// What a deserializer says, in the words of a file rather than of Rust.
+pub(crate) fn in_plain_words(reason: &str) -> String {
+    let mut words = reason.trim().replace('\n', ", ").replace(" field `", " key `");
+    for (rust, plain) in [
+        ("expected f64", "expected a number"),
+        ("expected u8", "expected a whole number of 0 to 255"),
+        ("expected u32", "expected a whole number, 0 or more"),
+        ("expected u64", "expected a whole number, 0 or more"),
+        ("expected usize", "expected a whole number, 0 or more"),
+    ] {
+        words = words.replace(rust, plain);
+    }
+    words
 }

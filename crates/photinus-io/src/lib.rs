@@ -1,8 +1,26 @@
 //! Every file format and stream that Photinus reads and writes.
 //!
 //! A reader returns a checked value of the `photinus` crate, or an [`Error`] that names the file, the place in it,
-//! the reason and what to do.
+//! the reason and what to do. A number from a file is never trusted: it may be NaN, infinite, huge or negative.
+//!
+//! ```text
+//! image, video, dataset -> frames -> (photinus) -> results
+//! mask, airframe, blink: what the method is told beforehand
+//! ```
 
+pub mod airframe;
+pub mod blink;
+pub mod dataset;
 mod error;
+pub mod frames;
+pub mod image;
+mod lines;
+pub mod mask;
+pub mod results;
+#[cfg(test)]
+mod scratch;
+mod table;
+pub mod video;
+mod whole;
 
 pub use error::{Cause, Error, Place, Result};

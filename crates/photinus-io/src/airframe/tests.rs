@@ -1,0 +1,145 @@
+use photinus::airframe::Lobe;
+
+use super::*;
+use crate::scratch::{files_in, real_data};
+
+const LIST: &str = r#"
+name = "pair"
+[[led]]
+position_m = [0.4, 0.0, 0]
+axis = [2.0, 0.0, 0.0]
+lobe = "lambertian"
+[[led]]
+position_m = [-0.4, 0.0, 0.0]
+axis = [-1.0, 0.0, 0.0]
+lobe = "omni"
+signal = 3
+"#;
+const LAYOUT: &str =
+    "# X Y Z Type Pitch Yaw signal_id\n0.2 0 0 0 0.0 0 0\n-0.2 0 0.1 1 1.5707963267948966 0 2\n";
+
+fn read(text: &str) -> AirframeFile {
+    parse_airframe(text, "fleet/quad.txt").unwrap()
+}
+
+fn message(text: &str) -> String {
+    parse_airframe(text, "quad").unwrap_err().to_string()
+}
+
+#[test]
+fn a_list_of_leds_is_read_and_its_axes_normalised() {
+    let AirframeFile { airframe, notes } = read(LIST);
+    assert_eq!((airframe.name(), airframe.leds().len(), notes.len()), ("pair", 2, 0));
+    assert_eq!(airframe.leds()[0].axis.into_inner().as_slice(), [1.0, 0.0, 0.0]);
+    assert_eq!((airframe.leds()[1].lobe, airframe.leds()[1].signal), (Lobe::Omni, Some(3)));
+}
+
+#[test]
+fn a_ring_stands_for_a_list() {
+    let ring = "name = \"hexa\"\nring = { arms = 6, radius_m = 0.4, leds_per_arm = 2, splay_deg = 90 }";
+    let airframe = read(ring).airframe;
+    assert_eq!((airframe.leds().len(), airframe.markers().len()), (12, 6));
+    assert!(
+        message(&ring.replace("6,", "2,"))
+            .starts_with("quad, `ring`: a ring of 2 arm(s): it needs at least 3; ")
+    );
+    assert!(message(&ring.replace("0.4", "nan")).starts_with("quad, `ring`: a ring with a radius of NaN m"));
+}
+
+#[test]
+fn both_forms_come_back_as_written() {
+    let airframe = read(LIST).airframe;
+    assert_eq!(read(&toml_text(&airframe)).airframe, airframe);
+    let airframe = read(LAYOUT).airframe;
+    let again = read(&layout_text(&airframe)).airframe;
+    for (a, b) in airframe.leds().iter().zip(again.leds()) {
+        assert!((a.axis.into_inner() - b.axis.into_inner()).norm() < 1e-15);
+        assert_eq!((a.position_m, a.lobe, a.signal), (b.position_m, b.lobe, b.signal));
+    }
+}
+
+#[test]
+fn a_layout_points_down_with_positive_pitch_and_is_named_by_its_file() {
+    let AirframeFile { airframe, notes } = read(LAYOUT);
+    assert_eq!((airframe.name(), airframe.leds()[0].signal), ("quad", Some(0)));
+    assert!((airframe.leds()[1].axis.z + 1.0).abs() < 1e-15);
+    assert_eq!(airframe.leds()[1].lobe, Lobe::Omni);
+    assert_eq!(notes, ["1 LED(s) of type 1 (ring) are taken as shining the same in every direction"]);
+}
+
+#[test]
+fn errors_of_a_toml_name_the_key() {
+    for (from, to, reason) in [
+        (
+            "[0.4, 0.0, 0]",
+            "[nan, 0.0, 0.0]",
+            "quad, `led[0].position_m`: LED 0 has a coordinate that is not finite; ",
+        ),
+        ("[0.4, 0.0, 0]", "[400, 0, 0]", "quad, `led[0].position_m`: LED 0 sits 400 m from the origin"),
+        (
+            "[-1.0, 0.0, 0.0]",
+            "[0, 0, 0]",
+            "quad, `led[1].axis`: [0.0, 0.0, 0.0] points nowhere; give the direction",
+        ),
+        ("[-1.0, 0.0, 0.0]", "[inf, 0, 0]", "quad, `led[1].axis`: [inf, 0.0, 0.0] points nowhere"),
+        (
+            "signal",
+            "sginal",
+            "quad, line 11: unknown key `sginal`, expected one of `position_m`, `axis`, `lobe`, `signal`",
+        ),
+        ("signal = 3", "signal = -3", "quad, line 11: invalid value: integer `-3`"),
+        ("\"omni\"", "\"ring\"", "quad, line 10: unknown variant `ring`, expected `lambertian` or `omni`"),
+        ("lobe = \"omni\"", "", "quad, line 7: missing key `lobe`; add it"),
+        ("name = \"pair\"", "name = \"\"", "quad, `name`: the name is empty; name the airframe"),
+        ("[0.4, 0.0, 0]", "[0.4, 0.0]", "quad, line 4: invalid length 2"),
+        (
+            "name = \"pair\"",
+            "name = \"a\"\nring = {arms=3,radius_m=1,leds_per_arm=1,splay_deg=0}",
+            "quad: it gives both",
+        ),
+    ] {
+        let message = message(&LIST.replace(from, to));
+        assert!(message.starts_with(reason), "{message}");
+        assert!(message.contains("; "), "no advice: {message}");
+    }
+    let one = LIST.split_inclusive("lambertian\"\n").next().unwrap();
+    assert!(
+        message(one).starts_with("quad: 1 LEDs form 1 marker(s): distance needs two"),
+        "{}",
+        message(one)
+    );
+    let twice = format!("{LIST}[[led]]\nposition_m = [0.4, 0, 0]\naxis = [1, 0, 0]\nlobe = \"omni\"\n");
+    let message = message(&twice);
+    assert!(
+        message.starts_with("quad, `led[2]`: LEDs 0 and 2 have the same position and axis: remove one; ")
+    );
+}
+
+#[test]
+fn errors_of_a_layout_name_the_line() {
+    for (row, reason) in [
+        ("0 0 0 0 0 0", "6 values where 7 must stand; give X Y Z Type Pitch Yaw signal_id"),
+        ("0 0 nan 0 0 0 0", "Z `nan` is not a number; give metres"),
+        ("0 0 0 3 0 0 0", "Type `3` is none; give 0 directional"),
+        ("0 0 0 0 inf 0 0", "Pitch `inf` is not a number; give radians"),
+        ("0 0 0 0 0 0 -1", "signal_id `-1` is not a number; give a whole number"),
+        ("0.2 0 0 0 0 0 0", "LEDs 0 and 2 have the same position and axis: remove one"),
+        ("900 0 0 0 0 0 0", "LED 2 sits 900 m from the origin"),
+    ] {
+        let message = message(&format!("{LAYOUT}{row}\n"));
+        assert!(message.starts_with(&format!("quad, line 4: {reason}")), "{message}");
+    }
+    assert!(message("0.2 0 0 0 0 0 0\n").starts_with("quad: 1 LEDs form 1 marker(s)"));
+    assert!(message("# nothing\n").starts_with("quad: it holds no LED; "));
+}
+
+#[test]
+fn every_real_layout_is_read() {
+    let Some(data) = real_data() else { return };
+    for path in files_in(&data.join("airframes")) {
+        let AirframeFile { airframe, notes } = read_airframe(&path).unwrap();
+        let has_beacon = path.to_string_lossy().contains("beacon");
+        assert_eq!(airframe.markers().len(), if has_beacon { 5 } else { 4 }, "{path:?}");
+        assert_eq!(notes.len(), usize::from(has_beacon), "{path:?} {notes:?}");
+    }
+}

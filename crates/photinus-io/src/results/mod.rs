@@ -1,0 +1,17 @@
+//! Results: enters what was located in each frame, leaves a line of JSON per frame or a table for a spreadsheet.
+//!
+//! The same reader takes results back and takes spots found by another program in place of frames: a spot needs only
+//! its place, see [`SpotRecord`].
+
+mod csv;
+mod json;
+mod record;
+mod spot;
+
+pub use csv::CsvWriter;
+pub use json::{ResultsReader, ResultsWriter, read_results};
+pub use record::{Distance, FrameRecord, Mode, NeighbourRecord, RejectedRecord};
+pub use spot::{DEFAULT_SIGMA_PX, SpotRecord};
+
+#[cfg(test)]
+mod tests;

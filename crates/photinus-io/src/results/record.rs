@@ -1,0 +1,105 @@
+//! The records of the results, field by field as they stand in the file.
+//!
+//! Fields are added over time, never renamed; a reader ignores those that it does not know. `None` is `null`.
+
+use serde::{Deserialize, Serialize};
+
+use super::SpotRecord;
+
+/// What was found in one frame.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FrameRecord {
+    /// Its number; where it is missing, the number of the line, from 0.
+    #[serde(default)]
+    pub frame: Option<u64>,
+    /// When it was taken, s.
+    #[serde(default)]
+    pub time_s: Option<f64>,
+    /// The image file or stream; empty where it is missing.
+    #[serde(default)]
+    pub source: String,
+    /// What is bright and may be a marker.
+    pub spots: Vec<SpotRecord>,
+    /// What is bright and is none.
+    #[serde(default)]
+    pub rejected: Vec<RejectedRecord>,
+    /// Who is there.
+    #[serde(default)]
+    pub neighbours: Vec<NeighbourRecord>,
+}
+
+/// Something bright that is not taken for a marker.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RejectedRecord {
+    /// Column, px.
+    pub u_px: f64,
+    /// Row, px.
+    pub v_px: f64,
+    /// Pixels that it covers.
+    pub area_px: u32,
+    /// Why: `sun`, `reflection`, `mask`, `outside`, ...
+    pub reason: String,
+}
+
+/// A neighbour. Vectors are in the camera frame (x right, y down, z forward).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct NeighbourRecord {
+    /// The track that it belongs to, where frames are followed.
+    #[serde(default)]
+    pub track: Option<u64>,
+    /// Who it is, where that was decoded.
+    #[serde(default)]
+    pub id: Option<u32>,
+    /// Name of its airframe.
+    pub airframe: String,
+    /// Indices of its spots in the frame's list.
+    pub spots: Vec<usize>,
+    /// Unit vector towards it.
+    pub bearing: [f64; 3],
+    /// How far it is.
+    pub distance_m: Distance,
+    /// Its origin, m.
+    pub position_m: [f64; 3],
+    /// Covariance of the position, m^2.
+    pub position_covariance_m2: [[f64; 3]; 3],
+    /// Its attitude, camera_from_body as x, y, z, w.
+    #[serde(default)]
+    pub orientation_xyzw: Option<[f64; 4]>,
+    /// Covariance of the attitude, as a small rotation in the camera frame, rad^2.
+    #[serde(default)]
+    pub orientation_covariance_rad2: Option<[[f64; 3]; 3]>,
+    /// Every pose that the spots allow, the likeliest first.
+    #[serde(default)]
+    pub modes: Vec<Mode>,
+}
+
+/// From the camera's centre to a neighbour's origin, m.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Distance {
+    /// The likeliest.
+    pub estimate: f64,
+    /// Its standard deviation.
+    pub sigma: Option<f64>,
+    /// It is never less, under the stated assumptions.
+    pub min: f64,
+    /// It is never more; `None` where nothing bounds it.
+    pub max: Option<f64>,
+    /// The paper's l_A: two markers side by side.
+    pub perpendicular: Option<f64>,
+    /// The paper's l_B: two markers one behind the other.
+    pub inline: Option<f64>,
+}
+
+/// A pose that the spots allow.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Mode {
+    /// Its share of the probability, 0 to 1.
+    pub weight: f64,
+    /// Origin in the camera frame, m.
+    pub position_m: [f64; 3],
+    /// Covariance of the position, m^2.
+    pub position_covariance_m2: [[f64; 3]; 3],
+    /// Attitude, camera_from_body as x, y, z, w.
+    #[serde(default)]
+    pub orientation_xyzw: Option<[f64; 4]>,
+}

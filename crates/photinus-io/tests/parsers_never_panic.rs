@@ -1,0 +1,173 @@
+//! Whatever the bytes, a parser gives a value or an error, never a panic; and what it gives, it takes back.
+//!
+//! The targets in `fuzz/` check the same without an end; these are the part that fits a test run.
+
+use std::io::Cursor;
+
+use photinus_io::airframe::{layout_text, parse_airframe, toml_text};
+use photinus_io::blink::BlinkCodes;
+use photinus_io::dataset::{DatasetInfo, parse_frames_csv, parse_truth};
+use photinus_io::image::decode_image;
+use photinus_io::results::ResultsReader;
+use photinus_io::video::{Y4mFrames, Y4mWriter};
+use proptest::prelude::*;
+use proptest::sample::Index;
+
+const DATASET: &str =
+    "camera = \"c.txt\"\nairframe = \"a.toml\"\nexposure_us = 1000.0\nrate_hz = 60.0\nmask = \"m.png\"\n";
+const FRAMES: &str = "frame,time_s,image,gx,gy,gz\n0,0.0,images/0.png,,,\n1,0.016,images/1.png,0.0,1.0,0.0\n";
+const TRUTH: &str = "{\"frame\":0,\"time_s\":0.5,\"neighbours\":[{\"id\":1,\"position_m\":[1,2,3],\
+    \"orientation_xyzw\":[0,0,0,1],\"distance_m\":3.7,\"leds\":[{\"u_px\":1.5,\"v_px\":2}]}]}\n";
+const AIRFRAME: &str = "name = \"pair\"\n[[led]]\nposition_m = [0.4, 0.0, 0.0]\naxis = [1.0, 0.0, 0.0]\n\
+    lobe = \"lambertian\"\n[[led]]\nposition_m = [-0.4, 0.0, 0.0]\naxis = [0.0, 0.0, 1.0]\nlobe = \"omni\"\n\
+    signal = 3\n";
+const RING: &str =
+    "name = \"hexa\"\nring = { arms = 6, radius_m = 0.4, leds_per_arm = 2, splay_deg = 90.0 }\n";
+const LAYOUT: &str =
+    "# X Y Z Type Pitch Yaw signal_id\n0.2 0 0 0 0.1 0.5 0\n-0.2 0 0.1 1 0 3.1 1\n0 0.2 0 2 0 0 1\n";
+const BLINK: &str = "# words\n0,1,1,0\n1,1,0,1\n";
+const RESULTS: &str = "{\"frame\":3,\"time_s\":null,\"source\":\"a\",\"spots\":[{\"u_px\":1.5,\"v_px\":2,\
+    \"sigma_px\":[0.2,0.3],\"range_m\":[1,null]}],\"rejected\":[{\"u_px\":1,\"v_px\":1,\"area_px\":9,\
+    \"reason\":\"sun\"}],\"neighbours\":[]}\n";
+
+/// Every parser on the same bytes. What is read must also stand being written.
+fn parse_all(bytes: &[u8]) {
+    let text = String::from_utf8_lossy(bytes);
+    let _ = decode_image(bytes, "t").map_err(|error| error.to_string());
+    if let Ok(frames) = Y4mFrames::new(bytes, "t") {
+        frames.take(8).for_each(drop);
+    }
+    let _ = DatasetInfo::parse(&text, "t");
+    let _ = parse_frames_csv(&text, "t");
+    let _ = parse_truth(&text, "t");
+    if let Ok(file) = parse_airframe(&text, "t") {
+        let again = parse_airframe(&toml_text(&file.airframe), "t").expect("what was written is read");
+        assert_eq!(again.airframe, file.airframe);
+    }
+    if let Ok(codes) = BlinkCodes::parse(&text, "t") {
+        assert_eq!(BlinkCodes::parse(&codes.to_string(), "t").expect("what was written is read"), codes);
+    }
+    ResultsReader::new(bytes, "t").for_each(drop);
+}
+
+fn encoded(format: image::ImageFormat) -> Vec<u8> {
+    let ramp = image::RgbImage::from_fn(16, 9, |u, v| image::Rgb([(u * 15) as u8, (v * 25) as u8, 99]));
+    let mut bytes = Cursor::new(Vec::new());
+    image::DynamicImage::ImageRgb8(ramp).write_to(&mut bytes, format).expect("a small image is encoded");
+    bytes.into_inner()
+}
+
+fn y4m((width, height): (usize, usize), pixels: &[u8], frames: usize) -> Vec<u8> {
+    let mut writer = Y4mWriter::new(Vec::new(), "t", (width, height), (60, 1)).expect("a vector takes it");
+    let frame = photinus::frame::FrameView::packed(pixels, width, height).expect("the sizes match");
+    (0..frames).for_each(|_| writer.write(&frame).expect("a vector takes it"));
+    writer.finish().expect("a vector takes it")
+}
+
+fn valid_files() -> Vec<Vec<u8>> {
+    use image::ImageFormat::{Bmp, Png, Pnm, Tiff};
+    let texts = [DATASET, FRAMES, TRUTH, AIRFRAME, RING, LAYOUT, BLINK, RESULTS];
+    let texts = texts.into_iter().map(|text| text.as_bytes().to_vec());
+    let images = [Png, Bmp, Tiff, Pnm].into_iter().map(encoded);
+    texts.chain(images).chain([y4m((8, 6), &[7; 48], 3)]).collect()
+}
+
+/// What goes wrong with files: cut, a byte changed, a line twice, a number replaced.
+fn damage(mut bytes: Vec<u8>, kind: u8, at: Index, value: u8) -> Vec<u8> {
+    const NUMBERS: [&str; 8] = ["nan", "-inf", "1e999", "-1", "99999999999999999999", "0", "", "\"\""];
+    if bytes.is_empty() {
+        return bytes;
+    }
+    let place = at.index(bytes.len());
+    match kind {
+        0 => bytes.truncate(place),
+        1 => bytes[place] ^= value.max(1),
+        2 => {
+            let start = bytes[..place].iter().rposition(|&b| b == b'\n').map_or(0, |end| end + 1);
+            let end =
+                bytes[place..].iter().position(|&b| b == b'\n').map_or(bytes.len(), |end| place + end + 1);
+            let line = bytes[start..end].to_vec();
+            bytes.splice(start..start, line);
+        }
+        _ => {
+            let is_number = |b: &u8| b.is_ascii_digit() || matches!(b, b'.' | b'-');
+            let start =
+                bytes[place..].iter().position(is_number).map_or(bytes.len(), |skipped| place + skipped);
+            let length = bytes[start..].iter().take_while(|b| is_number(b)).count();
+            let number = NUMBERS[usize::from(value) % NUMBERS.len()];
+            bytes.splice(start..start + length, number.bytes());
+        }
+    }
+    bytes
+}
+
+fn damages() -> impl Strategy<Value = Vec<(u8, Index, u8)>> {
+    proptest::collection::vec((0..4_u8, any::<Index>(), any::<u8>()), 1..4)
+}
+
+proptest! {
+    #[test]
+    fn no_bytes_panic(bytes in proptest::collection::vec(any::<u8>(), 0..400)) {
+        parse_all(&bytes);
+    }
+
+    #[test]
+    fn no_damaged_file_panics(file in proptest::sample::select(valid_files()), damages in damages()) {
+        parse_all(&damages.into_iter().fold(file, |bytes, (kind, at, value)| damage(bytes, kind, at, value)));
+    }
+
+    #[test]
+    fn codes_round_trip(words in (1..40_usize).prop_flat_map(|bits| {
+        proptest::collection::vec(proptest::collection::vec(any::<bool>(), bits), 1..20)
+    })) {
+        let bit = |&on: &bool| if on { "1" } else { "0" };
+        let line = |word: &Vec<bool>| word.iter().map(bit).collect::<Vec<_>>().join(" , ") + "\r\n";
+        let codes = BlinkCodes::parse(&words.iter().map(line).collect::<String>(), "t").expect("valid words");
+        prop_assert_eq!(codes.words(), words);
+    }
+
+    #[test]
+    fn frames_round_trip_bit_for_bit(size in (1..40_usize, 1..40_usize), seed in any::<u8>()) {
+        let pixels: Vec<u8> = (0..size.0 * size.1).map(|i| (i as u8).wrapping_mul(37) ^ seed).collect();
+        let bytes = y4m(size, &pixels, 1);
+        let mut frames = Y4mFrames::new(bytes.as_slice(), "t").expect("a stream");
+        let read = frames.next().expect("a frame").expect("whole").image;
+        prop_assert_eq!(read.pixels(), &pixels);
+    }
+
+    #[test]
+    fn airframes_round_trip_bit_for_bit(
+        leds in proptest::collection::vec(
+            (proptest::array::uniform3(-1.0..1.0_f64), proptest::array::uniform3(0.1..1.0_f64), any::<Option<u32>>()),
+            3..12,
+        ),
+    ) {
+        let mut text = "name = \"random\"\n".to_owned();
+        for (position, axis, signal) in leds {
+            let signal = signal.map_or(String::new(), |signal| format!("signal = {signal}\n"));
+            text += &format!("[[led]]\nposition_m = {position:?}\naxis = {axis:?}\nlobe = \"omni\"\n{signal}");
+        }
+        let read = parse_airframe(&text, "t").expect("valid LEDs").airframe;
+        prop_assert_eq!(&parse_airframe(&toml_text(&read), "t").expect("valid LEDs").airframe, &read);
+        let layout = parse_airframe(&layout_text(&read), "t").expect("valid LEDs").airframe;
+        for (a, b) in read.leds().iter().zip(layout.leds()) {
+            prop_assert_eq!(a.position_m, b.position_m);
+            prop_assert!((a.axis.into_inner() - b.axis.into_inner()).norm() < 1e-15);
+        }
+    }
+}
+
+#[test]
+fn the_files_to_damage_are_valid() {
+    DatasetInfo::parse(DATASET, "t").unwrap();
+    parse_frames_csv(FRAMES, "t").unwrap();
+    parse_truth(TRUTH, "t").unwrap();
+    for text in [AIRFRAME, RING, LAYOUT] {
+        parse_airframe(text, "t").unwrap();
+    }
+    BlinkCodes::parse(BLINK, "t").unwrap();
+    assert!(ResultsReader::new(RESULTS.as_bytes(), "t").all(|record| record.is_ok()));
+    for format in [image::ImageFormat::Png, image::ImageFormat::Bmp, image::ImageFormat::Tiff] {
+        decode_image(&encoded(format), "t").unwrap();
+    }
+}

@@ -43,6 +43,9 @@ pub enum Cause {
     /// The pixels do not make a frame.
     #[error("{0}")]
     Frame(#[from] photinus::frame::FrameError),
+    /// The numbers do not make a camera.
+    #[error("{0}")]
+    Camera(#[from] photinus::camera::CameraError),
 }
 
 impl Error {

@@ -49,7 +49,7 @@ pub enum CameraError {
         determinant: f64,
     },
     /// A field limit that is not an angle off the axis.
-    #[error("a field limit of {value_rad} rad: it must be above 0 and at most pi")]
+    #[error("a field limit of {} deg: it must be above 0 and at most 180", value_rad.to_degrees())]
     FieldLimit {
         /// The value given, rad.
         value_rad: f64,

@@ -67,10 +67,10 @@ impl Radial for KannalaBrandt {
         let turn = first_not_positive(&slope, PI);
         let last_rad = turn.unwrap_or(PI);
         let last_radius = self.curve(last_rad).0;
-        if last_radius > ring {
-            if let Some(angle_rad) = self.solve(ring, Bracket::up_to(last_rad, ring)) {
-                return Reach { radius: ring, angle_rad, end: End::Image };
-            }
+        if last_radius > ring
+            && let Some(angle_rad) = self.solve(ring, Bracket::up_to(last_rad, ring))
+        {
+            return Reach { radius: ring, angle_rad, end: End::Image };
         }
         let end = if turn.is_some() { End::Turn } else { End::Sphere };
         Reach { radius: last_radius, angle_rad: last_rad, end }

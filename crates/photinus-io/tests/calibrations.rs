@@ -37,7 +37,7 @@ fn calibrations() -> Vec<(String, CameraFile)> {
 
 /// A grid over the whole image, its corners included.
 fn grid(camera: &Camera) -> impl Iterator<Item = Pixel> {
-    let (right, bottom) = (camera.width_px() as f64 - 1.0, camera.height_px() as f64 - 1.0);
+    let (right, bottom) = (camera.width() as f64 - 1.0, camera.height() as f64 - 1.0);
     (0..=40).flat_map(move |i| {
         (0..=30).map(move |j| Pixel::new(right * f64::from(i) / 40.0, bottom * f64::from(j) / 30.0))
     })

@@ -131,7 +131,7 @@ fn last_within(ring: f64, within: impl Fn(f64) -> bool) -> f64 {
 
 /// The radius of the farthest corner of the image, px before the stretch.
 fn ring_px(camera: &Camera, lens: &OCam) -> f64 {
-    let (right, bottom) = (camera.width_px() as f64 - 0.5, camera.height_px() as f64 - 0.5);
+    let (right, bottom) = (camera.width() as f64 - 0.5, camera.height() as f64 - 0.5);
     let Pixel { u, v } = lens.centre();
     let flat = lens.stretch().try_inverse().unwrap_or_default();
     let corners = [(-0.5, -0.5), (right, -0.5), (-0.5, bottom), (right, bottom)];

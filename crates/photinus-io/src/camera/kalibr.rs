@@ -108,7 +108,7 @@ mod tests {
         let Model::KannalaBrandt(lens) = file.camera.model() else { panic!("{:?}", file.camera.model()) };
         let expected = ([464.0, 461.0], Pixel::new(478.0, 301.0), [-0.03, 0.004, -0.002, 0.0003]);
         assert_eq!((lens.focal_px(), lens.centre(), lens.k()), expected);
-        assert_eq!((file.camera.width_px(), file.camera.height_px()), (960, 600));
+        assert_eq!((file.camera.width(), file.camera.height()), (960, 600));
         let radtan = read(&CHAIN.replace("equidistant", "radtan")).unwrap();
         let Model::Pinhole(lens) = radtan.camera.model() else { panic!("{:?}", radtan.camera.model()) };
         assert_eq!(

@@ -116,7 +116,7 @@ impl CameraFile {
 
     fn remark_centre(&mut self) {
         let centre = self.camera.model().centre();
-        let (width, height) = (self.camera.width_px() as f64, self.camera.height_px() as f64);
+        let (width, height) = (self.camera.width() as f64, self.camera.height() as f64);
         let (du, dv) = (centre.u - 0.5 * (width - 1.0), centre.v - 0.5 * (height - 1.0));
         if (du * du + dv * dv).sqrt() > 0.2 * width.min(height) {
             self.oddities.push(format!(

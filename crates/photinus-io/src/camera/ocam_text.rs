@@ -218,7 +218,7 @@ mod tests {
     #[test]
     fn the_blocks_are_found_whatever_lies_between() {
         let camera = read(FILE).unwrap().camera;
-        assert_eq!((camera.width_px(), camera.height_px()), (752, 480));
+        assert_eq!((camera.width(), camera.height()), (752, 480));
         assert_eq!(camera.model().centre(), Pixel::new(364.430465, 229.581672));
         let bare: String =
             FILE.lines().filter(|l| !l.starts_with('#') && !l.is_empty()).collect::<Vec<_>>().join("\n");

@@ -56,8 +56,8 @@ pub fn write_ocam_text(camera: &Camera, to: &mut impl Write, path: &Path) -> Res
         stretch.m11 / scale,
         stretch.m12 / scale,
         stretch.m21 / scale,
-        camera.height_px(),
-        camera.width_px(),
+        camera.height(),
+        camera.width(),
     );
     to.write_all(text.as_bytes()).map_err(|error| Error::new(path, error))?;
     Ok(report)

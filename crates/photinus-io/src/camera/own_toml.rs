@@ -126,8 +126,8 @@ impl Table {
         let centre = camera.model().centre();
         let bare = Self {
             model: Name::Ocam,
-            width_px: camera.width_px(),
-            height_px: camera.height_px(),
+            width_px: camera.width(),
+            height_px: camera.height(),
             field_limit_deg: camera.stated_limit_rad().map(|rad| Finite(degrees(rad))),
             centre_px: [centre.u, centre.v].map(Finite),
             direct_polynomial: None,
@@ -244,12 +244,12 @@ mod tests {
         ) {
             let centre = Pixel::new(370.0 + n[0], 240.0 + n[1]);
             let direct = [-f, 0.0, n[2] / f, n[3] / (f * f), 1e-5 * n[4]];
-            let radial = [n[2], 0.1 * n[3], 0.1 * n[4], n[5], 0.1 * n[6], 0.1 * n[7]];
+            let radial = [n[2], 0.1 * n[3], 0.01 * n[4], n[5], 0.1 * n[6], 0.01 * n[7]];
             let models = [
                 Model::OCam(OCam::new(&direct[..4], centre, Matrix2::new(1.0 + n[8], n[9], n[10], 1.0 + n[11])).unwrap()),
                 Model::Ideal(Ideal::new(IdealLaw::Equisolid, [f, f + n[2]], centre).unwrap()),
                 Model::KannalaBrandt(KannalaBrandt::new([f, f + n[2]], centre, [n[3], 0.1 * n[4], 0.1 * n[5], 0.01 * n[6]]).unwrap()),
-                Model::Pinhole(Pinhole::new([f, f + n[8]], centre, radial, [0.1 * n[9], 0.1 * n[10]]).unwrap()),
+                Model::Pinhole(Pinhole::new([f, f + n[8]], centre, radial, [0.02 * n[9], 0.02 * n[10]]).unwrap()),
             ];
             for model in models {
                 let camera = Camera::new(model, 752, 480, limit_deg.map(f64::to_radians)).unwrap();

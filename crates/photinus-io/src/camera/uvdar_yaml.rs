@@ -132,7 +132,7 @@ mod tests {
     fn ocam_is_what_the_text_format_gives() {
         let file = read(OCAM).unwrap();
         assert!(file.oddities.is_empty() && file.inverse.is_some());
-        assert_eq!((file.camera.width_px(), file.camera.height_px()), (752, 480));
+        assert_eq!((file.camera.width(), file.camera.height()), (752, 480));
         assert_eq!(file.camera.model().centre(), Pixel::new(364.430465, 229.581672));
     }
 

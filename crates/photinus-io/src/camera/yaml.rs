@@ -10,7 +10,9 @@ use crate::{Error, Place, Result};
 /// Reads a document; keys that `T` does not name are passed over, as these files carry many.
 pub(super) fn parse<T: DeserializeOwned>(text: &str, path: &Path) -> Result<T> {
     serde_saphyr::from_str(text).map_err(|error| {
-        let wrong = Error::format(path, error.without_snippet().to_string());
+        let message = error.without_snippet().to_string();
+        // the place says the line, with the file, as every error does
+        let wrong = Error::format(path, message.split(" at line ").next().unwrap_or_default());
         match error.location().and_then(|location| usize::try_from(location.line()).ok()) {
             Some(line) if line > 0 => wrong.at(Place::Line(line)),
             _ => wrong,

@@ -156,12 +156,12 @@ impl Camera {
     }
 
     /// Columns of the image.
-    pub fn width_px(&self) -> usize {
+    pub fn width(&self) -> usize {
         self.width_px
     }
 
     /// Rows of the image.
-    pub fn height_px(&self) -> usize {
+    pub fn height(&self) -> usize {
         self.height_px
     }
 

@@ -42,7 +42,11 @@ impl Model {
         let ring = corners.iter().map(Vector2::norm).fold(0.0, f64::max);
         finite("the distance from the centre to the farthest corner", &[ring * ring])?;
         match self {
-            Model::OCam(lens) => Field::of_radial(lens, ring, stated_rad, plane.px_per_unit()),
+            Model::OCam(lens) => {
+                let height = lens.height_bound(ring);
+                finite("the square of the direct polynomial in the image", &[height * height])?;
+                Field::of_radial(lens, ring, stated_rad, plane.px_per_unit())
+            }
             Model::Ideal(lens) => Field::of_radial(lens, ring, stated_rad, plane.px_per_unit()),
             Model::KannalaBrandt(lens) => Field::of_radial(lens, ring, stated_rad, plane.px_per_unit()),
             Model::Pinhole(lens) => lens.field(&corners, stated_rad),

@@ -26,6 +26,9 @@ impl OCam {
     /// Most coefficients that programs in the field accept in a file.
     pub const MAX_COEFFICIENTS: usize = 64;
 
+    /// A lens of a shorter focal length than this is a slip, and its squares would vanish.
+    const SHORTEST_PX: f64 = 1e-6;
+
     /// The model from the `direct` polynomial z(r) (px over px, ascending powers, term 0 negative), the `centre`, and
     /// the `stretch` matrix ([c d; e 1] in a file) that maps (a, b) to (row, column).
     ///
@@ -37,7 +40,7 @@ impl OCam {
             return Err(CameraError::Coefficients { count: direct.len() });
         }
         finite("a coefficient of the direct polynomial", direct)?;
-        if direct[0] >= 0.0 {
+        if direct[0] > -Self::SHORTEST_PX {
             return Err(CameraError::LooksBack { value: direct[0] });
         }
         let plane = Plane::new(centre, swap_axes(&stretch))?;
@@ -57,6 +60,11 @@ impl OCam {
     /// The matrix that maps (a, b) to (row, column).
     pub fn stretch(&self) -> Matrix2<f64> {
         swap_axes(&self.plane.pixel_from_plane)
+    }
+
+    /// More than |z| anywhere within a radius.
+    pub(super) fn height_bound(&self, radius: f64) -> f64 {
+        self.direct.iter().rev().fold(0.0, |sum, a| sum * radius + a.abs())
     }
 
     /// r z' - z: positive where the angle grows with the radius.

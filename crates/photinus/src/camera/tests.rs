@@ -275,6 +275,9 @@ fn numbers_that_make_no_camera_are_refused() {
     assert!(KannalaBrandt::new([200.0; 2], CENTRE, [0.0, f64::INFINITY, 0.0, 0.0]).is_err());
     assert!(Pinhole::new([200.0; 2], CENTRE, [0.0; 6], [nan, 0.0]).is_err());
     assert!(Ideal::new(IdealLaw::Equisolid, [nan, 1.0], CENTRE).is_err());
+    assert!(matches!(OCam::new(&[-1e-200], CENTRE, straight), Err(CameraError::LooksBack { .. })));
+    let steep = Model::OCam(OCam::new(&[-250.0, 0.0, 1e200], CENTRE, straight).unwrap());
+    assert!(matches!(Camera::new(steep, 752, 480, Some(0.1)), Err(CameraError::NotFinite { .. })));
     let far = Model::OCam(OCam::new(&[-250.0], Pixel::new(1e300, 0.0), straight).unwrap());
     assert!(matches!(Camera::new(far, 752, 480, None), Err(CameraError::NotFinite { .. })));
     let lens = ideal(IdealLaw::Equidistant, 250.0);
@@ -362,6 +365,8 @@ fn any_model() -> impl Strategy<Value = Model> {
 }
 
 proptest! {
+    #![proptest_config(ProptestConfig { max_global_rejects: 1 << 20, ..ProptestConfig::default() })]
+
     #[test]
     fn what_is_seen_comes_back(model in any_model(), u in 0.0..751.0_f64, v in 0.0..479.0_f64) {
         // some random models fold back: those are refused, which other tests look at

@@ -10,6 +10,7 @@
 
 pub mod airframe;
 pub mod blink;
+pub mod camera;
 pub mod dataset;
 mod error;
 pub mod frames;
@@ -23,4 +24,5 @@ mod table;
 pub mod video;
 mod whole;
 
+pub use camera::{CameraFile, CameraFormat, read_camera};
 pub use error::{Cause, Error, Place, Result};

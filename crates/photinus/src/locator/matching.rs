@@ -15,7 +15,11 @@ use crate::ranging::{BoundedBearing, DistanceBounds, Interval};
 /// What a neighbour costs, nats: fewer neighbours are the better explanation.
 pub(super) const NEIGHBOUR_NATS: f64 = 8.0;
 /// How far the grid of views leaves a true shape from the nearest one, as a share of its size.
-const GRID_ERROR: f64 = 0.06;
+const GRID_ERROR: f64 = 0.04;
+/// What that leaves of a place, as a share of the airframe's radius, and of the distance, as a share of it: half the
+/// steps of yaw and elevation, spread evenly.
+const GRID_ACROSS: f64 = 0.008;
+const GRID_ALONG: f64 = 0.004;
 /// Spread of the logarithms of flux that units, lobes and neighbours' own bodies add.
 const LOG_FLUX_SIGMA: f64 = 0.6;
 /// The same when a spot is saturated: its flux is a lower limit.
@@ -31,6 +35,7 @@ pub(super) struct Matcher {
     views: Views,
     bounds: DistanceBounds,
     tilt_sigma_rad: f64,
+    radius_m: f64,
     bearings: Vec<BoundedBearing>,
     places: Vec<Vector2<f64>>,
     costs: Vec<Lanes>,
@@ -57,6 +62,7 @@ impl Matcher {
             bounds: DistanceBounds::new(airframe, max_tilt_rad),
             // The tilt limit is taken for two sigma; the grid of views adds half a step.
             tilt_sigma_rad: libm::hypot(max_tilt_rad / 2.0, grid_rad),
+            radius_m: airframe.max_radius_m(),
             bearings: Vec::new(),
             places: Vec::new(),
             costs: Vec::new(),
@@ -163,7 +169,7 @@ impl Matcher {
                 sums.add(place, libm::exp(sums.least_nats - nats));
             }
         }
-        sums.finish(&image, |distance_m| size_nats(sightings, group, distance_m))
+        sums.finish(&image, self.radius_m, |distance_m| size_nats(sightings, group, distance_m))
     }
 }
 
@@ -319,20 +325,41 @@ impl Ordered {
         Best { nats, arrangement: of_best.unwrap_or(0) }
     }
 
-    /// The place of the airframe if the spots are these markers.
+    /// The place of the airframe if the spots are these markers: first as from afar, then with each marker as much larger
+    /// in the image as it is nearer.
     fn place(&self, arrangement: &Arrangement, image: &Image<'_>) -> Vector3<f64> {
-        let (mut dot, mut cross) = (0.0, 0.0);
-        for (w, z) in arrangement.shape.iter().zip(&self.shape).take(self.count) {
-            dot += w.x * z.x + w.y * z.y;
-            cross += w.x * z.y - w.y * z.x;
+        let Arrangement { shape, size_m, middle_m, ahead_m, .. } = arrangement;
+        let count = self.count as f64;
+        let mut depth_m = f64::INFINITY;
+        let mut place = Vector3::zeros();
+        for _ in 0..ROUNDS_OF_PERSPECTIVE {
+            // Nearer than a few radii perspective is no correction any more, and the match none that counts.
+            let larger: [f64; MOST_ORDERED] = ahead_m.map(|ahead_m| 1.0 / (1.0 - ahead_m / depth_m).max(0.3));
+            let markers =
+                || shape.iter().zip(larger).take(self.count).map(|(w, larger)| w * (size_m * larger));
+            let middle = markers().sum::<Vector2<f64>>() / count;
+            let (mut dot, mut cross, mut square) = (0.0, 0.0, 0.0);
+            for (w, z) in markers().zip(&self.shape) {
+                let w = w - middle;
+                dot += w.x * z.x + w.y * z.y;
+                cross += w.x * z.y - w.y * z.x;
+                square += w.norm_squared();
+            }
+            // A match that is hardly one still gives a place, at most a thousand times as far as it looks.
+            let agreement = f64::sqrt(dot * dot + cross * cross).max(1e-3 * square.sqrt());
+            let turn = Vector2::new(dot, cross) / agreement;
+            depth_m = square / (agreement * image.size);
+            let mean_larger = larger.iter().take(self.count).sum::<f64>() / count;
+            let beside_m =
+                (image.middle * depth_m - turned(middle, turn)) / mean_larger - turned(*middle_m, turn);
+            place = Vector3::new(beside_m.x, beside_m.y, depth_m);
         }
-        // A match that is hardly one still gives a place, at most a thousand times as far as it looks.
-        let cosine = f64::sqrt(dot * dot + cross * cross).max(1e-3);
-        let turn = Vector2::new(dot, cross) / cosine;
-        let depth_m = arrangement.size_m / (image.size * cosine);
-        image.origin(depth_m, turned(arrangement.middle_m, turn), arrangement.ahead_m)
+        place
     }
 }
+
+/// Rounds until perspective is accounted for: each leaves the share radius over distance of the error before.
+const ROUNDS_OF_PERSPECTIVE: usize = 3;
 
 /// The arrangement that costs least.
 struct Best {
@@ -388,15 +415,16 @@ impl Sums {
         self.second += weight * place * place.transpose();
     }
 
-    fn finish(self, image: &Image<'_>, size_nats: impl Fn(f64) -> f64) -> Option<Match> {
+    fn finish(self, image: &Image<'_>, radius_m: f64, size_nats: impl Fn(f64) -> f64) -> Option<Match> {
         if self.weight <= 0.0 {
             return None;
         }
         let mean = self.first / self.weight;
         let spread = self.second / self.weight - mean * mean.transpose();
         let (depth_m, count) = (mean.z, image.places.len() as f64);
-        let across_m = depth_m * image.sigma / count.sqrt();
-        let along_m = depth_m * image.sigma / image.size;
+        // The grid of views leaves a rest: of the markers' places, and of their size and so of the distance.
+        let across_m = libm::hypot(depth_m * image.sigma / count.sqrt(), GRID_ACROSS * radius_m);
+        let along_m = depth_m * libm::hypot(image.sigma / image.size, GRID_ALONG);
         let noise =
             Matrix3::from_diagonal(&Vector3::new(across_m, across_m, along_m).map(|sigma| sigma * sigma));
         Some(Match {

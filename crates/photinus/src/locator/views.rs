@@ -43,8 +43,8 @@ pub(super) struct Arrangement {
     pub(super) size_m: f64,
     /// Their middle from the airframe's origin, m.
     pub(super) middle_m: Vector2<f64>,
-    /// How much nearer to the camera than the origin they are on average, m.
-    pub(super) ahead_m: f64,
+    /// How much nearer to the camera than the origin each is, m.
+    pub(super) ahead_m: [f64; MOST_ORDERED],
     /// Logarithms of their intensities, less the mean.
     pub(super) log_intensity: [f64; MOST_ORDERED],
     /// Which markers they are.
@@ -268,7 +268,7 @@ fn arrange(
         shape: [Vector2::zeros(); MOST_ORDERED],
         size_m,
         middle_m,
-        ahead_m: chosen().map(|seen| seen.ahead_m).sum::<f64>() / count,
+        ahead_m: [0.0; MOST_ORDERED],
         log_intensity: [0.0; MOST_ORDERED],
         markers: [0; MOST_ORDERED],
         unseen_nats: all_unseen_nats - chosen().map(cost_of_unseen).sum::<f64>(),
@@ -279,6 +279,7 @@ fn arrange(
         // Markers one behind the other have no shape; they match nothing.
         arrangement.shape[index] = (seen.place_m - middle_m) / size_m.max(1e-9);
         arrangement.log_intensity[index] = libm::log(seen.intensity) - mean_log;
+        arrangement.ahead_m[index] = seen.ahead_m;
         arrangement.markers[index] = seen.marker;
     }
     arrangement

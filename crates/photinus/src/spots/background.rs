@@ -186,12 +186,12 @@ fn spread(columns: [u8; TILE_PX], darkest: u8) -> u8 {
     if darkest > 0 { spread } else { spread.saturating_add(spread / 3) }
 }
 
-/// From the highest pixel of each column: the lowest of each four columns, and of those four the second lowest. One marker
-/// up to 8 px wide, or a narrow one in every four columns, leaves it as it was.
+/// From the highest pixel of each column: the lowest of every fourth column, and of those four the second lowest. One marker
+/// up to 12 px wide, or narrow ones in every other column, leave it as it was.
 #[inline]
 fn brightest_without_markers(columns: [u8; TILE_PX]) -> u8 {
-    let calmest = |four: usize| columns[4 * four..][..4].iter().fold(u8::MAX, |low, &high| low.min(high));
-    let [a, b, c, d] = std::array::from_fn(calmest);
+    let eight: [u8; 8] = std::array::from_fn(|i| columns[i].min(columns[i + 8]));
+    let [a, b, c, d] = std::array::from_fn(|i| eight[i].min(eight[i + 4]));
     a.max(b).min(c.max(d)).min(a.min(b).max(c.min(d)))
 }
 

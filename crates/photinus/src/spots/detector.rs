@@ -5,6 +5,8 @@ use nalgebra::Matrix2;
 use super::background::{Background, TILE_PX};
 use super::centroid::{self, PixelVariance};
 use super::grouping::Components;
+use super::ledge;
+use super::neighbourhood::Neighbourhood;
 use super::patch::{self, Patch, Surroundings};
 use super::rejection::{Outline, Reason};
 use super::runs::{self, Run};
@@ -18,6 +20,11 @@ use crate::frame::{FrameError, FrameView, Mask};
 /// Standard deviation of a place known to lie somewhere in one pixel, px.
 const WITHIN_A_PIXEL: f64 = 0.288_675_134_594_812_9;
 
+/// Radius around the summit of a spot in which its own light is far above that of a spot beside it, px.
+const SUMMIT_PX: f64 = 1.8;
+/// Error of the centre of an undersampled spot whose window is cut short by another spot, px.
+const CROWDED_BLUR_PX: f64 = 0.07;
+
 /// Finds spots in frames. Keeps its room from frame to frame, so that a warm detector allocates nothing.
 #[derive(Debug)]
 pub struct Detector {
@@ -29,6 +36,7 @@ pub struct Detector {
     splitter: Splitter,
     part_runs: Vec<Run>,
     parts: Vec<Part>,
+    neighbourhood: Neighbourhood,
     patch: Patch,
     detections: Detections,
 }
@@ -36,11 +44,14 @@ pub struct Detector {
 /// Bright pixels that belong together, before their light is measured.
 #[derive(Clone, Copy, Debug)]
 struct Part {
+    /// Row and column of its first pixel.
+    first: (u16, u16),
     outline: Outline,
     radius_px: f64,
     guess: Pixel,
     middle: (u32, u32),
     bright: u8,
+    level: u8,
     reason: Option<Reason>,
 }
 
@@ -51,6 +62,11 @@ impl Part {
         let above = |value: u8| (f64::from(value) - f64::from(level)).max(1.0);
         let over = libm::log(above(self.outline.peak) / above(self.bright)).max(0.2);
         self.radius_px / (2.0 * over).sqrt()
+    }
+
+    /// How far light is looked for when nothing else is near, px.
+    fn most_room_px(&self) -> f64 {
+        2.0 * self.radius_px + 4.0
     }
 }
 
@@ -70,6 +86,7 @@ impl Detector {
             splitter: Splitter::default(),
             part_runs: Vec::new(),
             parts: Vec::new(),
+            neighbourhood: Neighbourhood::default(),
             patch: Patch::default(),
             detections: Detections::default(),
         })
@@ -95,6 +112,10 @@ impl Detector {
         self.reject_by_outline();
         self.measure_parts(frame);
         self.reject_faint_reflections();
+        self.detections.rejected.sort_unstable_by_key(|rejected| {
+            let Extent { top, left, bottom, right } = rejected.extent;
+            (top, left, bottom, right, rejected.area_px)
+        });
         Ok(&self.detections)
     }
 
@@ -112,6 +133,7 @@ impl Detector {
                 self.parts.push(outline(frame, &self.background, &self.part_runs, mask));
             }
         }
+        self.parts.sort_unstable_by_key(|part| part.first);
     }
 
     fn reject_by_outline(&mut self) {
@@ -129,13 +151,14 @@ impl Detector {
     }
 
     fn measure_parts(&mut self, frame: &FrameView<'_>) {
+        self.neighbourhood.arrange(frame, self.parts.iter().map(|part| (part.guess, part.radius_px)));
         self.detections.spots.clear();
         self.detections.rejected.clear();
         for i in 0..self.parts.len() {
             let part = self.parts[i];
             let measured = match part.reason {
                 Some(reason) => Err(reason),
-                None => self.measure(frame, &part, self.room_px(i)),
+                None => self.measure(frame, &part, self.neighbourhood.room_px(i, part.most_room_px())),
             };
             match measured {
                 Ok(spot) => self.detections.spots.push(spot),
@@ -150,33 +173,21 @@ impl Detector {
         }
     }
 
-    /// How far the light around part `i` is its own, px: up to the edge of the nearest other part.
-    fn room_px(&self, i: usize) -> f64 {
-        let own = &self.parts[i];
-        let others = self.parts[..i].iter().chain(&self.parts[i + 1..]);
-        others.fold(2.0 * own.radius_px + 4.0, |room, other| {
-            let (du, dv) = (other.guess.u - own.guess.u, other.guess.v - own.guess.v);
-            let near = room + other.radius_px + 0.5;
-            if du.abs() > near || dv.abs() > near {
-                return room;
-            }
-            room.min((du * du + dv * dv).sqrt() - other.radius_px - 0.5)
-        })
-    }
-
     fn measure(&mut self, frame: &FrameView<'_>, part: &Part, room_px: f64) -> Result<Spot, Reason> {
-        let Outline { extent, area_px, peak, saturated_px, .. } = part.outline;
+        let Outline { extent, area_px, peak, saturated_px, cut, .. } = part.outline;
         let radius = part.radius_px;
         let room = room_px.max(radius + 0.8).max(1.9);
         let middle = (part.guess.u.round() as i32, part.guess.v.round() as i32);
         let around = |window: f64| {
             patch::surroundings(frame, middle, reach_px(window), part.bright)
-                .unwrap_or(Surroundings { level: 0.0, variance: 0.0 })
+                .unwrap_or(Surroundings { level: f32::from(part.level), variance: 0.0 })
         };
         let mut window = (radius + 2.5).min(room);
+        let mut crowded = false;
         let mut surroundings = around(window);
         if saturated_px == 0 {
             let whole = (3.5 * part.width_px(surroundings.level) + 1.0).min(room);
+            crowded = room_px < part.most_room_px().min(3.5 * part.width_px(surroundings.level));
             if whole > window {
                 surroundings = around(whole);
             }
@@ -195,26 +206,38 @@ impl Detector {
         let variance = PixelVariance { dark: dark.max(around.variance), shot: noise.shot as f32 };
         self.patch.read(frame, middle, reach, around.level);
         let flux = self.patch.flux(part.guess, window as f32);
-        let skirt = || {
-            let radius = (radius + 2.5).min(window + 1.0) as f32;
+        let skirt = |radius: f64| {
+            let radius = radius as f32;
             let saturation = f32::from(u8::MAX) - around.level;
-            let (centre, covariance) = skirt::fit(&self.patch, part.guess, radius, saturation, variance)?;
-            let good = covariance.trace() < 2.0 * blur_of_saturation(saturated_px);
-            good.then_some((centre, covariance))
+            skirt::fit(&self.patch, part.guess, radius, saturation, variance)
         };
-        let window = || {
+        let balanced = || {
             let (centre, covariance) = centroid::balance(&self.patch, part.guess, window as f32, variance)?;
             let sampling = if saturated_px > 0 {
                 blur_of_saturation(saturated_px)
             } else {
                 blur_of_sampling(height / flux)
             };
-            Some((centre, covariance + Matrix2::from_diagonal_element(sampling)))
+            let missing = match (cut, crowded) {
+                (true, _) => radius / 2.0,
+                (false, true) => CROWDED_BLUR_PX,
+                (false, false) => 0.0,
+            };
+            Some((centre, covariance + Matrix2::from_diagonal_element(sampling + missing * missing)))
         };
-        let measured = if saturated_px > 0 { skirt().or_else(window) } else { window() };
+        let measured = if saturated_px > 0 {
+            let is_good =
+                |covariance: &Matrix2<f64>| covariance.trace() < 2.0 * blur_of_saturation(saturated_px);
+            let fit = skirt((radius + 2.5).min(window + 1.0));
+            fit.filter(|(_, covariance)| is_good(covariance)).or_else(balanced)
+        } else if crowded || cut {
+            skirt(if cut { SUMMIT_PX.max(radius) } else { SUMMIT_PX }).or_else(balanced)
+        } else {
+            balanced()
+        };
         let (centre, mut covariance_px2) =
             measured.unwrap_or((part.guess, Matrix2::from_diagonal_element(WITHIN_A_PIXEL * WITHIN_A_PIXEL)));
-        if touches_border(&extent, frame) {
+        if cut {
             covariance_px2 += Matrix2::from_diagonal_element(WITHIN_A_PIXEL * WITHIN_A_PIXEL);
         }
         Ok(Spot {
@@ -249,7 +272,6 @@ impl Detector {
             }
             keep
         });
-        rejected.sort_unstable_by_key(|rejected| (rejected.extent.top, rejected.extent.left));
     }
 }
 
@@ -311,14 +333,18 @@ fn outline(frame: &FrameView<'_>, background: &Background, runs: &[Run], mask: O
         area_px += run.len();
     }
     let light = light.max(1) as f64;
-    let thresholds = background.row(usize::from(first.v) / TILE_PX).0;
-    let outline = Outline { extent, area_px, peak, saturated_px, masked_px, moments };
+    let bright = background.row(usize::from(first.v) / TILE_PX).0[usize::from(first.start) / TILE_PX] as u8;
+    let cut = touches_border(&extent, frame);
+    let goes_on = ledge::goes_on(frame, background, runs, &extent, peak.midpoint(bright));
+    let outline = Outline { extent, area_px, peak, saturated_px, masked_px, cut, goes_on, moments };
     Part {
+        first: (first.v, first.start),
         outline,
         radius_px: outline.radius_px(),
         guess: Pixel::new(light_u as f64 / light, light_v as f64 / light),
         middle: middle_pixel(runs, area_px),
-        bright: thresholds[usize::from(first.start) / TILE_PX] as u8,
+        bright,
+        level: background.level(usize::from(first.start), usize::from(first.v)),
         reason: None,
     }
 }

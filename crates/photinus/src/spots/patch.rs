@@ -103,7 +103,7 @@ pub(super) fn surroundings(
     let calm = 3.0;
     let all = ring_sums(frame, (u, v), reach, bright);
     let ring = all.filter(|ring| ring.variance() <= calm * calm);
-    let ring = ring.or_else(|| ring_sums(frame, (u, v), reach, all?.mean().min(254.0) as u8 + 1))?;
+    let ring = ring.or_else(|| ring_sums(frame, (u, v), reach, all?.mean().min(254.0) as u8 + 1)).or(all)?;
     Some(Surroundings { level: ring.mean(), variance: ring.variance() })
 }
 

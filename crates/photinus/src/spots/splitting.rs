@@ -24,6 +24,7 @@ const NONE: u16 = u16::MAX;
 #[derive(Debug, Default)]
 pub(super) struct Splitter {
     basin_at: Vec<u16>,
+    value_at: Vec<u8>,
     pixels: Vec<(u8, u32)>,
     basins: Vec<Basin>,
     parts: Vec<(u16, Run)>,
@@ -68,30 +69,36 @@ impl Splitter {
     fn flood(&mut self, grid: &Grid, noise: Noise) {
         self.basin_at.clear();
         self.basin_at.resize(grid.len(), NONE);
+        self.value_at.clear();
+        self.value_at.resize(grid.len(), 0);
         self.basins.clear();
         let darkest = self.pixels.last().map_or(0, |&(value, _)| value);
         for i in 0..self.pixels.len() {
             let (value, at) = self.pixels[i];
             let at = at as usize;
-            // Neighbours are met in a fixed order; the first with the highest summit takes the pixel.
-            let mut home = NONE;
+            // Neighbours are met in a fixed order; of equally bright ones the first takes the pixel.
+            let (mut home, mut brightest, mut highest) = (NONE, 0, NONE);
             for offset in grid.neighbours() {
-                let near = self.basin_at[at.wrapping_add_signed(offset)];
+                let neighbour = at.wrapping_add_signed(offset);
+                let near = self.basin_at[neighbour];
                 if near == NONE {
                     continue;
                 }
+                if self.value_at[neighbour] > brightest {
+                    (home, brightest) = (near, self.value_at[neighbour]);
+                }
                 let near = self.root(near);
-                if home == NONE {
-                    home = near;
-                } else if near != home {
-                    home = self.meet(home, near, value, darkest, noise);
+                if highest == NONE {
+                    highest = near;
+                } else if near != highest {
+                    highest = self.meet(highest, near, value, darkest, noise);
                 }
             }
             if home == NONE {
                 home = self.basins.len() as u16;
                 self.basins.push(Basin { summit: value, parent: home, part: NONE });
             }
-            self.basin_at[at] = home;
+            (self.basin_at[at], self.value_at[at]) = (home, value);
         }
     }
 
@@ -105,7 +112,7 @@ impl Splitter {
         let summit = f64::from(self.basins[usize::from(low)].summit);
         let sigma = (noise.read_dn * noise.read_dn + noise.shot * summit).sqrt();
         let share = PROMINENCE_SHARE * (summit - f64::from(darkest));
-        if summit - f64::from(saddle) < share.max(PROMINENCE_SIGMAS * sigma) {
+        if summit - f64::from(saddle) <= share.max(PROMINENCE_SIGMAS * sigma) {
             self.basins[usize::from(low)].parent = high;
         }
         high

@@ -47,6 +47,9 @@ pub enum Cause {
     /// The LEDs do not make an airframe.
     #[error("{0}")]
     Airframe(#[from] photinus::airframe::AirframeError),
+    /// The numbers do not make a camera.
+    #[error("{0}")]
+    Camera(#[from] photinus::camera::CameraError),
 }
 
 impl Error {

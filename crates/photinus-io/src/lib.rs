@@ -11,6 +11,7 @@
 pub mod airframe;
 pub mod blink;
 pub mod dataset;
+pub mod camera;
 mod error;
 pub mod frames;
 pub mod image;
@@ -23,4 +24,5 @@ mod table;
 pub mod video;
 mod whole;
 
+pub use camera::{CameraFile, CameraFormat, read_camera};
 pub use error::{Cause, Error, Place, Result};

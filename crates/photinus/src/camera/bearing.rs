@@ -30,6 +30,12 @@ impl Bearing {
         (norm.is_finite() && norm > 0.0).then(|| Self(Unit::new_unchecked(vector / norm)))
     }
 
+    /// A vector that has unit length by construction.
+    #[inline]
+    pub(super) fn from_unit(vector: Vector3<f64>) -> Self {
+        Self(Unit::new_unchecked(vector))
+    }
+
     /// The unit vector.
     pub fn vector(&self) -> &Vector3<f64> {
         &self.0

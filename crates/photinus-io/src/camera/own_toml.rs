@@ -1,0 +1,260 @@
+//! Photinus's own camera file: every model, plain keys, unknown ones refused.
+
+use std::io::Write;
+use std::path::Path;
+
+use nalgebra::Matrix2;
+use photinus::camera::{Camera, CameraError, Ideal, IdealLaw, KannalaBrandt, Model, OCam, Pinhole, Pixel};
+use serde::{Deserialize, Serialize};
+
+use super::numbers::{Finite, degrees, values};
+use super::{CameraFile, CameraFormat, camera_error};
+use crate::{Error, Place, Result};
+
+/// The file as it stands: the keys of all models, of which each model has its own.
+#[derive(Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+struct Table {
+    model: Name,
+    width_px: usize,
+    height_px: usize,
+    field_limit_deg: Option<Finite>,
+    centre_px: [Finite; 2],
+    direct_polynomial: Option<Vec<Finite>>,
+    stretch: Option<[[Finite; 2]; 2]>,
+    focal_px: Option<[Finite; 2]>,
+    k: Option<[Finite; 4]>,
+    radial: Option<[Finite; 6]>,
+    tangential: Option<[Finite; 2]>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
+#[serde(rename_all = "snake_case")]
+enum Name {
+    Ocam,
+    Equidistant,
+    Equisolid,
+    Stereographic,
+    Orthographic,
+    KannalaBrandt,
+    Pinhole,
+}
+
+/// Reads a camera in Photinus's own format; `path` is for messages.
+///
+/// # Errors
+/// An [`Error`] with the line or key when the text is no TOML, a key is missing, unknown or of another model, or the
+/// numbers do not make a camera.
+pub fn parse_camera_toml(text: &str, path: &Path) -> Result<CameraFile> {
+    let mut table: Table = toml::from_str(text).map_err(|error| {
+        let wrong = Error::format(path, error.message());
+        match error.span().and_then(|span| text.get(..span.start)) {
+            Some(before) => wrong.at(Place::Line(before.matches('\n').count() + 1)),
+            None => wrong,
+        }
+    })?;
+    let model = table.take_model(path)?.map_err(|error| camera_error(path, error))?;
+    if let Some(key) = table.left_over() {
+        let reason = format!("a camera of model {} has no `{key}`", name_in_toml(table.model));
+        return Err(Error::format(path, reason).at(Place::Key(key.to_owned())));
+    }
+    let limit = table.field_limit_deg.map(|limit| limit.0);
+    let size = [table.width_px, table.height_px];
+    let mut file =
+        CameraFile::new(CameraFormat::Toml, model, size, limit).map_err(|error| camera_error(path, error))?;
+    if let Model::OCam(lens) = file.camera.model().clone() {
+        file.remark_lens(&lens);
+    }
+    Ok(file)
+}
+
+/// Writes a camera in Photinus's own format; `path` is for messages. Every digit is kept.
+///
+/// # Errors
+/// An [`Error`] when writing fails.
+pub fn write_camera_toml(camera: &Camera, to: &mut impl Write, path: &Path) -> Result<()> {
+    let text = toml::to_string(&Table::of(camera)).map_err(|error| Error::format(path, error.to_string()))?;
+    to.write_all(text.as_bytes()).map_err(|error| Error::new(path, error))
+}
+
+impl Table {
+    /// The model, taking its keys out of the table.
+    fn take_model(&mut self, path: &Path) -> Result<std::result::Result<Model, CameraError>> {
+        let centre = Pixel::new(self.centre_px[0].0, self.centre_px[1].0);
+        let law = match self.model {
+            Name::Ocam => {
+                let direct = values(&required(self.direct_polynomial.take(), "direct_polynomial", path)?);
+                let [[a, b], [c, d]] =
+                    required(self.stretch.take(), "stretch", path)?.map(|row| row.map(|n| n.0));
+                return Ok(OCam::new(&direct, centre, Matrix2::new(a, b, c, d)).map(Model::OCam));
+            }
+            Name::KannalaBrandt => {
+                let focal_px = required(self.focal_px.take(), "focal_px", path)?.map(|n| n.0);
+                let k = required(self.k.take(), "k", path)?.map(|n| n.0);
+                return Ok(KannalaBrandt::new(focal_px, centre, k).map(Model::KannalaBrandt));
+            }
+            Name::Pinhole => {
+                let focal_px = required(self.focal_px.take(), "focal_px", path)?.map(|n| n.0);
+                let radial = required(self.radial.take(), "radial", path)?.map(|n| n.0);
+                let tangential = required(self.tangential.take(), "tangential", path)?.map(|n| n.0);
+                return Ok(Pinhole::new(focal_px, centre, radial, tangential).map(Model::Pinhole));
+            }
+            Name::Equidistant => IdealLaw::Equidistant,
+            Name::Equisolid => IdealLaw::Equisolid,
+            Name::Stereographic => IdealLaw::Stereographic,
+            Name::Orthographic => IdealLaw::Orthographic,
+        };
+        let focal_px = required(self.focal_px.take(), "focal_px", path)?.map(|n| n.0);
+        Ok(Ideal::new(law, focal_px, centre).map(Model::Ideal))
+    }
+
+    /// A key that the model did not take.
+    fn left_over(&self) -> Option<&'static str> {
+        [
+            (self.direct_polynomial.is_some(), "direct_polynomial"),
+            (self.stretch.is_some(), "stretch"),
+            (self.focal_px.is_some(), "focal_px"),
+            (self.k.is_some(), "k"),
+            (self.radial.is_some(), "radial"),
+            (self.tangential.is_some(), "tangential"),
+        ]
+        .into_iter()
+        .find_map(|(there, key)| there.then_some(key))
+    }
+
+    fn of(camera: &Camera) -> Self {
+        let centre = camera.model().centre();
+        let bare = Self {
+            model: Name::Ocam,
+            width_px: camera.width(),
+            height_px: camera.height(),
+            field_limit_deg: camera.stated_limit_rad().map(|rad| Finite(degrees(rad))),
+            centre_px: [centre.u, centre.v].map(Finite),
+            direct_polynomial: None,
+            stretch: None,
+            focal_px: None,
+            k: None,
+            radial: None,
+            tangential: None,
+        };
+        match camera.model() {
+            Model::OCam(lens) => {
+                let s = lens.stretch();
+                Self {
+                    direct_polynomial: Some(lens.direct().iter().copied().map(Finite).collect()),
+                    stretch: Some([[s.m11, s.m12], [s.m21, s.m22]].map(|row| row.map(Finite))),
+                    ..bare
+                }
+            }
+            Model::Ideal(lens) => {
+                let model = match lens.law() {
+                    IdealLaw::Equidistant => Name::Equidistant,
+                    IdealLaw::Equisolid => Name::Equisolid,
+                    IdealLaw::Stereographic => Name::Stereographic,
+                    IdealLaw::Orthographic => Name::Orthographic,
+                };
+                Self { model, focal_px: Some(lens.focal_px().map(Finite)), ..bare }
+            }
+            Model::KannalaBrandt(lens) => Self {
+                model: Name::KannalaBrandt,
+                focal_px: Some(lens.focal_px().map(Finite)),
+                k: Some(lens.k().map(Finite)),
+                ..bare
+            },
+            Model::Pinhole(lens) => Self {
+                model: Name::Pinhole,
+                focal_px: Some(lens.focal_px().map(Finite)),
+                radial: Some(lens.radial().map(Finite)),
+                tangential: Some(lens.tangential().map(Finite)),
+                ..bare
+            },
+        }
+    }
+}
+
+/// A key that the model needs.
+fn required<T>(value: Option<T>, key: &str, path: &Path) -> Result<T> {
+    value.ok_or_else(|| {
+        Error::format(path, format!("there is no `{key}`, which this model needs"))
+            .at(Place::Key(key.to_owned()))
+    })
+}
+
+fn name_in_toml(name: Name) -> &'static str {
+    match name {
+        Name::Ocam => "ocam",
+        Name::Equidistant => "equidistant",
+        Name::Equisolid => "equisolid",
+        Name::Stereographic => "stereographic",
+        Name::Orthographic => "orthographic",
+        Name::KannalaBrandt => "kannala_brandt",
+        Name::Pinhole => "pinhole",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    const FILE: &str = "# mine\nmodel = \"kannala_brandt\"\nwidth_px = 960\nheight_px = 600\ncentre_px = [478.0, 301]\n\
+        focal_px = [464.0, 461.0]\nk = [-0.03, 0.004, -0.002, 0.0003]\n";
+
+    fn refusal(text: &str) -> String {
+        parse_camera_toml(text, Path::new("cam.toml")).unwrap_err().to_string()
+    }
+
+    #[test]
+    fn mistakes_are_named_with_line_or_key() {
+        let cases = [
+            (FILE.replace("301", "nan"), "cam.toml, line 5: NaN where a finite number is expected"),
+            (FILE.replace("301", "1e400"), "cam.toml, line 5: "),
+            (FILE.replace("301", "\"a\""), "cam.toml, line 5: invalid type"),
+            (FILE.replace(", 301]", "]"), "cam.toml, line 5: invalid length"),
+            (FILE.replace("k = [", "kay = ["), "cam.toml, line 7: unknown field `kay`"),
+            (FILE.replace("k = [", "#k = ["), "cam.toml, `k`: there is no `k`"),
+            (
+                FILE.replace("k = [", "radial = [1, 2, 3, 4, 5, 6]\nk = ["),
+                "cam.toml, `radial`: a camera of model kannala",
+            ),
+            (FILE.replace("kannala_brandt", "fish"), "cam.toml, line 2: unknown variant `fish`"),
+            (FILE.replace("960", "-960"), "cam.toml, line 3: invalid value"),
+            (FILE.replace("[464.0, 461.0]", "[0, 461.0]"), "cam.toml: a focal length of 0 px"),
+            (FILE.replace("-0.03", "-3"), "cam.toml: the angle off the axis stops growing"),
+            (format!("{FILE}field_limit_deg = 0"), "cam.toml: a field limit of 0 deg"),
+        ];
+        for (text, message) in cases {
+            assert!(refusal(&text).starts_with(message), "{}\nnot {message}", refusal(&text));
+        }
+    }
+
+    fn round_trip(camera: &Camera) -> Camera {
+        let mut bytes = Vec::new();
+        write_camera_toml(camera, &mut bytes, Path::new("out.toml")).unwrap();
+        parse_camera_toml(std::str::from_utf8(&bytes).unwrap(), Path::new("out.toml")).unwrap().camera
+    }
+
+    proptest! {
+        #[test]
+        fn every_camera_reads_back_the_same(
+            n in prop::array::uniform12(-0.02..0.02_f64),
+            f in 300.0..600.0_f64,
+            limit_deg in prop::option::of(1.0..30.0_f64),
+        ) {
+            let centre = Pixel::new(370.0 + n[0], 240.0 + n[1]);
+            let direct = [-f, 0.0, n[2] / f, n[3] / (f * f), 1e-5 * n[4]];
+            let radial = [n[2], 0.1 * n[3], 0.01 * n[4], n[5], 0.1 * n[6], 0.01 * n[7]];
+            let models = [
+                Model::OCam(OCam::new(&direct[..4], centre, Matrix2::new(1.0 + n[8], n[9], n[10], 1.0 + n[11])).unwrap()),
+                Model::Ideal(Ideal::new(IdealLaw::Equisolid, [f, f + n[2]], centre).unwrap()),
+                Model::KannalaBrandt(KannalaBrandt::new([f, f + n[2]], centre, [n[3], 0.1 * n[4], 0.1 * n[5], 0.01 * n[6]]).unwrap()),
+                Model::Pinhole(Pinhole::new([f, f + n[8]], centre, radial, [0.02 * n[9], 0.02 * n[10]]).unwrap()),
+            ];
+            for model in models {
+                let camera = Camera::new(model, 752, 480, limit_deg.map(f64::to_radians)).unwrap();
+                prop_assert_eq!(round_trip(&camera), camera);
+            }
+        }
+    }
+}

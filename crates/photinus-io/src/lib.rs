@@ -10,8 +10,8 @@
 
 pub mod airframe;
 pub mod blink;
-pub mod dataset;
 pub mod camera;
+pub mod dataset;
 mod error;
 pub mod frames;
 pub mod image;

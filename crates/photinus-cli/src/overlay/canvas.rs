@@ -34,7 +34,6 @@ impl Pen {
 pub(super) enum Align {
     Left,
     Middle,
-    Right,
 }
 
 /// Words and how they are drawn.
@@ -136,7 +135,6 @@ impl<'f> Canvas<'f> {
         let x = match align {
             Align::Left => at.x,
             Align::Middle => at.x - width / 2.0,
-            Align::Right => at.x - width,
         };
         let Some(path) = self.font.outline(words.text, x, at.y, words.size) else { return };
         if let Some(halo) = words.halo {

@@ -20,11 +20,11 @@ pub(super) const SPOT: Colour = opaque(0xF0, 0xE4, 0x42);
 /// What was rejected: vermillion.
 pub(super) const REJECTED: Colour = opaque(0xE8, 0x6A, 0x17);
 
-/// Sky blue, orange, bluish green, reddish purple.
+/// Sky blue, orange, bluish green, reddish purple; blue and green a shade off the published ones, for both grounds.
 const NEIGHBOURS: [Colour; 4] = [
     opaque(0x3F, 0xA7, 0xE0),
     opaque(0xE6, 0x9F, 0x00),
-    opaque(0x00, 0x9E, 0x73),
+    opaque(0x19, 0xB4, 0x88),
     opaque(0xCC, 0x79, 0xA7),
 ];
 

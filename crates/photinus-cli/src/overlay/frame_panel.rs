@@ -78,8 +78,12 @@ impl FramePanel {
         let size = 15.0 * self.unit;
         let words = |text| Words { text, size, colour, halo: Some(colours::SHADE) };
         let width = canvas.width_of(words(&first)).max(canvas.width_of(words(&second)));
-        let reach = path.iter().map(|point| (point.y - middle.y).abs()).fold(0.0, f32::max);
-        let Some(corner) = labels.place(middle, reach + 12.0 * self.unit, (width, 2.4 * size)) else { return };
+        let reach = path.iter().fold((0.0_f32, 0.0_f32), |(across, down), point| {
+            (across.max((point.x - middle.x).abs()), down.max((point.y - middle.y).abs()))
+        });
+        let gap = 14.0 * self.unit;
+        let room = (width, 2.4 * size);
+        let Some(corner) = labels.place(middle, (reach.0 + gap, reach.1 + gap), room) else { return };
         canvas.words(words(&first), Point::from_xy(corner.x, corner.y + size), Align::Left);
         canvas.words(words(&second), Point::from_xy(corner.x, corner.y + 2.2 * size), Align::Left);
     }
@@ -104,8 +108,8 @@ impl FramePanel {
     fn label(&self, canvas: &mut Canvas<'_>, labels: &mut Labels, centre: Point, reach: f32, text: &str, colour: Colour) {
         let size = 12.0 * self.unit;
         let words = Words { text, size, colour, halo: Some(colours::SHADE) };
-        let room = (canvas.width_of(words), size);
-        if let Some(corner) = labels.place(centre, reach + 2.0 * self.unit, room) {
+        let (room, gap) = ((canvas.width_of(words), size), reach + 2.0 * self.unit);
+        if let Some(corner) = labels.place(centre, (gap, gap), room) {
             canvas.words(words, Point::from_xy(corner.x, corner.y + 0.86 * size), Align::Left);
         }
     }

@@ -15,19 +15,20 @@ enum Mark {
     Estimate,
 }
 
-const FRAME_MARKS: [(Mark, &str); 2] = [(Mark::Spot, "spot of no neighbour"), (Mark::Rejected, "rejected, and why")];
-const MAP_MARKS: [(Mark, &str); 3] = [
+const MARKS: [(Mark, &str); 2] = [(Mark::Spot, "spot"), (Mark::Rejected, "rejected, and why")];
+const NEIGHBOUR_MARKS: [(Mark, &str); 5] = [
+    (Mark::Spot, "spot of no neighbour"),
+    (Mark::Rejected, "rejected, and why"),
     (Mark::Neighbour, "spots of a neighbour"),
     (Mark::Bounds, "bounds: truth is within"),
     (Mark::Estimate, "estimate ± 1 σ"),
 ];
 
-/// Draws the legend with its middle line through `at`, and gives its width; with the marks of neighbours where a camera
-/// is known.
-pub(super) fn draw(canvas: &mut Canvas<'_>, at: Point, has_map: bool, unit: f32) {
-    let map_marks = if has_map { &MAP_MARKS[..] } else { &[] };
+/// Draws the legend to the right of `at`, through its middle; that of neighbours where they are looked for.
+pub(super) fn draw(canvas: &mut Canvas<'_>, at: Point, has_neighbours: bool, unit: f32) {
+    let marks = if has_neighbours { &NEIGHBOUR_MARKS[..] } else { &MARKS };
     let mut x = at.x;
-    for &(mark, text) in FRAME_MARKS.iter().chain(map_marks) {
+    for &(mark, text) in marks {
         let width = mark.draw(canvas, Point::from_xy(x, at.y), unit);
         let words = Words { text, size: 13.0 * unit, colour: colours::INK, halo: None };
         let begin = x + width + 7.0 * unit;

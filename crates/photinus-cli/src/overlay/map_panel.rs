@@ -34,7 +34,8 @@ impl<'a> MapPanel<'a> {
         let cos = |degree: usize| libm::cos((degree as f64).to_radians());
         let seen = (0..field.len()).filter(|&degree| field[degree]);
         let behind = (-seen.map(cos).fold(1.0, f64::min)).clamp(0.0, 1.0);
-        let (margin, title) = (10.0 * unit, 30.0 * unit);
+        // Words stand past the rim: the ranges at the sides, the title above.
+        let (margin, title) = (24.0 * unit, 30.0 * unit);
         let width = f64::from(area.width() - 2.0 * margin);
         let height = f64::from(area.height() - 2.0 * margin - title);
         // Below the camera there must be room for the numbers of the rings.
@@ -54,7 +55,7 @@ impl<'a> MapPanel<'a> {
         let mut labels = Labels::new(self.area);
         labels.take(self.camera, 12.0 * self.unit);
         for (number, neighbour) in record.neighbours.iter().enumerate() {
-            self.neighbour(canvas, neighbour, number);
+            self.neighbour(canvas, &mut labels, neighbour, number);
         }
         for (number, neighbour) in record.neighbours.iter().enumerate() {
             self.label(canvas, &mut labels, neighbour, number);
@@ -66,7 +67,7 @@ impl<'a> MapPanel<'a> {
         let frame = if self.ground.is_level { "level, by gravity" } else { "camera frame, x right, z forward" };
         let text = format!("From above ({frame}), {} m", self.range_m);
         let words = Words { text: &text, size: 14.0 * self.unit, colour: colours::INK, halo: None };
-        let at = Point::from_xy(self.area.left() + self.area.width() / 2.0, self.area.top() + 20.0 * self.unit);
+        let at = Point::from_xy(self.camera.x, self.on_rim(0.0).y - 16.0 * self.unit);
         canvas.words(words, at, Align::Middle);
     }
 
@@ -107,17 +108,28 @@ impl<'a> MapPanel<'a> {
         }
     }
 
-    fn neighbour(&self, canvas: &mut Canvas<'_>, neighbour: &NeighbourRecord, number: usize) {
+    fn neighbour(
+        &self,
+        canvas: &mut Canvas<'_>,
+        labels: &mut Labels,
+        neighbour: &NeighbourRecord,
+        number: usize,
+    ) {
         let colour = colours::neighbour(number);
         let way = self.ground.of(&neighbour.bearing.into());
         let (distance, slant) = (&neighbour.distance_m, way.norm());
-        if slant < 1e-3 {
+        if !(slant >= 1e-3 && slant <= 1.0 + 1e-9) {
+            // Straight above or below (or no direction at all, in results of others): a point.
             return canvas.disc(self.camera, 6.0 * self.unit, colour);
         }
         let across = Vector2::new(way.y, -way.x) / slant;
         let rim_m = self.range_m / slant;
         let far_m = distance.max.unwrap_or(f64::INFINITY);
         let near_m = distance.min.min(rim_m);
+        for step in 0..=40 {
+            let at_m = near_m + (far_m.min(rim_m) - near_m) * f64::from(step) / 40.0;
+            labels.take(self.at(way * at_m), 5.0 * self.unit);
+        }
         let bounds = [self.at(way * near_m), self.at(way * far_m.min(rim_m))];
         canvas.line(&bounds, Pen::new(colours::pale(colour, 0.45), 9.0 * self.unit));
         let cap = |canvas: &mut Canvas<'_>, at_m: f64, half_px: f32, width: f32| {
@@ -163,7 +175,7 @@ impl<'a> MapPanel<'a> {
         let size = 13.0 * self.unit;
         let words = Words { text: &text, size, colour: colours::INK, halo: Some(colours::PAPER) };
         labels.take(at, 6.0 * self.unit);
-        if let Some(corner) = labels.place(at, 10.0 * self.unit, (canvas.width_of(words), size)) {
+        if let Some(corner) = labels.place(at, (10.0 * self.unit, 10.0 * self.unit), (canvas.width_of(words), size)) {
             canvas.words(words, Point::from_xy(corner.x, corner.y + 0.86 * size), Align::Left);
         }
     }
@@ -195,8 +207,8 @@ fn on_circle(degree: f64) -> Vector2<f64> {
 fn range_for(record: &FrameRecord) -> f64 {
     let need = |neighbour: &NeighbourRecord| {
         let distance = &neighbour.distance_m;
-        let likely_m = distance.estimate.unwrap_or(distance.min) + 2.0 * distance.sigma.unwrap_or(0.0);
-        let bound_m = distance.max.unwrap_or(1.5 * likely_m).min(1.5 * likely_m);
+        let likely_m = distance.estimate.unwrap_or(2.0 * distance.min) + 2.0 * distance.sigma.unwrap_or(0.0);
+        let bound_m = distance.max.unwrap_or(1.15 * likely_m).min(1.5 * likely_m);
         likely_m.max(bound_m)
     };
     let farthest_m = record.neighbours.iter().map(need).fold(0.0, f64::max);

@@ -144,3 +144,6 @@ impl Layout {
         canvas.words(words, Point::from_xy(self.frame.left as f32, 22.0 * self.unit), Align::Left);
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -12,5 +12,6 @@
 pub mod airframe;
 pub mod camera;
 pub mod frame;
+pub mod locator;
 pub mod ranging;
 pub mod spots;

@@ -20,7 +20,7 @@ struct Scene {
 
 /// Spots of `width_px` (sigma) and `height` grey levels on a grid, each at a random phase of the pixel grid.
 fn scene(width_px: f64, height: f64, rng: &mut Pcg64) -> Scene {
-    let phase = Uniform::new(-0.5, 0.5).unwrap();
+    let phase = Uniform::new(-0.5, 0.5).expect("a range");
     let mut light = vec![0.0; SIDE * SIDE];
     let mut truth = Vec::new();
     for (row, column) in (0..4).flat_map(|row| (0..4).map(move |column| (row, column))) {
@@ -83,12 +83,12 @@ impl Errors {
 
 fn measure(width_px: f64, height: f64, scenes: u64) -> Errors {
     let mut rng = Pcg64::new(7, height.to_bits().into());
-    let mut detector = Detector::new(Settings::default()).unwrap();
+    let mut detector = Detector::new(Settings::default()).expect("defaults have a meaning");
     let mut errors = Errors::default();
     for _ in 0..scenes {
         let scene = scene(width_px, height, &mut rng);
-        let frame = FrameView::packed(&scene.pixels, SIDE, SIDE).unwrap();
-        let found = detector.detect(&frame, None).unwrap();
+        let frame = FrameView::packed(&scene.pixels, SIDE, SIDE).expect("a frame");
+        let found = detector.detect(&frame, None).expect("no mask");
         assert_eq!(found.spots.len(), scene.truth.len(), "width {width_px}, height {height}");
         for truth in &scene.truth {
             let near = |spot: &&Spot| libm::hypot(spot.centre.u - truth.u, spot.centre.v - truth.v) < 2.0;

@@ -8,6 +8,7 @@ mod error;
 mod led;
 mod marker;
 mod ring;
+mod symmetry;
 
 use nalgebra::Vector3;
 
@@ -74,6 +75,16 @@ impl Airframe {
     /// The regular ring that the markers form, if they do: what the paper's equations need.
     pub fn ring(&self) -> Option<RingGeometry> {
         self.ring
+    }
+
+    /// How many turns about the z axis, each by the same part of a circle, leave the airframe as it was: at least 1.
+    pub(crate) fn turns(&self) -> usize {
+        symmetry::turns(self)
+    }
+
+    /// Whether the LEDs below the plane z = 0 mirror those above.
+    pub(crate) fn is_mirrored(&self) -> bool {
+        symmetry::is_mirrored(self)
     }
 
     /// Largest distance of a marker from the body's origin, m.

@@ -185,10 +185,10 @@ impl Detector {
         let around = surroundings;
         let reach = reach_px(window);
         let height = f64::from(peak) - f64::from(around.level);
-        if let Brightness::Contrast(step) = self.settings.brightness {
-            if 2.0 * height < f64::from(step) {
-                return Err(Reason::Background);
-            }
+        if let Brightness::Contrast(step) = self.settings.brightness
+            && 2.0 * height < f64::from(step)
+        {
+            return Err(Reason::Background);
         }
         let noise = self.settings.noise;
         let dark = (noise.read_dn * noise.read_dn + 1.0 / 12.0) as f32;

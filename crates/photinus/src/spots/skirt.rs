@@ -75,13 +75,13 @@ impl ColumnSums {
         let mut term = weight;
         for sum in &mut self.weights {
             *sum += term;
-            term = term * y;
+            term *= y;
         }
         let mut term = weight * log;
         self.squares += term * log;
         for sum in &mut self.values {
             *sum += term;
-            term = term * y;
+            term *= y;
         }
     }
 }

@@ -15,7 +15,6 @@
 
 mod query;
 mod subsets;
-mod symmetry;
 mod table;
 mod view;
 

@@ -5,7 +5,6 @@ use core::f64::consts::{FRAC_PI_2, PI, TAU};
 use nalgebra::Vector3;
 
 use super::subsets::{PairValues, least_diameters};
-use super::symmetry;
 use super::view::{Pair, Range, ViewBox, Views};
 use crate::airframe::Airframe;
 
@@ -94,8 +93,8 @@ impl Table {
         let inverse_m = |edge: usize| (edge as f64 / COLUMNS as f64).powi(2) / near_m;
         let sizes = airframe.markers().len().min(MAX_SPOTS) - 1;
         let mut search = Search::new(airframe, sizes);
-        let sector_rad = Range { lo: 0.0, hi: TAU / symmetry::turns(airframe) as f64 };
-        let mirrored = symmetry::is_mirrored(airframe);
+        let sector_rad = Range { lo: 0.0, hi: TAU / airframe.turns() as f64 };
+        let mirrored = airframe.is_mirrored();
         let mut columns = Vec::with_capacity(COLUMNS);
         let mut extents = vec![Extents::NONE; sizes * COLUMNS * ROWS];
         let mut any_row = vec![Extents::NONE; sizes * COLUMNS];

@@ -4,7 +4,7 @@ use core::f64::consts::TAU;
 
 use nalgebra::{Rotation3, Unit, Vector3};
 
-use crate::airframe::{Airframe, Lobe};
+use super::{Airframe, Lobe};
 
 /// How far LEDs may be from coinciding, m and in the axis; far below what the table is widened by.
 const TOLERANCE: f64 = 1e-12;
@@ -39,8 +39,8 @@ fn maps_to_itself(airframe: &Airframe, map: impl Fn(&Vector3<f64>) -> Vector3<f6
 
 #[cfg(test)]
 mod tests {
+    use super::super::{Led, Ring};
     use super::*;
-    use crate::airframe::{Led, Ring};
 
     fn ring(arms: usize, leds_per_arm: usize, splay_rad: f64) -> Airframe {
         Airframe::from_ring("ring", Ring { arms, radius_m: 0.3, leds_per_arm, splay_rad }).unwrap()

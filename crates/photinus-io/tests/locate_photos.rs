@@ -1,0 +1,88 @@
+//! The photos of a board of 7 x 5 LEDs at a pitch of 50 mm, taken for an airframe: one neighbour per photo, as far away as
+//! an independent calibration study found it. Skipped, and said so, without the photos.
+
+use std::path::PathBuf;
+
+use nalgebra::{Unit, Vector3};
+use photinus::airframe::{Airframe, Led, Lobe};
+use photinus::camera::{Camera, KannalaBrandt, Model, Pixel};
+use photinus::locator::{Locator, Settings};
+use photinus_io::image::read_image;
+
+/// Photo, and metres to the board from a bundle adjustment over all photos with the board's true shape.
+const PHOTOS: [(&str, f64); 20] = [
+    ("01", 1.66),
+    ("02", 1.68),
+    ("04", 1.33),
+    ("05", 1.38),
+    ("06", 1.25),
+    ("07", 1.27),
+    ("09", 0.92),
+    ("10", 1.08),
+    ("11", 0.93),
+    ("12", 1.17),
+    ("14", 1.18),
+    ("16", 0.98),
+    ("18", 1.47),
+    ("19", 1.33),
+    ("20", 0.94),
+    ("21", 0.82),
+    ("22", 0.68),
+    ("23", 0.52),
+    ("25", 0.70),
+    ("26", 0.42),
+];
+
+fn data() -> Option<PathBuf> {
+    let beside = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data"));
+    let folder = std::env::var_os("PHOTINUS_DATA").map_or(beside, PathBuf::from);
+    folder.is_dir().then_some(folder)
+}
+
+/// LEDs on the plane x = 0, shining along x.
+fn board() -> Airframe {
+    let led = |column: i32, row: i32| Led {
+        position_m: Vector3::new(0.0, 0.05 * f64::from(column - 3), 0.05 * f64::from(row - 2)),
+        axis: Unit::new_normalize(Vector3::x()),
+        lobe: Lobe::Lambertian,
+        signal: None,
+    };
+    let leds = (0..7).flat_map(|column| (0..5).map(move |row| led(column, row))).collect();
+    Airframe::new("board-7x5", leds).expect("35 markers")
+}
+
+/// The lens of these photos, from the same study.
+fn camera() -> Camera {
+    let lens = KannalaBrandt::new([463.96; 2], Pixel::new(509.598, 275.744), [-0.19069, 0.01731, 0.0, 0.0]);
+    Camera::new(Model::KannalaBrandt(lens.expect("a lens")), 960, 600, Some(1.2)).expect("a camera")
+}
+
+#[test]
+fn a_board_of_leds_is_one_neighbour_at_its_distance() {
+    let Some(data) = data() else {
+        println!("skipped: no photos (set PHOTINUS_DATA)");
+        return;
+    };
+    let mut locator = Locator::new(camera(), &board(), None, Settings::default()).expect("a locator");
+    for (photo, distance_m) in PHOTOS {
+        let file = data.join(format!("grid-960x600/grid_{photo}.png"));
+        let image = read_image(&file).expect("a photo").image;
+        let located = locator.locate(&image.view(), None, &mut |_| ()).expect("the camera's size");
+        assert_eq!(located.neighbours.len(), 1, "photo {photo}");
+        let neighbour = &located.neighbours[0];
+        assert_eq!(located.members(neighbour).len(), 35, "photo {photo}");
+        let estimate = neighbour.distance.estimate.expect("an estimate");
+        println!(
+            "photo {photo}: {distance_m} m, estimate {estimate:.3?}, bounds {:.3?}",
+            neighbour.distance.bounds
+        );
+        assert!(
+            neighbour.distance.bounds.contains(distance_m),
+            "photo {photo}: {:?}",
+            neighbour.distance.bounds
+        );
+        let relative = estimate.distance_m / distance_m - 1.0;
+        assert!(relative.abs() < 0.15, "photo {photo}: {} m for {distance_m} m", estimate.distance_m);
+        assert_eq!(neighbour.distance.perpendicular_m, None, "a board is no ring");
+    }
+}

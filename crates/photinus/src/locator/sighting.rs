@@ -1,0 +1,38 @@
+//! A spot -> where it lies: bearing, covariance, bound, and the distances its size allows.
+
+use nalgebra::Matrix3x2;
+
+use super::Sighting;
+use crate::camera::Camera;
+use crate::ranging::SpotCurve;
+use crate::spots::Spot;
+
+/// How much the scale of the image may grow across half a spot: what a bound is widened by.
+const SCALE_CHANGE: f64 = 1.05;
+
+/// Sights a spot; `None` outside the camera's field.
+pub(super) fn sight(camera: &Camera, curve: Option<&SpotCurve>, spot: &Spot) -> Option<Sighting> {
+    let (bearing, jacobian) = camera.bearing_with_jacobian(spot.centre)?;
+    Some(Sighting {
+        spot: spot.clone(),
+        bearing,
+        covariance_rad2: jacobian * spot.covariance_px2 * jacobian.transpose(),
+        bound_rad: (farthest_px(spot) * largest_rad_per_px(&jacobian) * SCALE_CHANGE)
+            .min(std::f64::consts::PI),
+        range: curve.and_then(|curve| curve.distances(spot.area_px.max(1))),
+    })
+}
+
+/// From the centre of a spot to the farthest corner of its pixels, px.
+fn farthest_px(spot: &Spot) -> f64 {
+    let reach = |low: u32, high: u32, at: f64| (at - (f64::from(low) - 0.5)).max(f64::from(high) + 0.5 - at);
+    let across = reach(spot.extent.left, spot.extent.right, spot.centre.u);
+    let down = reach(spot.extent.top, spot.extent.bottom, spot.centre.v);
+    libm::hypot(across, down)
+}
+
+fn largest_rad_per_px(jacobian: &Matrix3x2<f64>) -> f64 {
+    let squares = jacobian.transpose() * jacobian;
+    let half_difference = libm::hypot(0.5 * (squares.m11 - squares.m22), squares.m12);
+    (0.5 * squares.trace() + half_difference).sqrt()
+}

@@ -1,0 +1,271 @@
+//! Neighbours of known pose, seen by an ideal camera without pixels: groups, bounds, estimates.
+
+use std::f64::consts::{PI, TAU};
+
+use nalgebra::{Matrix2, Rotation3};
+use rand_distr::{Distribution, StandardNormal, Uniform};
+use rand_pcg::Pcg64;
+
+use super::*;
+use crate::airframe::Ring;
+use crate::camera::{Ideal, IdealLaw, Model, Pixel};
+use crate::spots::Extent;
+
+const SIGMA_PX: f64 = 0.1;
+
+fn camera() -> Camera {
+    let lens = Ideal::new(IdealLaw::Equidistant, [1.0 / 3.7673e-3; 2], Pixel::new(375.5, 239.5)).unwrap();
+    Camera::new(Model::Ideal(lens), 752, 480, None).unwrap()
+}
+
+fn hexarotor() -> Airframe {
+    Airframe::from_ring("hexarotor", Ring { arms: 6, radius_m: 0.4, leds_per_arm: 1, splay_rad: 0.0 })
+        .unwrap()
+}
+
+fn quadrotor() -> Airframe {
+    let ring = Ring { arms: 4, radius_m: 0.245, leds_per_arm: 2, splay_rad: PI / 2.0 };
+    Airframe::from_ring("quadrotor", ring).unwrap()
+}
+
+/// Down in the frame of a camera that looks along the horizon.
+fn level() -> Unit<Vector3<f64>> {
+    Vector3::y_axis()
+}
+
+/// A neighbour at `place_m` in the camera frame, turned about the vertical and tilted.
+struct Placed {
+    place_m: Vector3<f64>,
+    camera_from_body: Rotation3<f64>,
+}
+
+impl Placed {
+    fn new(place_m: Vector3<f64>, yaw_rad: f64, tilt: Vector3<f64>) -> Self {
+        // Body z up is camera -y, body x is the camera's right at yaw 0.
+        let upright = Rotation3::from_basis_unchecked(&[Vector3::x(), Vector3::z(), -Vector3::y()]);
+        let camera_from_body =
+            Rotation3::new(tilt) * upright * Rotation3::from_axis_angle(&Vector3::z_axis(), yaw_rad);
+        Self { place_m, camera_from_body }
+    }
+
+    /// The spots that show, as the camera of the paper would see them.
+    fn spots(&self, airframe: &Airframe, camera: &Camera, rng: &mut Pcg64) -> Vec<Spot> {
+        let camera_m = self.camera_from_body.inverse() * -self.place_m;
+        let visible =
+            (0..airframe.markers().len()).filter(|&marker| airframe.intensity(marker, &camera_m) > 0.05);
+        let spot = |marker: usize| {
+            let marker_m = self.camera_from_body * airframe.markers()[marker].position_m + self.place_m;
+            let pixel = camera.pixel(&Bearing::new(marker_m)?)?;
+            let distance_m = marker_m.norm();
+            let intensity = airframe.intensity(marker, &camera_m);
+            let mut noise = || -> f64 { SIGMA_PX * Distribution::<f64>::sample(&StandardNormal, rng) };
+            let centre = Pixel::new(pixel.u + noise(), pixel.v + noise());
+            Some(spot(centre, intensity, distance_m))
+        };
+        visible.filter_map(spot).collect()
+    }
+}
+
+fn spot(centre: Pixel, intensity: f64, distance_m: f64) -> Spot {
+    let area_px = (intensity * SpotCurve::paper_1000_us().max_area_px(distance_m) as f64).max(1.0);
+    let half = (area_px / PI).sqrt();
+    let within = |at: f64| at.round().max(0.0) as u32;
+    Spot {
+        centre,
+        covariance_px2: Matrix2::from_diagonal_element(SIGMA_PX * SIGMA_PX),
+        area_px: area_px as u32,
+        peak: 200,
+        saturated_px: 0,
+        flux: 4000.0 * intensity / (distance_m * distance_m),
+        background: 5.0,
+        middle: (within(centre.u), within(centre.v)),
+        extent: Extent {
+            left: within(centre.u - half),
+            top: within(centre.v - half),
+            right: within(centre.u + half),
+            bottom: within(centre.v + half),
+        },
+    }
+}
+
+fn ahead(distance_m: f64, azimuth_rad: f64, elevation_rad: f64) -> Vector3<f64> {
+    let (sin_az, cos_az) = libm::sincos(azimuth_rad);
+    let (sin_el, cos_el) = libm::sincos(elevation_rad);
+    Vector3::new(cos_el * sin_az, -sin_el, cos_el * cos_az) * distance_m
+}
+
+/// Locates `placed` and returns, for each, whether its spots and no others are a neighbour, with that neighbour.
+fn locate(
+    locator: &mut Locator,
+    airframe: &Airframe,
+    placed: &[Placed],
+    gravity: Option<&Unit<Vector3<f64>>>,
+    rng: &mut Pcg64,
+) -> Vec<Option<Neighbour>> {
+    let mut all = Vec::new();
+    let mut owners = Vec::new();
+    for (owner, placed) in placed.iter().enumerate() {
+        let spots = placed.spots(airframe, &camera(), rng);
+        owners.extend(std::iter::repeat_n(owner, spots.len()));
+        all.extend(spots);
+    }
+    let located = locator.locate_spots(&all, gravity, &mut |_| ());
+    let whole = |owner: usize| {
+        let own: Vec<usize> = (0..owners.len()).filter(|&spot| owners[spot] == owner).collect();
+        let mut found = located.neighbours.iter().filter(|neighbour| located.members(neighbour) == own);
+        found.next().cloned()
+    };
+    (0..placed.len()).map(whole).collect()
+}
+
+fn locator(airframe: &Airframe) -> Locator {
+    Locator::new(camera(), airframe, None, Settings::default()).unwrap()
+}
+
+#[test]
+fn one_neighbour_is_one_whatever_its_yaw_and_its_bounds_hold() {
+    let mut rng = Pcg64::new(1, 1);
+    for airframe in [hexarotor(), quadrotor()] {
+        let mut locator = locator(&airframe);
+        let (yaw, tilt) = (Uniform::new(0.0, TAU).unwrap(), Uniform::new(-0.15, 0.15).unwrap());
+        for gravity in [None, Some(level())] {
+            let (mut count, mut whole, mut relative) = (0, 0, Vec::new());
+            for distance_m in [1.5, 3.0, 6.0, 10.0, 15.0] {
+                for _ in 0..40 {
+                    let tilt = Vector3::new(tilt.sample(&mut rng), 0.0, tilt.sample(&mut rng));
+                    let (azimuth, elevation) = (tilt.x * 6.0, tilt.z * 2.0);
+                    let placed =
+                        Placed::new(ahead(distance_m, azimuth, elevation), yaw.sample(&mut rng), tilt);
+                    let found = locate(&mut locator, &airframe, &[placed], gravity.as_ref(), &mut rng);
+                    count += 1;
+                    let Some(neighbour) = &found[0] else { continue };
+                    whole += 1;
+                    let bounds = neighbour.distance.bounds;
+                    assert!(bounds.contains(distance_m), "{distance_m} m outside {bounds:?}");
+                    let estimate = neighbour.distance.estimate.unwrap();
+                    assert!(bounds.contains(estimate.distance_m));
+                    relative.push((estimate.distance_m - distance_m) / distance_m);
+                }
+            }
+            let rms =
+                (relative.iter().map(|error| error * error).sum::<f64>() / relative.len() as f64).sqrt();
+            println!(
+                "{}, gravity {}: {whole} of {count} whole, distance rms {rms:.3}",
+                airframe.name(),
+                gravity.is_some()
+            );
+            assert!(whole * 100 >= count * 99, "{}: {whole} of {count}", airframe.name());
+            assert!(rms < 0.25, "{}: relative distance error {rms}", airframe.name());
+        }
+    }
+}
+
+#[test]
+fn neighbours_apart_side_by_side_and_behind_each_other() {
+    let mut rng = Pcg64::new(2, 1);
+    let airframe = hexarotor();
+    let mut locator = locator(&airframe);
+    let yaw = Uniform::new(0.0, TAU).unwrap();
+    let place = |distance_m, azimuth_rad, elevation_rad, rng: &mut Pcg64| {
+        Placed::new(ahead(distance_m, azimuth_rad, elevation_rad), yaw.sample(rng), Vector3::zeros())
+    };
+    let mut scenes = Vec::new();
+    for _ in 0..40 {
+        scenes.push((
+            "apart",
+            (-2..4).map(|i| place(5.0 + f64::from(i), 0.4 * f64::from(i), 0.0, &mut rng)).collect(),
+        ));
+        scenes
+            .push(("side by side", vec![place(5.0, -0.11, 0.0, &mut rng), place(5.2, 0.11, 0.02, &mut rng)]));
+        scenes.push(("behind", vec![place(3.0, 0.0, 0.0, &mut rng), place(9.0, 0.02, 0.03, &mut rng)]));
+    }
+    for gravity in [None, Some(level())] {
+        for kind in ["apart", "side by side", "behind"] {
+            let (mut right, mut total) = (0, 0);
+            for (_, scene) in scenes.iter().filter(|(name, _): &&(_, Vec<Placed>)| *name == kind) {
+                let found = locate(&mut locator, &airframe, scene, gravity.as_ref(), &mut rng);
+                right += found.iter().flatten().count();
+                total += found.len();
+            }
+            assert_eq!(right, total, "{kind}, gravity {}", gravity.is_some());
+        }
+    }
+}
+
+#[test]
+fn a_lone_spot_is_a_neighbour_with_a_bearing_and_the_range_of_its_size() {
+    let airframe = hexarotor();
+    let lone = [spot(Pixel::new(300.0, 200.0), 1.0, 2.0)];
+    let mut without = locator(&airframe);
+    let located = without.locate_spots(&lone, None, &mut |_| ());
+    assert_eq!(located.neighbours.len(), 1);
+    assert_eq!(located.neighbours[0].bearing, located.sightings[0].bearing);
+    assert_eq!(located.neighbours[0].distance.estimate, None);
+    assert!(located.neighbours[0].distance.bounds.max_m().is_infinite());
+
+    let curve = SpotCurve::paper_1000_us();
+    let mut with = Locator::new(camera(), &airframe, Some(curve), Settings::default()).unwrap();
+    let distance = with.locate_spots(&lone, None, &mut |_| ()).neighbours[0].distance;
+    assert!(distance.bounds.contains(2.0) && distance.bounds.max_m() < 3.0, "{distance:?}");
+    assert!(distance.bounds.contains(distance.estimate.unwrap().distance_m));
+}
+
+#[test]
+fn the_papers_estimates_enclose_a_level_target_from_the_side() {
+    let mut rng = Pcg64::new(3, 1);
+    let airframe = hexarotor();
+    let mut locator = locator(&airframe);
+    let yaw = Uniform::new(0.0, TAU).unwrap();
+    for _ in 0..200 {
+        let placed = Placed::new(ahead(6.0, 0.1, 0.0), yaw.sample(&mut rng), Vector3::zeros());
+        let spots = placed.spots(&airframe, &camera(), &mut rng);
+        let found = locate(&mut locator, &airframe, &[placed], Some(&level()), &mut rng);
+        let distance = found[0].as_ref().unwrap().distance;
+        let perpendicular_m = distance.perpendicular_m.expect("a ring has the paper's estimates");
+        // The slack is that of bearings off by a tenth of a pixel.
+        assert!(perpendicular_m > 6.0 * 0.97, "{distance:?}");
+        if spots.len() == 3 {
+            assert!(distance.inline_m.unwrap() < 6.0 * 1.03, "{distance:?}");
+        }
+    }
+}
+
+#[test]
+fn spots_outside_the_field_are_rejected_with_that_reason() {
+    let airframe = hexarotor();
+    let lens = Ideal::new(IdealLaw::Equidistant, [1.0 / 3.7673e-3; 2], Pixel::new(375.5, 239.5)).unwrap();
+    let narrow = Camera::new(Model::Ideal(lens), 752, 480, Some(0.5)).unwrap();
+    let mut locator = Locator::new(narrow, &airframe, None, Settings::default()).unwrap();
+    let spots = [spot(Pixel::new(20.0, 20.0), 1.0, 3.0), spot(Pixel::new(380.0, 240.0), 1.0, 3.0)];
+    let located = locator.locate_spots(&spots, None, &mut |_| ());
+    assert_eq!(located.sightings.len(), 1);
+    assert_eq!(
+        located.rejected.iter().map(|rejected| rejected.reason).collect::<Vec<_>>(),
+        [Reason::Outside]
+    );
+}
+
+#[test]
+fn any_number_of_spots_anywhere_gives_finite_answers() {
+    let mut rng = Pcg64::new(4, 1);
+    let (u, v) = (Uniform::new(0.0, 751.0).unwrap(), Uniform::new(0.0, 479.0).unwrap());
+    for airframe in [hexarotor(), quadrotor()] {
+        let mut locator = locator(&airframe);
+        for count in [0, 1, 2, 3, 5, 9, 20, 60] {
+            let mut spots: Vec<Spot> = (0..count)
+                .map(|_| spot(Pixel::new(u.sample(&mut rng), v.sample(&mut rng)), 1.0, 4.0))
+                .collect();
+            spots.extend_from_within(..count / 3);
+            let located = locator.locate_spots(&spots, None, &mut |_| ());
+            let mut members: Vec<usize> =
+                located.neighbours.iter().flat_map(|neighbour| located.members(neighbour)).copied().collect();
+            members.sort_unstable();
+            assert_eq!(members, (0..spots.len()).collect::<Vec<_>>());
+            for neighbour in &located.neighbours {
+                let Some(Position { mean_m, covariance_m2 }) = neighbour.position else { continue };
+                assert!(mean_m.iter().chain(covariance_m2.iter()).all(|number| number.is_finite()));
+                assert!(neighbour.distance.bounds.contains(neighbour.distance.estimate.unwrap().distance_m));
+            }
+        }
+    }
+}

@@ -1,0 +1,284 @@
+//! What an airframe can look like: its markers as a far camera sees them, from a grid of directions.
+//!
+//! In: an airframe. Out: for every number of spots from two up to a handful the *arrangements* that so many of its markers
+//! can show, in every order, since spots come without names; and for every view its *outline*, the spread of all that
+//! shows, for groups too large to be put in order. Both are in metres in the image plane of the far camera (x right,
+//! y up), with "up" that of the body.
+
+use std::f64::consts::{PI, TAU};
+
+use nalgebra::{Vector2, Vector3};
+
+use crate::airframe::Airframe;
+
+/// Most spots that are put in order one by one.
+pub(super) const MOST_ORDERED: usize = 4;
+/// Most arrangements of one number of spots; an airframe that shows more is told by its outline.
+const MOST_ARRANGEMENTS: usize = 6000;
+/// Steps in yaw, rad, within the part of a circle after which the airframe looks the same.
+const YAW_STEP_RAD: f64 = 7.5 * PI / 180.0;
+/// Elevations of the camera above the body's horizon: this many, evenly up to the highest.
+const ELEVATIONS: usize = 13;
+const HIGHEST_RAD: f64 = 75.0 * PI / 180.0;
+/// From one elevation to the next.
+pub(super) const ELEVATION_STEP_RAD: f64 = 2.0 * HIGHEST_RAD / (ELEVATIONS - 1) as f64;
+/// Without gravity, neighbours at the same height are the likelier ones: a weak prior on elevation, rad.
+const ELEVATION_SIGMA_RAD: f64 = 40.0 * PI / 180.0;
+/// A marker is expected to be seen when it shines at least as bright as this, 1 being straight ahead.
+const BRIGHT: f64 = 0.3;
+/// Below this it is not expected at all.
+const DARK: f64 = 0.02;
+/// What it costs that a bright marker of a view is not seen, nats.
+pub(super) const UNSEEN_NATS: f64 = 2.5;
+/// Distance looked from, in radii of the airframe: only the direction matters.
+const FAR_RADII: f64 = 1e4;
+
+/// Some markers of a view, in an order.
+#[derive(Clone, Debug)]
+pub(super) struct Arrangement {
+    /// Places from their middle, of unit size together; as many as the arrangement has.
+    pub(super) shape: [Vector2<f64>; MOST_ORDERED],
+    /// Root of the summed squares of the places from their middle, m.
+    pub(super) size_m: f64,
+    /// Their middle from the airframe's origin, m.
+    pub(super) middle_m: Vector2<f64>,
+    /// How much nearer to the camera than the origin they are on average, m.
+    pub(super) ahead_m: f64,
+    /// Logarithms of their intensities, less the mean.
+    pub(super) log_intensity: [f64; MOST_ORDERED],
+    /// Which markers they are.
+    pub(super) markers: [usize; MOST_ORDERED],
+    /// What the markers that show but are not among them cost, nats.
+    pub(super) unseen_nats: f64,
+    /// Elevation of the camera above the body's horizon, rad.
+    pub(super) elevation_rad: f64,
+    /// Logarithm of the share of all views, without gravity.
+    pub(super) log_prior: f64,
+}
+
+/// All that shows in a view, as a whole.
+#[derive(Clone, Debug)]
+pub(super) struct Outline {
+    /// How many markers.
+    pub(super) markers: usize,
+    /// Root mean square of the places from their middle, m.
+    pub(super) size_m: f64,
+    /// Shorter over longer axis of their spread, 0 to 1.
+    pub(super) slimness: f64,
+    /// Their middle from the airframe's origin, m.
+    pub(super) middle_m: Vector2<f64>,
+    /// Direction of the longer axis, rad modulo pi.
+    pub(super) axis_rad: f64,
+    /// How much nearer to the camera than the origin they are on average, m.
+    pub(super) ahead_m: f64,
+    /// Elevation of the camera above the body's horizon, rad.
+    pub(super) elevation_rad: f64,
+    /// Logarithm of the share of all views, without gravity.
+    pub(super) log_prior: f64,
+}
+
+/// Everything that an airframe can look like.
+#[derive(Clone, Debug)]
+pub(super) struct Views {
+    /// By number of spots, from two; empty where outlines serve.
+    arrangements: [Vec<Arrangement>; MOST_ORDERED - 1],
+    pub(super) outlines: Vec<Outline>,
+    /// Most markers that show at once.
+    pub(super) most_visible: usize,
+    /// What it costs that all bright markers but the brightest are not seen, on average over the views, nats.
+    pub(super) lone_nats: f64,
+}
+
+struct Seen {
+    marker: usize,
+    place_m: Vector2<f64>,
+    ahead_m: f64,
+    intensity: f64,
+}
+
+impl Views {
+    pub(super) fn of(airframe: &Airframe) -> Self {
+        let sector_rad = TAU / airframe.turns() as f64;
+        let yaws = (sector_rad / YAW_STEP_RAD).ceil().max(1.0) as usize;
+        let mut views =
+            Self { arrangements: Default::default(), outlines: Vec::new(), most_visible: 0, lone_nats: 0.0 };
+        let mut total = 0.0;
+        for row in 0..ELEVATIONS {
+            let elevation_rad = row as f64 * ELEVATION_STEP_RAD - HIGHEST_RAD;
+            let share = elevation_rad / ELEVATION_SIGMA_RAD;
+            let log_prior = libm::log(libm::cos(elevation_rad)) - 0.5 * share * share;
+            for column in 0..yaws {
+                let yaw_rad = sector_rad * column as f64 / yaws as f64;
+                let seen = look(airframe, yaw_rad, elevation_rad);
+                if seen.len() >= 2 {
+                    total += libm::exp(log_prior);
+                    views.add(&seen, elevation_rad, log_prior);
+                }
+            }
+        }
+        views.finish(libm::log(total));
+        views
+    }
+
+    /// The arrangements of `spots` markers; `None` where only outlines tell.
+    pub(super) fn arrangements(&self, spots: usize) -> Option<&[Arrangement]> {
+        let arrangements = self.arrangements.get(spots.checked_sub(2)?)?;
+        (!arrangements.is_empty()).then_some(arrangements)
+    }
+
+    fn add(&mut self, seen: &[Seen], elevation_rad: f64, log_prior: f64) {
+        self.most_visible = self.most_visible.max(seen.len());
+        let unseen_nats: f64 = seen.iter().map(cost_of_unseen).sum();
+        let brightest = seen.iter().map(cost_of_unseen).fold(0.0, f64::max);
+        self.lone_nats += libm::exp(log_prior) * (unseen_nats - brightest);
+        self.outlines.push(outline(seen, elevation_rad, log_prior));
+        for (spots, arrangements) in (2..).zip(&mut self.arrangements) {
+            if arrangements.len() > MOST_ARRANGEMENTS {
+                continue;
+            }
+            each_order(seen.len(), spots, &mut |order| {
+                if arrangements.len() <= MOST_ARRANGEMENTS {
+                    arrangements.push(arrange(seen, order, unseen_nats, elevation_rad, log_prior));
+                }
+            });
+        }
+    }
+
+    fn finish(&mut self, log_total: f64) {
+        self.lone_nats /= libm::exp(log_total).max(f64::MIN_POSITIVE);
+        for arrangements in &mut self.arrangements {
+            if arrangements.len() > MOST_ARRANGEMENTS {
+                arrangements.clear();
+            }
+            for arrangement in arrangements {
+                arrangement.log_prior -= log_total;
+            }
+        }
+        for outline in &mut self.outlines {
+            outline.log_prior -= log_total;
+        }
+    }
+}
+
+/// The markers that show from a direction.
+fn look(airframe: &Airframe, yaw_rad: f64, elevation_rad: f64) -> Vec<Seen> {
+    let (sin, cos) = libm::sincos(elevation_rad);
+    let (sin_yaw, cos_yaw) = libm::sincos(yaw_rad);
+    let towards_camera = Vector3::new(cos * cos_yaw, cos * sin_yaw, sin);
+    let right = Vector3::new(-sin_yaw, cos_yaw, 0.0);
+    let up = towards_camera.cross(&right);
+    let camera_m = towards_camera * (FAR_RADII * airframe.max_radius_m());
+    let see = |marker: usize| {
+        let position_m = airframe.markers()[marker].position_m;
+        Seen {
+            marker,
+            place_m: Vector2::new(position_m.dot(&right), position_m.dot(&up)),
+            ahead_m: position_m.dot(&towards_camera),
+            intensity: airframe.intensity(marker, &camera_m),
+        }
+    };
+    (0..airframe.markers().len()).map(see).filter(|seen| seen.intensity > DARK).collect()
+}
+
+fn cost_of_unseen(seen: &Seen) -> f64 {
+    UNSEEN_NATS * (seen.intensity / BRIGHT).min(1.0)
+}
+
+/// Calls `with` for every choice of `count` out of `of`, in every order.
+fn each_order(of: usize, count: usize, with: &mut impl FnMut(&[usize])) {
+    fn extend(of: usize, count: usize, chosen: &mut Vec<usize>, with: &mut impl FnMut(&[usize])) {
+        if chosen.len() == count {
+            return with(chosen);
+        }
+        for next in 0..of {
+            if !chosen.contains(&next) {
+                chosen.push(next);
+                extend(of, count, chosen, with);
+                chosen.pop();
+            }
+        }
+    }
+    // More than a dozen markers at once exceed the limit on arrangements from three spots up in any case.
+    if of >= count && (count == 2 || of <= 12) {
+        extend(of, count, &mut Vec::with_capacity(count), with);
+    }
+}
+
+fn arrange(
+    seen: &[Seen],
+    order: &[usize],
+    all_unseen_nats: f64,
+    elevation_rad: f64,
+    log_prior: f64,
+) -> Arrangement {
+    let count = order.len() as f64;
+    let chosen = || order.iter().map(|&index| &seen[index]);
+    let middle_m = chosen().map(|seen| seen.place_m).sum::<Vector2<f64>>() / count;
+    let size_m = chosen().map(|seen| (seen.place_m - middle_m).norm_squared()).sum::<f64>().sqrt();
+    let mean_log = chosen().map(|seen| libm::log(seen.intensity)).sum::<f64>() / count;
+    let mut arrangement = Arrangement {
+        shape: [Vector2::zeros(); MOST_ORDERED],
+        size_m,
+        middle_m,
+        ahead_m: chosen().map(|seen| seen.ahead_m).sum::<f64>() / count,
+        log_intensity: [0.0; MOST_ORDERED],
+        markers: [0; MOST_ORDERED],
+        unseen_nats: all_unseen_nats - chosen().map(cost_of_unseen).sum::<f64>(),
+        elevation_rad,
+        log_prior,
+    };
+    for (index, seen) in chosen().enumerate() {
+        // Markers one behind the other have no shape; they match nothing.
+        arrangement.shape[index] = (seen.place_m - middle_m) / size_m.max(1e-9);
+        arrangement.log_intensity[index] = libm::log(seen.intensity) - mean_log;
+        arrangement.markers[index] = seen.marker;
+    }
+    arrangement
+}
+
+fn outline(seen: &[Seen], elevation_rad: f64, log_prior: f64) -> Outline {
+    let count = seen.len() as f64;
+    let middle_m = seen.iter().map(|seen| seen.place_m).sum::<Vector2<f64>>() / count;
+    let spread = Spread::of(seen.iter().map(|seen| seen.place_m - middle_m));
+    Outline {
+        markers: seen.len(),
+        size_m: spread.size,
+        slimness: spread.slimness,
+        middle_m,
+        axis_rad: spread.axis_rad,
+        ahead_m: seen.iter().map(|seen| seen.ahead_m).sum::<f64>() / count,
+        elevation_rad,
+        // Markers that shine away are seen from less far: the view counts by how bright it is.
+        log_prior: log_prior + libm::log(seen.iter().map(|seen| seen.intensity).sum::<f64>() / count),
+    }
+}
+
+/// Size and shape of a cloud of places around zero.
+pub(super) struct Spread {
+    /// Root mean square.
+    pub(super) size: f64,
+    /// Shorter over longer axis.
+    pub(super) slimness: f64,
+    /// Direction of the longer axis, rad modulo pi.
+    pub(super) axis_rad: f64,
+}
+
+impl Spread {
+    pub(super) fn of(places: impl Iterator<Item = Vector2<f64>>) -> Self {
+        let (mut count, mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0, 0.0);
+        for place in places {
+            count += 1.0;
+            xx += place.x * place.x;
+            xy += place.x * place.y;
+            yy += place.y * place.y;
+        }
+        let half_sum = (xx + yy) / 2.0;
+        let half_difference = libm::hypot((xx - yy) / 2.0, xy);
+        let (long, short) = (half_sum + half_difference, (half_sum - half_difference).max(0.0));
+        Self {
+            size: ((xx + yy) / f64::max(count, 1.0)).sqrt(),
+            slimness: if long > 0.0 { (short / long).sqrt() } else { 0.0 },
+            axis_rad: libm::atan2(2.0 * xy, xx - yy) / 2.0,
+        }
+    }
+}

@@ -13,9 +13,11 @@ mod failure;
 mod info;
 mod input;
 mod kind;
+mod locate;
 mod output;
 mod overlay;
 mod run;
+mod spot_curve;
 mod spot_options;
 mod summary;
 mod terminal;
@@ -46,6 +48,7 @@ Exit codes: 0 done, 1 something failed while running, 2 bad usage or input.";
 
 #[derive(Subcommand)]
 enum Command {
+    Locate(locate::Args),
     Detect(detect::Args),
     Info(info::Args),
     Convert(convert::Args),
@@ -54,11 +57,13 @@ enum Command {
 fn main() -> ExitCode {
     let command = Program::parse().command;
     let quiet = match &command {
+        Command::Locate(args) => args.quiet(),
         Command::Detect(args) => args.quiet(),
         Command::Info(_) | Command::Convert(_) => false,
     };
     let mut terminal = Terminal::new(quiet);
     let done = match command {
+        Command::Locate(args) => locate::run(&args, &mut terminal),
         Command::Detect(args) => detect::run(&args, &mut terminal),
         Command::Info(args) => info::run(&args, &terminal),
         Command::Convert(args) => convert::run(&args, &terminal),

@@ -81,7 +81,7 @@ impl FramePanel {
         let reach = path.iter().fold((0.0_f32, 0.0_f32), |(across, down), point| {
             (across.max((point.x - middle.x).abs()), down.max((point.y - middle.y).abs()))
         });
-        let gap = 14.0 * self.unit;
+        let gap = 22.0 * self.unit;
         let room = (width, 2.4 * size);
         let Some(corner) = labels.place(middle, (reach.0 + gap, reach.1 + gap), room) else { return };
         canvas.words(words(&first), Point::from_xy(corner.x, corner.y + size), Align::Left);

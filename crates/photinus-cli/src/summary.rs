@@ -18,6 +18,7 @@ pub(crate) struct Summary {
     neighbours: usize,
     frames_with_neighbours: u64,
     distances_m: Vec<f64>,
+    span_s: Option<(f64, f64)>,
 }
 
 impl Summary {
@@ -33,16 +34,24 @@ impl Summary {
         self.distances_m.extend(record.neighbours.iter().filter_map(|neighbour| neighbour.distance_m.estimate));
     }
 
+    /// When the first and the last frame were taken, s.
+    pub(crate) fn span(&mut self, first_s: f64, last_s: f64) {
+        self.span_s = Some((first_s, last_s));
+    }
+
     /// Frames that came through.
     pub(crate) fn frames(&self) -> u64 {
         self.frames
     }
 
     /// What was counted, without times.
-    pub(crate) fn counts(&self) -> Aligned {
-        let mut table = Aligned::new(0, &[]);
+    pub(crate) fn counts(&self, indent: usize) -> Aligned {
+        let mut table = Aligned::new(indent, &[]);
         let failed = if self.failed > 0 { format!(", {} failed", self.failed) } else { String::new() };
         table.row(["frames".to_owned(), format!("{}{failed}", self.frames)]);
+        if let Some((first_s, last_s)) = self.span_s {
+            table.row(["time".to_owned(), format!("{first_s:.3} to {last_s:.3} s")]);
+        }
         table.row(["spots".to_owned(), format!("{}{}", self.spots, self.per_frame())]);
         table.row(["rejected".to_owned(), self.reasons()]);
         if self.neighbours > 0 {
@@ -64,8 +73,8 @@ impl Summary {
             times.row([format!("  {}", stage.name), number(stage.median_ms()), number(stage.longest_ms())]);
         }
         match self.frames {
-            0 => self.counts().to_string(),
-            _ => format!("{}\n{times}", self.counts()),
+            0 => self.counts(0).to_string(),
+            _ => format!("{}\n{times}", self.counts(0)),
         }
     }
 

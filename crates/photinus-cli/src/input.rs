@@ -54,6 +54,11 @@ pub(crate) struct Input {
 }
 
 impl InputArgs {
+    /// Inputs without further options.
+    pub(crate) fn of(inputs: &[PathBuf]) -> Self {
+        Self { inputs: inputs.to_vec(), raw: None, frames: None }
+    }
+
     /// Opens the frames.
     pub(crate) fn open(&self) -> std::result::Result<Input, Failure> {
         let mut input = self.source()?;

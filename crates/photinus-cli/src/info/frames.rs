@@ -8,9 +8,10 @@ use photinus_io::dataset::Dataset;
 use photinus_io::image::{ImageFile, read_image};
 use photinus_io::mask::read_mask;
 use photinus_io::video::Y4mFrames;
-use photinus_io::{Error, Result, read_camera};
+use photinus_io::{Error, Result};
 
 use super::{Report, airframe, counted};
+use crate::camera_file;
 use crate::spot_curve::read_spot_curve;
 
 pub(super) fn image(path: &Path) -> Result<Report> {
@@ -70,7 +71,7 @@ pub(super) fn dataset(folder: &Path) -> Result<Report> {
     let with_gravity = rows.iter().filter(|row| row.gravity.is_some()).count();
     report.fact("gravity", format!("known for {with_gravity} of {} frames", rows.len()));
 
-    let camera = read_camera(&dataset.path(&info.camera));
+    let camera = camera_file::read(&dataset.path(&info.camera));
     let size = camera.as_ref().ok().map(|file| (file.camera.width(), file.camera.height()));
     let mut part = |name: &str, told: Result<String>| match told {
         Ok(text) => report.facts.row([name.to_owned(), text]),

@@ -90,9 +90,9 @@ impl InputArgs {
                 "no input: name a dataset folder, image files, a Y4M video, or - for Y4M on standard input"
                     .to_owned(),
             )),
-            _ if self.raw.is_some() => {
-                Err(Failure::Input("--raw takes one stream: name one file, or - for standard input".to_owned()))
-            }
+            _ if self.raw.is_some() => Err(Failure::Input(
+                "--raw takes one stream: name one file, or - for standard input".to_owned(),
+            )),
             [path] if path.is_dir() => {
                 let dataset = Dataset::read(path).map_err(Failure::input)?;
                 let files = dataset.frames().iter().map(|row| dataset.path(&row.image)).collect();

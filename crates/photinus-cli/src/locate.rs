@@ -93,7 +93,11 @@ impl Args {
         Ok(file.camera)
     }
 
-    fn airframe(&self, dataset: Option<&Dataset>, terminal: &Terminal) -> std::result::Result<Airframe, Failure> {
+    fn airframe(
+        &self,
+        dataset: Option<&Dataset>,
+        terminal: &Terminal,
+    ) -> std::result::Result<Airframe, Failure> {
         let path = needed(self.airframe.as_deref(), "airframe", dataset.map(|d| d.path(&d.info().airframe)))?;
         let file = read_airframe(&path).map_err(Failure::input)?;
         for note in &file.notes {
@@ -167,7 +171,11 @@ fn fill(entry: &mut Entry, locator: &mut Locator, airframe: &str, clock: &mut Cl
 }
 
 /// The file that was named, or that of the dataset.
-fn needed(named: Option<&Path>, what: &str, of_dataset: Option<PathBuf>) -> std::result::Result<PathBuf, Failure> {
+fn needed(
+    named: Option<&Path>,
+    what: &str,
+    of_dataset: Option<PathBuf>,
+) -> std::result::Result<PathBuf, Failure> {
     named.map(Path::to_owned).or(of_dataset).ok_or_else(|| {
         Failure::Input(format!("no {what}: give --{what} FILE, or a dataset folder, which names its own"))
     })
@@ -199,7 +207,8 @@ fn neighbour_line(neighbour: &NeighbourRecord) -> String {
         None => format!("{:.2} m or more", distance.min),
     };
     let [x, y, z] = neighbour.bearing;
-    let (azimuth, elevation) = (libm::atan2(x, z).to_degrees(), libm::atan2(-y, libm::hypot(x, z)).to_degrees());
+    let (azimuth, elevation) =
+        (libm::atan2(x, z).to_degrees(), libm::atan2(-y, libm::hypot(x, z)).to_degrees());
     let side = |degrees: f64, positive: &str, negative: &str| {
         format!("{:5.1}° {}", degrees.abs(), if degrees < 0.0 { negative } else { positive })
     };
@@ -215,10 +224,13 @@ fn neighbour_line(neighbour: &NeighbourRecord) -> String {
 
 fn gravity(text: &str) -> std::result::Result<Unit<Vector3<f64>>, String> {
     let wrong = || "give three numbers, such as 0,1,0 for a level camera".to_owned();
-    let numbers: Vec<f64> =
-        text.split(',').map(|word| word.trim().parse().map_err(|_| wrong())).collect::<std::result::Result<_, _>>()?;
+    let numbers: Vec<f64> = text
+        .split(',')
+        .map(|word| word.trim().parse().map_err(|_| wrong()))
+        .collect::<std::result::Result<_, _>>()?;
     let [x, y, z] = numbers.as_slice() else { return Err(wrong()) };
-    let down = Bearing::new(Vector3::new(*x, *y, *z)).ok_or_else(|| "these numbers have no direction".to_owned())?;
+    let down =
+        Bearing::new(Vector3::new(*x, *y, *z)).ok_or_else(|| "these numbers have no direction".to_owned())?;
     Ok(Unit::new_unchecked(*down.vector()))
 }
 

@@ -47,7 +47,8 @@ pub(crate) fn read_spot_curve(path: &Path) -> Result<SpotCurve> {
     }
     let text = std::fs::read_to_string(path).map_err(|error| Error::io(path, error))?;
     let table: Table = toml::from_str(&text).map_err(|error| {
-        let refused = Error::format(path, error.message().replace('\n', ", ").replace(" field `", " key `")).advise(EXAMPLE);
+        let refused = Error::format(path, error.message().replace('\n', ", ").replace(" field `", " key `"))
+            .advise(EXAMPLE);
         match error.span().and_then(|span| text.get(..span.start)) {
             Some(before) => refused.at(Place::Line(1 + before.matches('\n').count())),
             None => refused,

@@ -31,7 +31,8 @@ impl Summary {
         }
         self.neighbours += record.neighbours.len();
         self.frames_with_neighbours += u64::from(!record.neighbours.is_empty());
-        self.distances_m.extend(record.neighbours.iter().filter_map(|neighbour| neighbour.distance_m.estimate));
+        self.distances_m
+            .extend(record.neighbours.iter().filter_map(|neighbour| neighbour.distance_m.estimate));
     }
 
     /// When the first and the last frame were taken, s.

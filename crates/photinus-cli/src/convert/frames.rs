@@ -57,7 +57,10 @@ pub(super) fn convert(
         _ => Sink::Video { writer: None, file: Some(create(out)?), rate: rate_hz.map_or((0, 0), fraction) },
     };
     if format == Format::Y4m && rate_hz.is_none() {
-        terminal.note(format_args!("{}: the rate is not known, so the video has none; give --rate", out.display()));
+        terminal.note(format_args!(
+            "{}: the rate is not known, so the video has none; give --rate",
+            out.display()
+        ));
     }
     let (mut good, mut failed, mut with_gravity) = (0_u64, 0_u64, 0_u64);
     terminal.start(input.count);
@@ -86,7 +89,8 @@ pub(super) fn convert(
 
 impl Sink {
     fn dataset(out: &Path, args: &FrameArgs, rate_hz: Option<f64>) -> Result<Self, Failure> {
-        let needed = |what: &str| Failure::Input(format!("a dataset needs --{what}; see photinus convert --help"));
+        let needed =
+            |what: &str| Failure::Input(format!("a dataset needs --{what}; see photinus convert --help"));
         let camera = args.camera.as_deref().ok_or_else(|| needed("camera"))?;
         let airframe = args.airframe.as_deref().ok_or_else(|| needed("airframe"))?;
         let exposure_us = args.exposure_us.ok_or_else(|| needed("exposure-us"))?;

@@ -70,7 +70,10 @@ pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> Result<(), Failure> {
     refuse_to_replace(&args.out, &args.inputs)?;
     let is_frames = matches!(format, Format::Y4m | Format::Dataset);
     if let (false, [other, ..]) = (is_frames, others) {
-        return Err(Failure::Input(format!("{}: only frames are converted several at a time", other.display())));
+        return Err(Failure::Input(format!(
+            "{}: only frames are converted several at a time",
+            other.display()
+        )));
     }
     match (kind, format) {
         (Kind::Camera, Format::Ocam) => text::camera_to_ocam(first, &args.out, terminal),

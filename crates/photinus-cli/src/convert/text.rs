@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
+use photinus_io::CameraFile;
 use photinus_io::airframe::{AirframeFile, layout_text, read_airframe, toml_text};
 use photinus_io::camera::{write_camera_toml, write_ocam_text};
 use photinus_io::results::{CsvWriter, read_results};
-use photinus_io::CameraFile;
 
 use super::write;
 use crate::camera_file;
@@ -19,8 +19,9 @@ const POOR_INVERSE_PX: f64 = 0.1;
 pub(super) fn camera_to_ocam(path: &Path, out: &Path, terminal: &Terminal) -> Result<(), Failure> {
     let file = camera(path, terminal)?;
     let mut text = Vec::new();
-    let inverse = write_ocam_text(&file.camera, &mut text, out)
-        .map_err(|error| Failure::input(error.advise("write it as Photinus TOML: end the output in .toml")))?;
+    let inverse = write_ocam_text(&file.camera, &mut text, out).map_err(|error| {
+        Failure::input(error.advise("write it as Photinus TOML: end the output in .toml"))
+    })?;
     write(out, &text)?;
     let told = format!(
         "{}: the inverse polynomial is a new one of degree {}, within {:.2e} px of the direct one",

@@ -45,7 +45,10 @@ pub(super) fn video(path: &Path) -> Result<Report> {
     let mut frames = Y4mFrames::new(file, path)?;
     let mut report = Report::new("a Y4M video");
     report.fact("size", format!("{} x {} px", frames.width(), frames.height()));
-    report.fact("rate", frames.rate_hz().map_or("unknown".to_owned(), |rate| format!("{rate} frames per second")));
+    report.fact(
+        "rate",
+        frames.rate_hz().map_or("unknown".to_owned(), |rate| format!("{rate} frames per second")),
+    );
     report.notes.extend(frames.conversions().iter().map(ToString::to_string));
     let rate_hz = frames.rate_hz();
     let (mut whole, mut last) = (0_u32, None);
@@ -67,7 +70,10 @@ pub(super) fn dataset(folder: &Path) -> Result<Report> {
     let mut report = Report::new("a dataset");
     let span_s = rows.last().zip(rows.first()).map_or(0.0, |(last, first)| last.time_s - first.time_s);
     report.fact("frames", format!("{} over {span_s:.2} s", rows.len()));
-    report.fact("camera ran at", format!("{} frames per second, {} us exposure", info.rate_hz, info.exposure_us));
+    report.fact(
+        "camera ran at",
+        format!("{} frames per second, {} us exposure", info.rate_hz, info.exposure_us),
+    );
     let with_gravity = rows.iter().filter(|row| row.gravity.is_some()).count();
     report.fact("gravity", format!("known for {with_gravity} of {} frames", rows.len()));
 
@@ -131,7 +137,9 @@ fn images(dataset: &Dataset, size: Option<(usize, usize)>, notes: &mut Vec<Strin
         Some(Ok(file)) => {
             let (width, height) = (file.image.width(), file.image.height());
             if size.is_some_and(|size| size != (width, height)) {
-                notes.push(format!("the first image is {width}x{height}, which is not the size of the camera"));
+                notes.push(format!(
+                    "the first image is {width}x{height}, which is not the size of the camera"
+                ));
             }
             format!("{}, {width} x {height} px", dataset.frames().len() - missing.len())
         }

@@ -88,7 +88,14 @@ impl FramePanel {
         canvas.words(words(&second), Point::from_xy(corner.x, corner.y + 2.2 * size), Align::Left);
     }
 
-    fn spot(&self, canvas: &mut Canvas<'_>, labels: &mut Labels, spot: &SpotRecord, index: usize, colour: Colour) {
+    fn spot(
+        &self,
+        canvas: &mut Canvas<'_>,
+        labels: &mut Labels,
+        spot: &SpotRecord,
+        index: usize,
+        colour: Colour,
+    ) {
         let centre = self.at(spot.u_px, spot.v_px);
         let radius = self.radius(spot.area_px);
         canvas.circle(centre, radius, Pen::new(colour, 1.6 * self.unit).on(colours::SHADE));
@@ -105,7 +112,15 @@ impl FramePanel {
     }
 
     /// A short word beside a mark, where there is room.
-    fn label(&self, canvas: &mut Canvas<'_>, labels: &mut Labels, centre: Point, reach: f32, text: &str, colour: Colour) {
+    fn label(
+        &self,
+        canvas: &mut Canvas<'_>,
+        labels: &mut Labels,
+        centre: Point,
+        reach: f32,
+        text: &str,
+        colour: Colour,
+    ) {
         let size = 12.0 * self.unit;
         let words = Words { text, size, colour, halo: Some(colours::SHADE) };
         let (room, gap) = ((canvas.width_of(words), size), reach + 2.0 * self.unit);
@@ -146,7 +161,8 @@ fn distance_lines(distance: &Distance, number: usize) -> (String, String) {
 
 /// What a neighbour of a frame is called in the picture: A, B, ... and by its number after Z.
 pub(super) fn name(number: usize) -> String {
-    let letter = u8::try_from(number).ok().filter(|&number| number < 26).map(|number| char::from(b'A' + number));
+    let letter =
+        u8::try_from(number).ok().filter(|&number| number < 26).map(|number| char::from(b'A' + number));
     letter.map_or_else(|| (number + 1).to_string(), |letter| letter.to_string())
 }
 
@@ -164,8 +180,11 @@ fn chain<'a>(spots: &[&'a SpotRecord]) -> Vec<&'a SpotRecord> {
         });
         high - low
     };
-    let along: fn(&SpotRecord) -> f64 =
-        if spread(|spot| spot.u_px) >= spread(|spot| spot.v_px) { |spot| spot.u_px } else { |spot| spot.v_px };
+    let along: fn(&SpotRecord) -> f64 = if spread(|spot| spot.u_px) >= spread(|spot| spot.v_px) {
+        |spot| spot.u_px
+    } else {
+        |spot| spot.v_px
+    };
     let mut sorted = spots.to_vec();
     sorted.sort_by(|a, b| along(a).total_cmp(&along(b)));
     sorted

@@ -83,7 +83,8 @@ fn many_bad_frames_are_counted_rather_than_told() {
 fn frames_and_masks_of_another_size() {
     let stage = Stage::new("size");
     stage.file("other.toml", CAMERA.replace("96", "752"));
-    let parts = ["frame.png, frame 0: the frame is 96x64, the camera 752x64; give the calibration of this camera"];
+    let parts =
+        ["frame.png, frame 0: the frame is 96x64, the camera 752x64; give the calibration of this camera"];
     refuses(&stage, "locate frame.png --camera other.toml --airframe hexa.toml", 2, &parts);
 
     write_png(stage.path("mask.png"), &GreyImage::new(vec![0, 255], 2, 1).unwrap().view()).unwrap();
@@ -101,7 +102,10 @@ fn a_colour_frame_is_taken_and_told_once() {
     stage.file("colour.ppm", ppm);
     let done = stage.run("detect colour.ppm colour.ppm colour.ppm");
     assert_eq!(done.code, 0);
-    assert_eq!(done.err.matches("note: colour.ppm: colour with three equal channels: one was taken").count(), 1);
+    assert_eq!(
+        done.err.matches("note: colour.ppm: colour with three equal channels: one was taken").count(),
+        1
+    );
     let spots = |text: &str| text.lines().map(|line| line[11..].to_owned()).collect::<Vec<_>>();
     assert_eq!(spots(&stage.run("detect colour.ppm").out), spots(&stage.run("detect frame.png").out));
 }
@@ -120,7 +124,12 @@ fn calibrations_that_are_no_camera() {
     let words = with("nan.toml", CAMERA.replace("47.5", "nan"));
     refuses(&stage, &words, 2, &["nan.toml, line 4: NaN", "; correct it there"]);
     let words = with("folds.txt", OCAM.replace("1.6e-3", "-0.2"));
-    refuses(&stage, &words, 2, &["folds.txt: the angle off the axis stops growing at", "; if the lens was calibrated"]);
+    refuses(
+        &stage,
+        &words,
+        2,
+        &["folds.txt, line 1: the angle off the axis stops growing at", "; if the lens was calibrated"],
+    );
     let words = with("unknown.toml", format!("{CAMERA}lens = 3\n"));
     refuses(&stage, &words, 2, &["unknown.toml, line 6: unknown", "`lens`"]);
 }
@@ -132,27 +141,55 @@ fn airframes_that_are_none() {
         stage.file(name, text);
         format!("locate frame.png --camera camera.toml --airframe {name}")
     };
-    refuses(&stage, &with("one.txt", "0.1 0 0 0 0 0 0\n"), 2, &["one.txt: 1 LEDs form 1 marker(s)", "; list every LED"]);
+    refuses(
+        &stage,
+        &with("one.txt", "0.1 0 0 0 0 0 0\n"),
+        2,
+        &["one.txt: 1 LEDs form 1 marker(s)", "; list every LED"],
+    );
     let twice = "0.1 0 0 0 0 0 0\n-0.1 0 0 0 0 0 0\n0.1 0 0 0 0 0 1\n";
-    refuses(&stage, &with("twice.txt", twice), 2, &["twice.txt, line 3: LEDs 0 and 2 have the same position", "; "]);
+    refuses(
+        &stage,
+        &with("twice.txt", twice),
+        2,
+        &["twice.txt, line 3: LEDs 0 and 2 have the same position", "; "],
+    );
     let unknown = AIRFRAME.replace("name", "nmae");
-    refuses(&stage, &with("unknown.toml", &unknown), 2, &["unknown.toml, line 1: unknown key `nmae`", "; correct its name"]);
+    refuses(
+        &stage,
+        &with("unknown.toml", &unknown),
+        2,
+        &["unknown.toml, line 1: unknown key `nmae`", "; correct its name"],
+    );
 }
 
 #[test]
 fn spot_curves_that_are_none() {
     let stage = Stage::new("curve");
     stage.file("curve.toml", "upper = { offset_px = 1, scale_px_m2 = -3, shift_m = 0 }\n");
-    refuses(&stage, &format!("{LOCATE} --spot-curve curve.toml"), 2, &["curve.toml: ", "; an example: upper"]);
+    refuses(
+        &stage,
+        &format!("{LOCATE} --spot-curve curve.toml"),
+        2,
+        &["curve.toml: ", "; an example: upper"],
+    );
     stage.file("curve.toml", "upper = { offset_px = 1, scale_px_m2 = 3, shift = 0 }\n");
-    refuses(&stage, &format!("{LOCATE} --spot-curve curve.toml"), 2, &["curve.toml, line 1: unknown key `shift`"]);
+    refuses(
+        &stage,
+        &format!("{LOCATE} --spot-curve curve.toml"),
+        2,
+        &["curve.toml, line 1: unknown key `shift`"],
+    );
 }
 
 #[test]
 fn datasets_that_are_not_in_order() {
     let stage = Stage::new("dataset");
     std::fs::create_dir(stage.path("rec")).unwrap();
-    stage.file("rec/dataset.toml", "camera = \"c\"\nairframe = \"a\"\nexposure_us = 1\nrate_hz = 20\nmsak = \"m\"\n");
+    stage.file(
+        "rec/dataset.toml",
+        "camera = \"c\"\nairframe = \"a\"\nexposure_us = 1\nrate_hz = 20\nmsak = \"m\"\n",
+    );
     refuses(&stage, "locate rec", 2, &["rec/dataset.toml, line 5: unknown key `msak`", "; correct its name"]);
     stage.file("rec/dataset.toml", "camera = \"c\"\nairframe = \"a\"\nexposure_us = 1\nrate_hz = 20\n");
     refuses(&stage, "locate rec", 2, &["the folder holds no frames.csv", "; "]);
@@ -164,7 +201,12 @@ fn a_cut_video_keeps_the_frames_before() {
     let whole = video(3);
     stage.file("cut.y4m", &whole[..whole.len() - 1000]);
     let words = "locate cut.y4m --camera camera.toml --airframe hexa.toml --out r.jsonl";
-    refuses(&stage, words, 1, &["cut.y4m, frame 2: the stream ends after 5144 of", "; the frames before it are whole (2)"]);
+    refuses(
+        &stage,
+        words,
+        1,
+        &["cut.y4m, frame 2: the stream ends after 5144 of", "; the frames before it are whole (2)"],
+    );
     assert_eq!(stage.read("r.jsonl").lines().count(), 2);
     let done = stage.run_with("detect - --out -", &whole[..whole.len() - 1000]);
     assert_eq!((done.code, done.out.lines().count()), (1, 2));
@@ -185,7 +227,12 @@ fn an_output_that_cannot_be_written_is_told_before_any_work() {
         refuses(&stage, &words, 2, &[advice]);
         assert!(!stage.run(&words).err.contains("frames"), "no work is done");
     }
-    refuses(&stage, "detect frame.png --out frame.png", 2, &["frame.png: this file is an input", "; write elsewhere"]);
+    refuses(
+        &stage,
+        "detect frame.png --out frame.png",
+        2,
+        &["frame.png: this file is an input", "; write elsewhere"],
+    );
     assert!(std::fs::read(stage.path("frame.png")).unwrap().starts_with(b"\x89PNG"), "it is still there");
 }
 

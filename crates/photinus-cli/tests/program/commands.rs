@@ -128,16 +128,29 @@ fn cameras_and_airframes_go_both_ways() {
     assert!(done.err.contains("back.txt: the inverse polynomial is a new one of degree"), "{}", done.err);
     let field = |name: &str| {
         let out = stage.run(&format!("info {name}")).out;
-        out.lines().find(|line| line.contains("field of view")).unwrap().split_once("horizontal").unwrap().1.to_owned()
+        out.lines()
+            .find(|line| line.contains("field of view"))
+            .unwrap()
+            .split_once("horizontal")
+            .unwrap()
+            .1
+            .to_owned()
     };
     assert_eq!(field("ocam.txt"), field("back.txt"));
     assert_eq!(stage.run("convert camera.toml x.txt").code, 2, "an equidistant camera is no OCam");
 
     let done = stage.run("convert hexa.toml six.txt");
-    assert!(done.err.contains("the name `hexa` is not kept") && done.err.contains("6 of 6 LEDs have no signal"));
+    assert!(
+        done.err.contains("the name `hexa` is not kept") && done.err.contains("6 of 6 LEDs have no signal")
+    );
     assert_eq!(stage.run("convert six.txt six.toml").code, 0);
     assert!(stage.run("info six.toml").out.contains("ring     6 markers, radius 0.4000 m"));
-    assert!(stage.run("convert hexa.toml x.csv").err.contains("cannot become CSV; choose --to toml or --to layout"));
+    assert!(
+        stage
+            .run("convert hexa.toml x.csv")
+            .err
+            .contains("cannot become CSV; choose --to toml or --to layout")
+    );
 }
 
 #[test]
@@ -146,7 +159,8 @@ fn results_become_a_table() {
     stage.run(&format!("{LOCATE} --out r.jsonl --csv direct.csv"));
     let done = stage.run("convert r.jsonl r.csv");
     assert!(done.code == 0 && done.err.contains("2 spots"), "{}", done.err);
-    let cells = |name: &str| -> Vec<String> { stage.read(name).split([',', '\n']).map(str::to_owned).collect() };
+    let cells =
+        |name: &str| -> Vec<String> { stage.read(name).split([',', '\n']).map(str::to_owned).collect() };
     for (one, other) in cells("r.csv").iter().zip(cells("direct.csv")) {
         match (one.parse::<f64>(), other.parse::<f64>()) {
             (Ok(one), Ok(other)) => assert!((one - other).abs() <= 1e-12 * one.abs(), "{one} {other}"),

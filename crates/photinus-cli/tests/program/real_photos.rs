@@ -26,6 +26,10 @@ fn real_files_are_told() {
             .map(|entry| entry.unwrap().path().display().to_string())
             .collect();
         let done = stage.run(&format!("info {}", files.join(" ")));
-        assert_eq!((done.code, done.out.matches(&format!(": {what}\n")).count()), (0, files.len()), "{folder}");
+        assert_eq!(
+            (done.code, done.out.matches(&format!(": {what}\n")).count()),
+            (0, files.len()),
+            "{folder}"
+        );
     }
 }

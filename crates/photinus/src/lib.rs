@@ -12,6 +12,7 @@
 pub mod airframe;
 pub mod camera;
 pub mod frame;
+mod lanes;
 pub mod locator;
 pub mod ranging;
 pub mod spots;

@@ -7,23 +7,23 @@ const CALLS_PER_ROUND: usize = 32;
 
 type Contender<'a> = (String, Box<dyn FnMut(usize) + 'a>);
 
-pub struct Contest<'a> {
+pub(crate) struct Contest<'a> {
     title: String,
     floor: String,
     contenders: Vec<Contender<'a>>,
 }
 
 impl<'a> Contest<'a> {
-    pub fn new(title: &str, floor: &str) -> Self {
+    pub(crate) fn new(title: &str, floor: &str) -> Self {
         Self { title: title.to_owned(), floor: floor.to_owned(), contenders: Vec::new() }
     }
 
     /// A contender is called with a counter, to choose among its inputs.
-    pub fn add(&mut self, name: &str, call: impl FnMut(usize) + 'a) {
+    pub(crate) fn add(&mut self, name: &str, call: impl FnMut(usize) + 'a) {
         self.contenders.push((name.to_owned(), Box::new(call)));
     }
 
-    pub fn run(mut self) {
+    pub(crate) fn run(mut self) {
         let mut times = vec![Vec::with_capacity(ROUNDS); self.contenders.len()];
         for round in 0..ROUNDS + ROUNDS / 10 {
             for ((_, call), times) in self.contenders.iter_mut().zip(&mut times) {

@@ -1,23 +1,29 @@
 //! Frames to time: saturated spots with soft edges on a dark, noisy background.
 
+use nalgebra::{Rotation3, Vector3};
+use photinus::airframe::Airframe;
+use photinus::camera::{Bearing, Camera};
+use photinus::ranging::SpotCurve;
 use rand_distr::{Distribution, Normal, Uniform};
 use rand_pcg::Pcg64;
 
-pub const WIDTH: usize = 752;
-pub const HEIGHT: usize = 480;
+pub(crate) const WIDTH: usize = 752;
+pub(crate) const HEIGHT: usize = 480;
 const FRAMES: u64 = 8;
 
 /// Eight frames of `count` spots of 1 to 30 px (log-uniform), at least 16 px apart, with the sun on demand.
-pub fn markers(count: usize, sun: bool) -> Vec<Vec<u8>> {
+pub(crate) fn markers(count: usize, sun: bool) -> Vec<Vec<u8>> {
     (0..FRAMES).map(|seed| frame(count, sun, &mut Pcg64::new(seed.into(), 5))).collect()
 }
 
 fn frame(count: usize, sun: bool, rng: &mut Pcg64) -> Vec<u8> {
-    let background = Normal::new(5.0, 2.0).unwrap();
+    let background = Normal::new(5.0, 2.0).expect("a distribution");
     let mut light: Vec<f64> = (0..WIDTH * HEIGHT).map(|_| background.sample(rng)).collect();
-    let (across, down) =
-        (Uniform::new(20.0, WIDTH as f64 - 20.0).unwrap(), Uniform::new(20.0, HEIGHT as f64 - 20.0).unwrap());
-    let log_area = Uniform::new(0.0, libm::log(30.0)).unwrap();
+    let (across, down) = (
+        Uniform::new(20.0, WIDTH as f64 - 20.0).expect("a distribution"),
+        Uniform::new(20.0, HEIGHT as f64 - 20.0).expect("a distribution"),
+    );
+    let log_area = Uniform::new(0.0, libm::log(30.0)).expect("a distribution");
     let mut places: Vec<(f64, f64)> = Vec::new();
     if sun {
         places.push((560.0, 120.0));
@@ -58,5 +64,50 @@ fn add_sun(light: &mut [f64], (u, v): (f64, f64)) {
         let angle = libm::atan2(dv, du) * 6.0 / std::f64::consts::TAU;
         let off = (angle - angle.round()).abs() * distance;
         *light += 200.0 * libm::exp(-off * off - distance / 40.0);
+    }
+}
+
+/// Eight frames of `count` level hexarotors at random yaws, 2 to 8 m away, spread over the field.
+pub(crate) fn hexarotors(count: usize, camera: &Camera, airframe: &Airframe) -> Vec<Vec<u8>> {
+    (0..FRAMES).map(|seed| hexarotors_of(count, camera, airframe, &mut Pcg64::new(seed.into(), 9))).collect()
+}
+
+fn hexarotors_of(count: usize, camera: &Camera, airframe: &Airframe, rng: &mut Pcg64) -> Vec<u8> {
+    let mut light = vec![5.0; WIDTH * HEIGHT];
+    let uniform = |low: f64, high: f64| Uniform::new(low, high).expect("a range");
+    for index in 0..count {
+        let (column, row) = (index % 6, index / 6);
+        let azimuth = -1.1 + 0.44 * column as f64;
+        let elevation = 0.3 * row as f64 + uniform(-0.05, 0.05).sample(rng);
+        let distance_m = uniform(2.0, 8.0).sample(rng);
+        let ahead = Vector3::new(
+            libm::cos(elevation) * libm::sin(azimuth),
+            -libm::sin(elevation),
+            libm::cos(elevation) * libm::cos(azimuth),
+        );
+        let upright = Rotation3::from_basis_unchecked(&[Vector3::x(), Vector3::z(), -Vector3::y()]);
+        let turn =
+            Rotation3::from_axis_angle(&Vector3::z_axis(), uniform(0.0, std::f64::consts::TAU).sample(rng));
+        add_airframe(&mut light, camera, airframe, &(upright * turn), ahead * distance_m);
+    }
+    light.into_iter().map(|light| light.round().clamp(0.0, 255.0) as u8).collect()
+}
+
+fn add_airframe(
+    light: &mut [f64],
+    camera: &Camera,
+    airframe: &Airframe,
+    camera_from_body: &Rotation3<f64>,
+    place_m: Vector3<f64>,
+) {
+    let camera_m = camera_from_body.inverse() * -place_m;
+    for (marker, seen) in airframe.markers().iter().enumerate() {
+        let marker_m = camera_from_body * seen.position_m + place_m;
+        let intensity = airframe.intensity(marker, &camera_m);
+        let pixel = Bearing::new(marker_m).and_then(|bearing| camera.pixel(&bearing));
+        if let Some(pixel) = pixel.filter(|_| intensity > 0.05) {
+            let area_px = intensity * f64::from(SpotCurve::paper_1000_us().max_area_px(marker_m.norm()));
+            add_disc(light, (pixel.u, pixel.v), (area_px.max(1.0) / std::f64::consts::PI).sqrt(), 1.0);
+        }
     }
 }

@@ -9,11 +9,15 @@ mod frames;
 use std::hint::black_box;
 
 use contest::Contest;
+use photinus::airframe::{Airframe, Ring};
+use photinus::camera::{Camera, Ideal, IdealLaw, Model, Pixel};
 use photinus::frame::FrameView;
+use photinus::locator::{self, Locator};
 use photinus::spots::{Brightness, Detector, Settings};
 
 fn main() {
     detection();
+    locating();
 }
 
 fn detection() {
@@ -37,14 +41,48 @@ fn detection() {
     for (rule, brightness) in [("fixed", Brightness::Threshold(200)), ("contrast", Brightness::default())] {
         for (count, sun) in [(0, false), (6, false), (30, false), (120, false), (30, true)] {
             let frames = frames::markers(count, sun);
-            let mut detector = Detector::new(Settings { brightness, ..Settings::default() }).unwrap();
+            let mut detector =
+                Detector::new(Settings { brightness, ..Settings::default() }).expect("settings");
             let name = format!("{rule}, {count} markers{}", if sun { " and the sun" } else { "" });
             contest.add(&name, move |i| {
-                let frame =
-                    FrameView::packed(&frames[i % frames.len()], frames::WIDTH, frames::HEIGHT).unwrap();
-                black_box(detector.detect(&frame, None).unwrap());
+                let frame = FrameView::packed(&frames[i % frames.len()], frames::WIDTH, frames::HEIGHT);
+                black_box(detector.detect(&frame.expect("a frame"), None).expect("no mask"));
             });
         }
+    }
+    contest.run();
+}
+
+/// The camera of the paper, by its linear law.
+fn camera() -> Camera {
+    let centre = Pixel::new(375.5, 239.5);
+    let lens = Ideal::new(IdealLaw::Equidistant, [1.0 / 3.7673e-3; 2], centre).expect("a lens");
+    Camera::new(Model::Ideal(lens), frames::WIDTH, frames::HEIGHT, None).expect("a camera")
+}
+
+fn hexarotor() -> Airframe {
+    let ring = Ring { arms: 6, radius_m: 0.4, leds_per_arm: 1, splay_rad: 0.0 };
+    Airframe::from_ring("hexarotor", ring).expect("a hexarotor")
+}
+
+fn locating() {
+    let mut contest = Contest::new("Locating, 752x480", "maximum of the frame");
+    let empty = frames::markers(0, false);
+    contest.add("maximum of the frame", move |i| {
+        let frame = &empty[i % empty.len()];
+        black_box(frame.iter().fold(0, |high: u8, &pixel| high.max(pixel)));
+    });
+    let (camera, airframe) = (camera(), hexarotor());
+    for count in [1, 6, 12] {
+        let frames = frames::hexarotors(count, &camera, &airframe);
+        let mut locator =
+            Locator::new(camera.clone(), &airframe, None, locator::Settings::default()).expect("a locator");
+        contest.add(&format!("locate, {count} hexarotors"), move |i| {
+            let frame = FrameView::packed(&frames[i % frames.len()], frames::WIDTH, frames::HEIGHT);
+            black_box(
+                locator.locate(&frame.expect("a frame"), None, &mut |_| ()).expect("the camera's size"),
+            );
+        });
     }
     contest.run();
 }

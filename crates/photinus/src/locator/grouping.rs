@@ -14,7 +14,7 @@ use super::Sighting;
 use super::matching::{IMPOSSIBLE, Matcher, NEIGHBOUR_NATS};
 
 /// Most spots of which all partitions are tried.
-const MOST_PARTITIONED: usize = 9;
+const MOST_PARTITIONED: usize = 7;
 /// Most rounds of that in one frame: the time of a frame is bounded.
 const MOST_ROUNDS: usize = 12;
 /// A group that costs more than this, nats, may not be one: half-way from a good match to two neighbours.

@@ -7,14 +7,19 @@
 use nalgebra::{Matrix3, Unit, Vector2, Vector3};
 
 use super::Sighting;
-use super::views::{Arrangement, ELEVATION_STEP_RAD, MOST_ORDERED, Outline, Spread, Views};
+use super::views::{Arrangement, ELEVATION_STEP_RAD, MOST_ORDERED, Outline, Quad, Spread, Views, firmness};
 use crate::airframe::Airframe;
+use crate::lanes::{self, LANES, Lanes};
 use crate::ranging::{BoundedBearing, DistanceBounds, Interval};
 
 /// What a neighbour costs, nats: fewer neighbours are the better explanation.
 pub(super) const NEIGHBOUR_NATS: f64 = 8.0;
 /// How far the grid of views leaves a true shape from the nearest one, as a share of its size.
-const GRID_ERROR: f64 = 0.06;
+const GRID_ERROR: f64 = 0.04;
+/// What that leaves of a place, as a share of the airframe's radius, and of the distance, as a share of it: half the
+/// steps of yaw and elevation, spread evenly.
+const GRID_ACROSS: f64 = 0.008;
+const GRID_ALONG: f64 = 0.004;
 /// Spread of the logarithms of flux that units, lobes and neighbours' own bodies add.
 const LOG_FLUX_SIGMA: f64 = 0.6;
 /// The same when a spot is saturated: its flux is a lower limit.
@@ -30,8 +35,10 @@ pub(super) struct Matcher {
     views: Views,
     bounds: DistanceBounds,
     tilt_sigma_rad: f64,
+    radius_m: f64,
     bearings: Vec<BoundedBearing>,
     places: Vec<Vector2<f64>>,
+    costs: Vec<Lanes>,
 }
 
 /// What a match found.
@@ -55,8 +62,10 @@ impl Matcher {
             bounds: DistanceBounds::new(airframe, max_tilt_rad),
             // The tilt limit is taken for two sigma; the grid of views adds half a step.
             tilt_sigma_rad: libm::hypot(max_tilt_rad / 2.0, grid_rad),
+            radius_m: airframe.max_radius_m(),
             bearings: Vec::new(),
             places: Vec::new(),
+            costs: Vec::new(),
         }
     }
 
@@ -114,7 +123,19 @@ impl Matcher {
         if group.len() > self.views.most_visible || self.bounds(sightings, group, gravity).is_none() {
             return IMPOSSIBLE;
         }
-        self.match_views(sightings, group, gravity).map_or(IMPOSSIBLE, |found| found.nats)
+        let Some(image) = Image::of(sightings, group, gravity, &mut self.places) else { return IMPOSSIBLE };
+        let Some(arrangements) = self.views.arrangements(group.len()) else {
+            return self.match_views(sightings, group, gravity).map_or(IMPOSSIBLE, |found| found.nats);
+        };
+        let seen = Ordered::of(&image, sightings, group);
+        let best = seen.costs(&arrangements.quads, &image, self.tilt_sigma_rad, &mut self.costs);
+        let weight = self
+            .costs
+            .iter()
+            .fold(Lanes::ZERO, |sum, &four| sum + lanes::exp(Lanes::splat(best.nats) - four));
+        let distance_m = seen.place(&arrangements.all[best.arrangement], &image).norm();
+        let views = f64::from(best.nats) - libm::log(f64::from(lanes::sum(weight)));
+        NEIGHBOUR_NATS + views + size_nats(sightings, group, distance_m)
     }
 
     /// Matches a group of at least two spots; `None` when no view looks like it.
@@ -126,25 +147,29 @@ impl Matcher {
     ) -> Option<Match> {
         let image = Image::of(sightings, group, gravity, &mut self.places)?;
         let mut sums = Sums::default();
-        match self.views.arrangements(group.len()) {
-            Some(arrangements) => {
-                let seen = Ordered::of(&image, sightings, group);
-                for arrangement in arrangements {
-                    if let Some((place, nats)) = seen.compare(arrangement, &image, self.tilt_sigma_rad) {
-                        sums.add(place, nats, Some(arrangement.markers));
+        if let Some(arrangements) = self.views.arrangements(group.len()) {
+            let seen = Ordered::of(&image, sightings, group);
+            let best = seen.costs(&arrangements.quads, &image, self.tilt_sigma_rad, &mut self.costs);
+            sums.best = Some(arrangements.all[best.arrangement].markers);
+            sums.least_nats = f64::from(best.nats);
+            for (four, costs) in arrangements.all.chunks(LANES).zip(&self.costs) {
+                let weights = lanes::exp(Lanes::splat(best.nats) - *costs).to_array();
+                for (arrangement, weight) in four.iter().zip(weights) {
+                    if weight > NEGLIGIBLE {
+                        sums.add(seen.place(arrangement, &image), f64::from(weight));
                     }
                 }
             }
-            None => {
-                let spread = Spread::of(image.places.iter().copied());
-                for outline in &self.views.outlines {
-                    if let Some((place, nats)) = compare(&spread, outline, &image, self.tilt_sigma_rad) {
-                        sums.add(place, nats, None);
-                    }
-                }
+        } else {
+            let spread = Spread::of(image.places.iter().copied());
+            let cost = |outline: &Outline| compare(&spread, outline, &image, self.tilt_sigma_rad);
+            let costs = || self.views.outlines.iter().filter_map(cost);
+            sums.least_nats = costs().map(|(_, nats)| nats).fold(f64::INFINITY, f64::min);
+            for (place, nats) in costs() {
+                sums.add(place, libm::exp(sums.least_nats - nats));
             }
         }
-        sums.finish(&image, size_nats(sightings, group))
+        sums.finish(&image, self.radius_m, |distance_m| size_nats(sightings, group, distance_m))
     }
 }
 
@@ -208,17 +233,13 @@ impl<'a> Image<'a> {
         })
     }
 
-    /// Cost of an elevation and of a turn (its cosine) against the vertical; without gravity the view's own share.
-    fn attitude_nats(&self, elevation_rad: f64, log_prior: f64, cos_turn: f64, tilt_sigma_rad: f64) -> f64 {
-        match self.elevation_rad {
-            None => -log_prior,
-            Some(expected_rad) => {
-                let off = (elevation_rad - expected_rad) / tilt_sigma_rad;
-                // Seen from above or below, a tilt turns the image by more.
-                let turn_sigma = tilt_sigma_rad / libm::cos(elevation_rad).max(0.2);
-                -log_prior + 0.5 * off * off + (1.0 - cos_turn) / (turn_sigma * turn_sigma)
-            }
-        }
+    /// Cost of an elevation and of a turn (its cosine) against the vertical; none without gravity.
+    fn attitude_nats(&self, elevation_rad: f64, cos_turn: f64, tilt_sigma_rad: f64) -> f64 {
+        self.elevation_rad.map_or(0.0, |expected_rad| {
+            let off = elevation_rad - expected_rad;
+            let turn = (1.0 - cos_turn) * firmness(elevation_rad);
+            (0.5 * off * off + turn) / (tilt_sigma_rad * tilt_sigma_rad)
+        })
     }
 
     /// The origin of an airframe whose middle of markers, `middle_m` from it and `ahead_m` nearer, is seen at `depth_m`.
@@ -266,41 +287,89 @@ impl Ordered {
         ordered
     }
 
-    /// The place of the airframe if the spots are these markers, and what that costs; `None` when far from it.
-    fn compare(
-        &self,
-        arrangement: &Arrangement,
-        image: &Image<'_>,
-        tilt_sigma_rad: f64,
-    ) -> Option<(Vector3<f64>, f64)> {
-        // Places as complex numbers: the best turn and scale is the sum of conj(w) z, its size tells how much they agree.
-        let (mut dot, mut cross) = (0.0, 0.0);
-        for (w, z) in arrangement.shape.iter().zip(&self.shape).take(self.count) {
-            dot += w.x * z.x + w.y * z.y;
-            cross += w.x * z.y - w.y * z.x;
+    /// What each arrangement costs: its misfit in shape and in light, its attitude, and what it costs in itself. Returns
+    /// the least of them.
+    fn costs(&self, quads: &[Quad], image: &Image<'_>, tilt_sigma_rad: f64, costs: &mut Vec<Lanes>) -> Best {
+        let splat = |number: f64| Lanes::splat(number as f32);
+        let x: [Lanes; MOST_ORDERED] = std::array::from_fn(|spot| splat(self.shape[spot].x));
+        let y: [Lanes; MOST_ORDERED] = std::array::from_fn(|spot| splat(self.shape[spot].y));
+        let log_flux: [Lanes; MOST_ORDERED] = std::array::from_fn(|spot| splat(self.log_flux[spot]));
+        let per_shape = splat(0.5 / (self.shape_sigma * self.shape_sigma));
+        let per_light = splat(0.5 / (self.log_flux_sigma * self.log_flux_sigma));
+        let tilt = 1.0 / (tilt_sigma_rad * tilt_sigma_rad);
+        let (per_turn, per_elevation) = image.elevation_rad.map_or((0.0, 0.0), |_| (tilt, 0.5 * tilt));
+        let (per_turn, per_elevation) = (splat(per_turn), splat(per_elevation));
+        let elevation_rad = splat(image.elevation_rad.unwrap_or(0.0));
+        costs.clear();
+        costs.extend(quads.iter().map(|quad| {
+            // Places as complex numbers: the best turn and scale is the sum of conj(w) z, its size tells how much they agree.
+            let [mut dot, mut cross, mut light] = [Lanes::ZERO; 3];
+            for spot in 0..self.count {
+                dot += quad.x[spot] * x[spot] + quad.y[spot] * y[spot];
+                cross += quad.x[spot] * y[spot] - quad.y[spot] * x[spot];
+                let off = log_flux[spot] - quad.log_intensity[spot];
+                light += off * off;
+            }
+            let agreement = dot * dot + cross * cross;
+            let cos_turn = dot / (agreement + Lanes::splat(1e-12)).sqrt();
+            let off = quad.elevation_rad - elevation_rad;
+            lanes::positive(Lanes::ONE - agreement) * per_shape
+                + light * per_light
+                + (Lanes::ONE - cos_turn) * quad.firmness * per_turn
+                + off * off * per_elevation
+                + quad.nats
+        }));
+        let least = costs.iter().fold(Lanes::splat(f32::INFINITY), |least, &four| least.fast_min(four));
+        let nats = least.to_array().into_iter().fold(f32::INFINITY, f32::min);
+        let of_best = costs.iter().flat_map(|four| four.to_array()).position(|cost| cost <= nats);
+        Best { nats, arrangement: of_best.unwrap_or(0) }
+    }
+
+    /// The place of the airframe if the spots are these markers: first as from afar, then with each marker as much larger
+    /// in the image as it is nearer.
+    fn place(&self, arrangement: &Arrangement, image: &Image<'_>) -> Vector3<f64> {
+        let Arrangement { shape, size_m, middle_m, ahead_m, .. } = arrangement;
+        let count = self.count as f64;
+        let mut depth_m = f64::INFINITY;
+        let mut place = Vector3::zeros();
+        for _ in 0..ROUNDS_OF_PERSPECTIVE {
+            // Nearer than a few radii perspective is no correction any more, and the match none that counts.
+            let larger: [f64; MOST_ORDERED] = ahead_m.map(|ahead_m| 1.0 / (1.0 - ahead_m / depth_m).max(0.3));
+            let markers =
+                || shape.iter().zip(larger).take(self.count).map(|(w, larger)| w * (size_m * larger));
+            let middle = markers().sum::<Vector2<f64>>() / count;
+            let (mut dot, mut cross, mut square) = (0.0, 0.0, 0.0);
+            for (w, z) in markers().zip(&self.shape) {
+                let w = w - middle;
+                dot += w.x * z.x + w.y * z.y;
+                cross += w.x * z.y - w.y * z.x;
+                square += w.norm_squared();
+            }
+            // A match that is hardly one still gives a place, at most a thousand times as far as it looks.
+            let agreement = f64::sqrt(dot * dot + cross * cross).max(1e-3 * square.sqrt());
+            let turn = Vector2::new(dot, cross) / agreement;
+            depth_m = square / (agreement * image.size);
+            let mean_larger = larger.iter().take(self.count).sum::<f64>() / count;
+            let beside_m =
+                (image.middle * depth_m - turned(middle, turn)) / mean_larger - turned(*middle_m, turn);
+            place = Vector3::new(beside_m.x, beside_m.y, depth_m);
         }
-        let agreement = dot * dot + cross * cross;
-        let misfit = (1.0 - agreement).max(0.0) / (2.0 * self.shape_sigma * self.shape_sigma);
-        if misfit > FAR_NATS || agreement < 0.25 {
-            return None;
-        }
-        let cosine = agreement.sqrt();
-        let turn = Vector2::new(dot, cross) / cosine;
-        let mut flux_nats = 0.0;
-        for (expected, seen) in arrangement.log_intensity.iter().zip(&self.log_flux).take(self.count) {
-            let off = (seen - expected) / self.log_flux_sigma;
-            flux_nats += 0.5 * off * off;
-        }
-        let attitude =
-            image.attitude_nats(arrangement.elevation_rad, arrangement.log_prior, turn.x, tilt_sigma_rad);
-        let nats = misfit + flux_nats + attitude + arrangement.unseen_nats;
-        let depth_m = arrangement.size_m / (image.size * cosine);
-        let middle_m = turned(arrangement.middle_m, turn);
-        Some((image.origin(depth_m, middle_m, arrangement.ahead_m), nats))
+        place
     }
 }
 
-/// Costs beyond this count for nothing beside those of a match, nats.
+/// Rounds until perspective is accounted for: each leaves the share radius over distance of the error before.
+const ROUNDS_OF_PERSPECTIVE: usize = 3;
+
+/// The arrangement that costs least.
+struct Best {
+    nats: f32,
+    arrangement: usize,
+}
+
+/// Views with this share of the best one's weight do not count: all of them together are a percent or two.
+const NEGLIGIBLE: f32 = 1e-3;
+/// An outline so far off is no match, nats.
 const FAR_NATS: f64 = 30.0;
 
 /// The same for a group as a whole: its size and slimness against those of all that a view shows.
@@ -317,8 +386,8 @@ fn compare(
         return None;
     }
     let (sin, cos) = libm::sincos(spread.axis_rad - outline.axis_rad);
-    let attitude = image.attitude_nats(outline.elevation_rad, outline.log_prior, cos.abs(), tilt_sigma_rad);
-    let nats = misfit + attitude + super::views::UNSEEN_NATS * missing as f64;
+    let attitude = image.attitude_nats(outline.elevation_rad, cos.abs(), tilt_sigma_rad);
+    let nats = misfit + attitude - outline.log_prior + super::views::UNSEEN_NATS * missing as f64;
     // The axis is known but for half a turn: with the less likely half the middle would be on the other side.
     let turn = if cos < 0.0 { Vector2::new(-cos, -sin) } else { Vector2::new(cos, sin) };
     let depth_m = outline.size_m / spread.size;
@@ -329,7 +398,7 @@ fn turned(place: Vector2<f64>, turn: Vector2<f64>) -> Vector2<f64> {
     Vector2::new(turn.x * place.x - turn.y * place.y, turn.y * place.x + turn.x * place.y)
 }
 
-/// Weighted sums over views, of places in the axes of the image.
+/// Weighted sums over views, of places in the axes of the image; weights are relative to the best view.
 #[derive(Default)]
 struct Sums {
     weight: f64,
@@ -340,33 +409,26 @@ struct Sums {
 }
 
 impl Sums {
-    fn add(&mut self, place: Vector3<f64>, nats: f64, markers: Option<[usize; MOST_ORDERED]>) {
-        if self.weight == 0.0 || nats < self.least_nats {
-            self.least_nats = nats;
-            self.best = markers;
-        }
-        if nats > FAR_NATS + self.least_nats {
-            return;
-        }
-        let weight = libm::exp(-nats);
+    fn add(&mut self, place: Vector3<f64>, weight: f64) {
         self.weight += weight;
         self.first += weight * place;
         self.second += weight * place * place.transpose();
     }
 
-    fn finish(self, image: &Image<'_>, size_nats: impl Fn(f64) -> f64) -> Option<Match> {
+    fn finish(self, image: &Image<'_>, radius_m: f64, size_nats: impl Fn(f64) -> f64) -> Option<Match> {
         if self.weight <= 0.0 {
             return None;
         }
         let mean = self.first / self.weight;
         let spread = self.second / self.weight - mean * mean.transpose();
         let (depth_m, count) = (mean.z, image.places.len() as f64);
-        let across_m = depth_m * image.sigma / count.sqrt();
-        let along_m = depth_m * image.sigma / image.size;
+        // The grid of views leaves a rest: of the markers' places, and of their size and so of the distance.
+        let across_m = libm::hypot(depth_m * image.sigma / count.sqrt(), GRID_ACROSS * radius_m);
+        let along_m = depth_m * libm::hypot(image.sigma / image.size, GRID_ALONG);
         let noise =
             Matrix3::from_diagonal(&Vector3::new(across_m, across_m, along_m).map(|sigma| sigma * sigma));
         Some(Match {
-            nats: NEIGHBOUR_NATS - libm::log(self.weight) + size_nats(mean.norm()),
+            nats: NEIGHBOUR_NATS + self.least_nats - libm::log(self.weight) + size_nats(mean.norm()),
             mean_m: image.axes * mean,
             covariance_m2: image.axes * (spread + noise) * image.axes.transpose(),
             markers: self.best,
@@ -375,19 +437,16 @@ impl Sums {
 }
 
 /// What it costs that spots of these sizes are at a distance, where no curve of spot sizes is known.
-fn size_nats<'a>(sightings: &'a [Sighting], group: &'a [usize]) -> impl Fn(f64) -> f64 + 'a {
+fn size_nats(sightings: &[Sighting], group: &[usize], distance_m: f64) -> f64 {
     const SIGMA: f64 = 0.3;
     let members = || group.iter().map(|&index| &sightings[index]).filter(|sighting| sighting.range.is_none());
-    move |distance_m| {
-        let nats = |sighting: &Sighting| {
-            let plausible = plausible_m(sighting);
-            let beyond =
-                libm::log(plausible.nearest_m / distance_m).max(libm::log(distance_m / plausible.farthest_m));
-            let off = beyond.max(0.0) / SIGMA;
-            0.5 * off * off
-        };
-        members().map(nats).sum::<f64>() / members().count().max(1) as f64
-    }
+    let nats = |sighting: &Sighting| {
+        let plausible = plausible_m(sighting);
+        let beyond = (plausible.nearest_m / distance_m).max(distance_m / plausible.farthest_m);
+        let off = libm::log(beyond.max(1.0)) / SIGMA;
+        0.5 * off * off
+    };
+    members().map(nats).sum::<f64>() / members().count().max(1) as f64
 }
 
 /// Distances at which a spot of this size is nothing out of the ordinary.

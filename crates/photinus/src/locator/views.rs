@@ -10,6 +10,7 @@ use std::f64::consts::{PI, TAU};
 use nalgebra::{Vector2, Vector3};
 
 use crate::airframe::Airframe;
+use crate::lanes::{LANES, Lanes};
 
 /// Most spots that are put in order one by one.
 pub(super) const MOST_ORDERED: usize = 4;
@@ -42,8 +43,8 @@ pub(super) struct Arrangement {
     pub(super) size_m: f64,
     /// Their middle from the airframe's origin, m.
     pub(super) middle_m: Vector2<f64>,
-    /// How much nearer to the camera than the origin they are on average, m.
-    pub(super) ahead_m: f64,
+    /// How much nearer to the camera than the origin each is, m.
+    pub(super) ahead_m: [f64; MOST_ORDERED],
     /// Logarithms of their intensities, less the mean.
     pub(super) log_intensity: [f64; MOST_ORDERED],
     /// Which markers they are.
@@ -77,11 +78,56 @@ pub(super) struct Outline {
     pub(super) log_prior: f64,
 }
 
+/// Four arrangements side by side, to be compared at once.
+#[derive(Clone, Debug)]
+pub(super) struct Quad {
+    /// As [`Arrangement::shape`], x and y apart.
+    pub(super) x: [Lanes; MOST_ORDERED],
+    pub(super) y: [Lanes; MOST_ORDERED],
+    pub(super) log_intensity: [Lanes; MOST_ORDERED],
+    /// What the view costs in itself, nats: its rarity and the markers not seen.
+    pub(super) nats: Lanes,
+    pub(super) elevation_rad: Lanes,
+    /// How firmly a tilt holds the turn of the image: the squared cosine of the elevation, seen from the side 1.
+    pub(super) firmness: Lanes,
+}
+
+/// All arrangements of one number of spots.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Arrangements {
+    pub(super) all: Vec<Arrangement>,
+    /// The same, four by four; what is missing in the last costs too much to be chosen.
+    pub(super) quads: Vec<Quad>,
+}
+
+impl Arrangements {
+    fn pack(&mut self) {
+        let number = |lanes: &[Arrangement], of: &dyn Fn(&Arrangement) -> f64, missing: f32| {
+            Lanes::new(std::array::from_fn(|lane| lanes.get(lane).map_or(missing, |a| of(a) as f32)))
+        };
+        let pack = |lanes: &[Arrangement]| Quad {
+            x: std::array::from_fn(|spot| number(lanes, &|a| a.shape[spot].x, 0.0)),
+            y: std::array::from_fn(|spot| number(lanes, &|a| a.shape[spot].y, 0.0)),
+            log_intensity: std::array::from_fn(|spot| number(lanes, &|a| a.log_intensity[spot], 0.0)),
+            nats: number(lanes, &|a| a.unseen_nats - a.log_prior, 1e6),
+            elevation_rad: number(lanes, &|a| a.elevation_rad, 0.0),
+            firmness: number(lanes, &|a| firmness(a.elevation_rad), 0.0),
+        };
+        self.quads = self.all.chunks(LANES).map(pack).collect();
+    }
+}
+
+/// Seen from above or below, a tilt turns the image by more.
+pub(super) fn firmness(elevation_rad: f64) -> f64 {
+    let cos = libm::cos(elevation_rad).max(0.2);
+    cos * cos
+}
+
 /// Everything that an airframe can look like.
 #[derive(Clone, Debug)]
 pub(super) struct Views {
     /// By number of spots, from two; empty where outlines serve.
-    arrangements: [Vec<Arrangement>; MOST_ORDERED - 1],
+    arrangements: [Arrangements; MOST_ORDERED - 1],
     pub(super) outlines: Vec<Outline>,
     /// Most markers that show at once.
     pub(super) most_visible: usize,
@@ -121,9 +167,9 @@ impl Views {
     }
 
     /// The arrangements of `spots` markers; `None` where only outlines tell.
-    pub(super) fn arrangements(&self, spots: usize) -> Option<&[Arrangement]> {
+    pub(super) fn arrangements(&self, spots: usize) -> Option<&Arrangements> {
         let arrangements = self.arrangements.get(spots.checked_sub(2)?)?;
-        (!arrangements.is_empty()).then_some(arrangements)
+        (!arrangements.all.is_empty()).then_some(arrangements)
     }
 
     fn add(&mut self, seen: &[Seen], elevation_rad: f64, log_prior: f64) {
@@ -133,6 +179,7 @@ impl Views {
         self.lone_nats += libm::exp(log_prior) * (unseen_nats - brightest);
         self.outlines.push(outline(seen, elevation_rad, log_prior));
         for (spots, arrangements) in (2..).zip(&mut self.arrangements) {
+            let arrangements = &mut arrangements.all;
             if arrangements.len() > MOST_ARRANGEMENTS {
                 continue;
             }
@@ -147,12 +194,13 @@ impl Views {
     fn finish(&mut self, log_total: f64) {
         self.lone_nats /= libm::exp(log_total).max(f64::MIN_POSITIVE);
         for arrangements in &mut self.arrangements {
-            if arrangements.len() > MOST_ARRANGEMENTS {
-                arrangements.clear();
+            if arrangements.all.len() > MOST_ARRANGEMENTS {
+                arrangements.all.clear();
             }
-            for arrangement in arrangements {
+            for arrangement in &mut arrangements.all {
                 arrangement.log_prior -= log_total;
             }
+            arrangements.pack();
         }
         for outline in &mut self.outlines {
             outline.log_prior -= log_total;
@@ -220,7 +268,7 @@ fn arrange(
         shape: [Vector2::zeros(); MOST_ORDERED],
         size_m,
         middle_m,
-        ahead_m: chosen().map(|seen| seen.ahead_m).sum::<f64>() / count,
+        ahead_m: [0.0; MOST_ORDERED],
         log_intensity: [0.0; MOST_ORDERED],
         markers: [0; MOST_ORDERED],
         unseen_nats: all_unseen_nats - chosen().map(cost_of_unseen).sum::<f64>(),
@@ -231,6 +279,7 @@ fn arrange(
         // Markers one behind the other have no shape; they match nothing.
         arrangement.shape[index] = (seen.place_m - middle_m) / size_m.max(1e-9);
         arrangement.log_intensity[index] = libm::log(seen.intensity) - mean_log;
+        arrangement.ahead_m[index] = seen.ahead_m;
         arrangement.markers[index] = seen.marker;
     }
     arrangement

@@ -13,9 +13,9 @@
 
 use nalgebra::{Matrix2, Vector2};
 
-use super::lanes::{self, Lanes};
 use super::patch::Patch;
 use crate::camera::Pixel;
+use crate::lanes::{self, Lanes};
 
 /// Noise of a pixel with signal s: `dark` + `shot` x max(s, 0), grey levels^2.
 #[derive(Clone, Copy, Debug)]

@@ -19,7 +19,6 @@ mod background;
 mod centroid;
 mod detector;
 mod grouping;
-mod lanes;
 mod patch;
 mod rejection;
 mod runs;

@@ -3,9 +3,9 @@
 //! In: the frame, a place and a reach. Out: the signal in a square window, in rows of whole lanes so that the sums over it
 //! vectorise alike on every machine, and the background with its noise from a frame of pixels around the window.
 
-use super::lanes::{self, LANES, Lanes};
 use crate::camera::Pixel;
 use crate::frame::FrameView;
+use crate::lanes::{self, LANES, Lanes};
 
 /// Width of the ring of background pixels, px.
 const RING_PX: i32 = 2;

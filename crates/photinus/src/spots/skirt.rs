@@ -15,9 +15,9 @@
 use nalgebra::{Matrix2, Matrix2x4, Matrix4, Vector4};
 
 use super::centroid::PixelVariance;
-use super::lanes::{self, Lanes};
 use super::patch::Patch;
 use crate::camera::Pixel;
+use crate::lanes::{self, Lanes};
 
 /// Skirt pixels needed: twice the unknowns.
 const FEWEST_PX: f32 = 8.0;

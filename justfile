@@ -1,0 +1,27 @@
+# One command for each chore; `.ci/run` takes the same steps as `check`.
+
+# Formatting, lints, documentation, tests: what must be green before a change lands.
+check: format-check lint doc test
+
+test:
+    cargo test --workspace --locked
+
+lint:
+    cargo clippy --workspace --all-targets --locked -- -D warnings
+
+format:
+    cargo fmt --all
+
+format-check:
+    cargo fmt --all -- --check
+
+doc:
+    RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --locked
+
+# Times beside floors measured in the same run.
+bench:
+    cargo bench -p photinus
+
+# A minute of fuzzing for one target, e.g. `just fuzz spots`; needs cargo-fuzz and a nightly toolchain.
+fuzz target:
+    cargo +nightly fuzz run {{target}} -- -max_total_time=60

@@ -101,7 +101,7 @@ impl InputArgs {
                 input.dataset = Some(dataset);
                 Ok(input)
             }
-            [path] if path.as_os_str() == "-" || kind_of(path).map_err(Failure::input)? == Kind::Video => {
+            [path] if is_video(path)? => {
                 let frames = FrameSource::y4m(open(path)?, path).map_err(Failure::input)?;
                 Ok(Input::new(frames, None, self.inputs.clone()))
             }
@@ -138,6 +138,12 @@ impl Entry {
         let record = FrameRecord { neighbours: Vec::new(), ..record };
         Self { record, image: None, gravity: None, conversions: Vec::new() }
     }
+}
+
+/// Whether an input is a video. What can be read only once (standard input, a pipe) is taken for one.
+fn is_video(path: &Path) -> std::result::Result<bool, Failure> {
+    let is_pipe = path.exists() && !path.is_file();
+    Ok(path.as_os_str() == "-" || is_pipe || kind_of(path).map_err(Failure::input)? == Kind::Video)
 }
 
 /// Image files: all of them must be there, whatever they hold.

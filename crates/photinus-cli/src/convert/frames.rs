@@ -158,7 +158,7 @@ fn rate_of(head: &[photinus_io::Result<Entry>]) -> Option<f64> {
 /// A rate as a fraction: exact for whole numbers, to a thousandth for others.
 fn fraction(rate_hz: f64) -> (u32, u32) {
     let thousandths = (1e3 * rate_hz).round() as u32;
-    if thousandths % 1000 == 0 { (thousandths / 1000, 1) } else { (thousandths, 1000) }
+    if thousandths.is_multiple_of(1000) { (thousandths / 1000, 1) } else { (thousandths, 1000) }
 }
 
 fn positive(text: &str) -> Result<f64, String> {

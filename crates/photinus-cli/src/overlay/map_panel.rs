@@ -125,7 +125,7 @@ impl<'a> MapPanel<'a> {
         let colour = colours::neighbour(number);
         let way = self.ground.of(&neighbour.bearing.into());
         let (distance, slant) = (&neighbour.distance_m, way.norm());
-        if !(slant >= 1e-3 && slant <= 1.0 + 1e-9) {
+        if !(1e-3..=1.0 + 1e-9).contains(&slant) {
             // Straight above or below (or no direction at all, in results of others): a point.
             return canvas.disc(self.camera, 6.0 * self.unit, colour);
         }

@@ -171,7 +171,7 @@ fn spot_curves_that_are_none() {
         &stage,
         &format!("{LOCATE} --spot-curve curve.toml"),
         2,
-        &["curve.toml: ", "; an example: upper"],
+        &["curve.toml: an envelope of offset 1 px, scale -3 px m^2", "; an example: upper"],
     );
     stage.file("curve.toml", "upper = { offset_px = 1, scale_px_m2 = 3, shift = 0 }\n");
     refuses(

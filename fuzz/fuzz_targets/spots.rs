@@ -25,6 +25,7 @@ fn check(bytes: &[u8]) -> Option<()> {
             widest_px: 1.0 + f64::from(widest),
             elongation: 1.0 + f64::from(elongation) / 16.0,
             faintest: f64::from(faintest) / 255.0,
+            faint_dn: 48.0,
         },
     };
     let mut detector = Detector::new(settings).ok()?;

@@ -52,11 +52,11 @@ fn settings() -> impl Strategy<Value = Settings> {
         (1u8..).prop_map(Brightness::Contrast),
     ];
     let number = |most: f64| prop_oneof![Just(0.0), 0.0..most];
-    (brightness, number(5.0), number(1.0), 1.0..60.0, 1.0..10.0, number(1.0)).prop_map(
-        |(brightness, read_dn, shot, widest_px, elongation, faintest)| Settings {
+    (brightness, number(5.0), number(1.0), 1.0..60.0, 1.0..10.0, number(1.0), number(255.0)).prop_map(
+        |(brightness, read_dn, shot, widest_px, elongation, faintest, faint_dn)| Settings {
             brightness,
             noise: Noise { read_dn, shot },
-            shape: Shape { widest_px, elongation, faintest },
+            shape: Shape { widest_px, elongation, faintest, faint_dn },
         },
     )
 }

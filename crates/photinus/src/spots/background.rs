@@ -255,6 +255,27 @@ mod tests {
     }
 
     #[test]
+    fn a_marker_in_every_tile_is_no_noise() {
+        let pixels: Vec<u8> =
+            (0..160 * 160).map(|i| if i % 16 < 5 && (i / 160) % 16 < 5 { 255 } else { 10 }).collect();
+        let mut background = Background::default();
+        background.measure(&FrameView::packed(&pixels, 160, 160).unwrap(), Brightness::Contrast(20));
+        assert!(background.threshold.iter().all(|&threshold| threshold == 30));
+    }
+
+    #[test]
+    fn what_fills_a_corner_is_not_its_own_surroundings() {
+        for (width, height, side) in [(98, 66, 2), (96, 64, 20)] {
+            let pixels: Vec<u8> = (0..width * height)
+                .map(|i| if i % width >= width - side && i / width >= height - side { 255 } else { 10 })
+                .collect();
+            let mut background = Background::default();
+            background.measure(&FrameView::packed(&pixels, width, height).unwrap(), Brightness::Contrast(20));
+            assert!(background.threshold.iter().all(|&threshold| threshold == 30), "{side} px");
+        }
+    }
+
+    #[test]
     fn a_dense_grid_of_markers_does_not_raise_the_level() {
         let pixels: Vec<u8> =
             (0..160 * 160).map(|i| if i % 8 == 0 && (i / 160) % 8 == 0 { 255 } else { 10 }).collect();

@@ -259,6 +259,27 @@ mod tests {
     }
 
     #[test]
+    fn a_flat_plateau_is_one_part_without_any_noise() {
+        let pixels = [255, 0, 255, 255, 255, 255];
+        let frame = FrameView::packed(&pixels, 3, 2).unwrap();
+        let runs = [(0, 0, 1), (0, 2, 3), (1, 0, 3)].map(|(v, start, end)| Run { v, start, end });
+        let silent = Noise { read_dn: 0.0, shot: 0.0 };
+        assert!(Splitter::default().split(&frame, &runs, silent).is_none());
+    }
+
+    #[test]
+    fn the_fainter_of_two_keeps_its_own_side() {
+        let (pixels, runs) =
+            runs_of(&[&[40, 90, 60, 40, 60, 40], &[90, 250, 110, 60, 140, 60], &[40, 90, 60, 40, 60, 40]]);
+        let frame = FrameView::packed(&pixels, 6, 3).unwrap();
+        let mut splitter = Splitter::default();
+        let parts = splitter.split(&frame, &runs, Noise::default()).unwrap();
+        let areas = [0, 1]
+            .map(|part| parts.iter().filter(|(p, _)| *p == part).map(|(_, run)| run.len()).sum::<u32>());
+        assert!(areas[1] >= 8, "{areas:?}");
+    }
+
+    #[test]
     fn every_pixel_belongs_to_one_part() {
         let (pixels, runs) = runs_of(&[&[30, 200, 60, 60, 180, 40], &[20, 60, 30, 30, 90, 40]]);
         let frame = FrameView::packed(&pixels, 6, 2).unwrap();

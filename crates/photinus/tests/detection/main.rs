@@ -5,6 +5,7 @@
 //! photinus-io), allocations (`allocations.rs`).
 
 #![allow(clippy::print_stdout, reason = "the measured numbers are worth reading")]
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 mod background;
 mod crowded;

@@ -9,15 +9,20 @@ use std::fs;
 use std::path::PathBuf;
 
 use nalgebra::{Rotation3, UnitQuaternion, Vector3};
-use photinus::airframe::{Airframe, Ring};
+use photinus::airframe::Airframe;
 use photinus::camera::{Bearing, Camera, Ideal, IdealLaw, Model, Pixel};
 use photinus::frame::FrameView;
-use photinus_io::airframe::toml_text;
+use photinus_io::airframe::parse_airframe;
 use photinus_io::camera::write_camera_toml;
 use photinus_io::dataset::{DatasetInfo, DatasetWriter, TruthFrame, TruthLed, TruthNeighbour};
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64;
 
+const AIRFRAME: &str = "\
+# Six arms of 0.4 m, an LED at the end of each.
+name = \"hexarotor-0.4\"
+ring = { arms = 6, radius_m = 0.4, leds_per_arm = 1, splay_deg = 0.0 }
+";
 const WIDTH: usize = 752;
 const HEIGHT: usize = 480;
 const FRAMES: u32 = 4;
@@ -30,8 +35,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let folder = PathBuf::from(std::env::args().nth(1).ok_or("say which folder to write")?);
     let lens = Ideal::new(IdealLaw::Equidistant, [1.0 / 3.7673e-3; 2], Pixel::new(375.5, 239.5))?;
     let camera = Camera::new(Model::Ideal(lens), WIDTH, HEIGHT, None)?;
-    let ring = Ring { arms: 6, radius_m: 0.4, leds_per_arm: 1, splay_rad: 0.0 };
-    let airframe = Airframe::from_ring("hexarotor-0.4", ring)?;
+    let airframe = parse_airframe(AIRFRAME, &folder.join("airframe.toml"))?.airframe;
 
     fs::create_dir_all(&folder)?;
     write_camera_toml(
@@ -39,10 +43,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         &mut fs::File::create(folder.join("camera.toml"))?,
         &folder.join("camera.toml"),
     )?;
-    fs::write(folder.join("airframe.toml"), toml_text(&airframe))?;
+    fs::write(folder.join("airframe.toml"), AIRFRAME)?;
     let info = DatasetInfo::parse(
         "camera = \"camera.toml\"\nairframe = \"airframe.toml\"\nexposure_us = 1000.0\nrate_hz = 5.0\n",
-        &folder.join("dataset.toml"),
+        folder.join("dataset.toml"),
     )?;
     let mut writer = DatasetWriter::create(&folder, &info)?;
     let mut rng = Pcg64::new(2018, 6);

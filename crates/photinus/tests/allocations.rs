@@ -1,11 +1,15 @@
-//! A warm detector allocates nothing: every request to the allocator is counted.
+//! A warm detector and a warm locator allocate nothing: every request to the allocator is counted.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
+use nalgebra::Vector3;
+use photinus::airframe::{Airframe, Ring};
+use photinus::camera::{Camera, Ideal, IdealLaw, Model, Pixel};
 use photinus::frame::{FrameView, Mask};
+use photinus::locator::{self, Locator};
 use photinus::spots::{Brightness, Detector, Settings};
 use rand_distr::{Distribution, Uniform};
 use rand_pcg::Pcg64;
@@ -113,4 +117,25 @@ fn a_warm_detector_allocates_nothing() {
         assert_eq!(requests_during(|| frames.iter().for_each(|pixels| detect(pixels))), 0, "{brightness:?}");
         assert!(spots > 1000, "{spots} spots");
     }
+}
+
+#[test]
+fn a_warm_locator_allocates_nothing() {
+    let mut rng = Pcg64::new(32, 7);
+    let warm_up: Vec<Vec<u8>> = (0..6).map(|_| frame(300, &mut rng)).collect();
+    let frames: Vec<Vec<u8>> = (0..30).map(|i| frame(4 * i, &mut rng)).collect();
+    let lens = Ideal::new(IdealLaw::Equidistant, [130.0; 2], Pixel::new(187.5, 119.5)).unwrap();
+    let camera = Camera::new(Model::Ideal(lens), WIDTH, HEIGHT, None).unwrap();
+    let ring = Ring { arms: 6, radius_m: 0.4, leds_per_arm: 1, splay_rad: 0.0 };
+    let airframe = Airframe::from_ring("hexarotor", ring).unwrap();
+    let mut locator = Locator::new(camera, &airframe, None, locator::Settings::default()).unwrap();
+    let mut neighbours = 0;
+    let mut locate = |pixels: &[u8]| {
+        let frame = FrameView::packed(pixels, WIDTH, HEIGHT).unwrap();
+        let gravity = Vector3::y_axis();
+        neighbours += locator.locate(&frame, Some(&gravity), &mut |_| ()).unwrap().neighbours.len();
+    };
+    warm_up.iter().for_each(|pixels| locate(pixels));
+    assert_eq!(requests_during(|| frames.iter().for_each(|pixels| locate(pixels))), 0);
+    assert!(neighbours > 300, "{neighbours}");
 }

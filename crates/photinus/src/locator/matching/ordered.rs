@@ -96,41 +96,34 @@ impl Ordered {
         Best { nats, arrangement: of_best.unwrap_or(0) }
     }
 
-    /// The place of the airframe if the spots are these markers: first as from afar, then with each marker as much larger
-    /// in the image as it is nearer.
+    /// The place of the airframe if the spots are these markers, each as much larger in the image as it is nearer.
     pub(super) fn place(&self, arrangement: &Arrangement, image: &Image<'_>) -> Vector3<f64> {
         let Arrangement { shape, size_m, middle_m, ahead_m, .. } = arrangement;
-        let count = self.count as f64;
-        let mut depth_m = f64::INFINITY;
-        let mut place = Vector3::zeros();
-        for _ in 0..ROUNDS_OF_PERSPECTIVE {
-            // Nearer than a few radii perspective is no correction any more, and the match none that counts.
-            let larger: [f64; MOST_ORDERED] = ahead_m.map(|ahead_m| 1.0 / (1.0 - ahead_m / depth_m).max(0.3));
-            let markers =
-                || shape.iter().zip(larger).take(self.count).map(|(w, larger)| w * (size_m * larger));
-            let middle = markers().sum::<Vector2<f64>>() / count;
-            let (mut dot, mut cross, mut square) = (0.0, 0.0, 0.0);
-            for (w, z) in markers().zip(&self.shape) {
-                let w = w - middle;
-                dot += w.x * z.x + w.y * z.y;
-                cross += w.x * z.y - w.y * z.x;
-                square += w.norm_squared();
-            }
-            // A match that is hardly one still gives a place, at most a thousand times as far as it looks.
-            let agreement = f64::sqrt(dot * dot + cross * cross).max(1e-3 * square.sqrt());
-            let turn = Vector2::new(dot, cross) / agreement;
-            depth_m = square / (agreement * image.size);
-            let mean_larger = larger.iter().take(self.count).sum::<f64>() / count;
-            let beside_m =
-                (image.middle * depth_m - turned(middle, turn)) / mean_larger - turned(*middle_m, turn);
-            place = Vector3::new(beside_m.x, beside_m.y, depth_m);
+        let per_spot = 1.0 / self.count as f64;
+        // How much nearer each marker is matters in the second order only: a distance as from afar will do for that.
+        let far_m = size_m / image.size + ahead_m.iter().take(self.count).sum::<f64>() * per_spot;
+        // Nearer than a few radii perspective is no correction any more, and the match none that counts.
+        let larger: [f64; MOST_ORDERED] = ahead_m.map(|ahead_m| far_m / (far_m - ahead_m).max(0.3 * far_m));
+        let place_m: [Vector2<f64>; MOST_ORDERED] =
+            std::array::from_fn(|spot| shape[spot] * (size_m * larger[spot]));
+        let middle = place_m.iter().take(self.count).sum::<Vector2<f64>>() * per_spot;
+        let (mut dot, mut cross, mut square) = (0.0, 0.0, 0.0);
+        for (place, z) in place_m.iter().zip(&self.shape).take(self.count) {
+            let w = place - middle;
+            dot += w.x * z.x + w.y * z.y;
+            cross += w.x * z.y - w.y * z.x;
+            square += w.norm_squared();
         }
-        place
+        // A match that is hardly one still gives a place, at most a thousand times as far as it looks.
+        let agreement = f64::sqrt(dot * dot + cross * cross).max(1e-3 * square.sqrt());
+        let turn = Vector2::new(dot, cross) / agreement;
+        let depth_m = square / (agreement * image.size);
+        let mean_larger = larger.iter().take(self.count).sum::<f64>() * per_spot;
+        let beside_m =
+            (image.middle * depth_m - turned(middle, turn)) / mean_larger - turned(*middle_m, turn);
+        Vector3::new(beside_m.x, beside_m.y, depth_m)
     }
 }
-
-/// Rounds until perspective is accounted for: each leaves the share radius over distance of the error before.
-pub(super) const ROUNDS_OF_PERSPECTIVE: usize = 3;
 
 /// The arrangement that costs least.
 pub(super) struct Best {

@@ -35,7 +35,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let folder = PathBuf::from(std::env::args().nth(1).ok_or("say which folder to write")?);
     let lens = Ideal::new(IdealLaw::Equidistant, [1.0 / 3.7673e-3; 2], Pixel::new(375.5, 239.5))?;
     let camera = Camera::new(Model::Ideal(lens), WIDTH, HEIGHT, None)?;
-    let airframe = parse_airframe(AIRFRAME, &folder.join("airframe.toml"))?.airframe;
+    let airframe = parse_airframe(AIRFRAME, folder.join("airframe.toml"))?.airframe;
 
     fs::create_dir_all(&folder)?;
     write_camera_toml(

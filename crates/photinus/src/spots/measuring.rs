@@ -56,7 +56,7 @@ impl Meter {
         {
             return Err(Reason::Background);
         }
-        self.patch.read(frame, nearest_pixel(part.guess), reach_px(window.radius_px), level);
+        self.patch.read(frame, nearest_pixel(part.guess), reach_px(window.radius_px), &window.around);
         let flux = self.patch.flux(part.guess, window.radius_px as f32);
         let noise = settings.noise;
         let dark = (noise.read_dn * noise.read_dn + 1.0 / 12.0) as f32;
@@ -85,8 +85,7 @@ impl Meter {
     ) -> (Pixel, Matrix2<f64>) {
         let (radius, saturated_px) = (part.radius_px, part.outline.saturated_px);
         let skirt = |reach_px: f64| {
-            let saturation = f32::from(u8::MAX) - window.around.level;
-            skirt::fit(&self.patch, part.guess, reach_px as f32, saturation, variance)
+            skirt::fit(&self.patch, part.guess, reach_px as f32, lowest_saturated(window), variance)
         };
         let balanced = || {
             let (centre, covariance) =
@@ -124,7 +123,7 @@ fn open_window(frame: &FrameView<'_>, part: &Part, room_px: f64) -> Window {
     let radius = part.radius_px;
     let room = room_px.max(radius + 0.8).max(1.9);
     let around = |radius_px: f64| {
-        let level = Surroundings { level: f32::from(part.level), variance: 0.0 };
+        let level = Surroundings { level: f32::from(part.level), slope: [0.0; 2], variance: 0.0 };
         patch::surroundings(frame, nearest_pixel(part.guess), reach_px(radius_px), part.bright)
             .unwrap_or(level)
     };
@@ -140,6 +139,12 @@ fn open_window(frame: &FrameView<'_>, part: &Part, room_px: f64) -> Window {
         around: if whole > narrow { around(whole) } else { window.around },
         crowded: room_px < part.most_room_px().min(spot_px),
     }
+}
+
+/// The lowest signal that a pixel at 255 can have anywhere in the window.
+fn lowest_saturated(window: &Window) -> f32 {
+    let Surroundings { level, slope: [rise_u, rise_v], .. } = window.around;
+    f32::from(u8::MAX) - level - (rise_u.abs() + rise_v.abs()) * reach_px(window.radius_px) as f32
 }
 
 fn nearest_pixel(place: Pixel) -> (i32, i32) {

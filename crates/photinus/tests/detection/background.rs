@@ -128,3 +128,19 @@ fn markers_are_found_in_front_of_skies_but_at_their_edges() {
         }
     }
 }
+
+#[test]
+fn a_slope_of_the_background_does_not_draw_the_centre_uphill() {
+    let mut rng = Pcg64::new(5, 17);
+    let mut worst: f64 = 0.0;
+    for round in 0..40 {
+        let centre = Pixel::new(100.0 + 0.13 * f64::from(round), 60.0 - 0.07 * f64::from(round));
+        let mut scene = Scene::new(200, 120, |u, _| 10.0 + 0.8 * u);
+        scene.marker(centre, 1.0, 60.0);
+        let found = scene.detect(&scene.noisy(0.45, &mut rng), RULES[1]);
+        let spot = spot_at(&found, centre, 1.0);
+        let off = libm::hypot(spot.centre.u - centre.u, spot.centre.v - centre.v);
+        worst = worst.max(off / spot.sigma_px());
+    }
+    assert!(worst < 5.0, "{worst} sigma");
+}

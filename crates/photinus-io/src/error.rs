@@ -104,7 +104,10 @@ impl fmt::Display for Place {
 
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}", self.file.display())?;
+        match self.file.as_os_str() == "-" {
+            true => write!(f, "standard input")?,
+            false => write!(f, "{}", self.file.display())?,
+        }
         if let Some(place) = &self.place {
             write!(f, ", {place}")?;
         }
@@ -120,6 +123,11 @@ impl std::error::Error for Error {
     fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
         Some(&self.cause)
     }
+}
+
+/// What is wrong with JSON, without the place that the message ends in.
+pub(crate) fn json_reason(error: &serde_json::Error) -> String {
+    in_plain_words(error.to_string().split(" at line ").next().unwrap_or_default())
 }
 
 /// What a deserializer says, in the words of a file rather than of Rust.

@@ -112,6 +112,7 @@ pub(crate) fn create(path: &Path) -> Result<File, Failure> {
     File::create(path).map_err(|error| {
         let advice = match error.kind() {
             std::io::ErrorKind::NotFound => "make its folder first, or write elsewhere",
+            std::io::ErrorKind::IsADirectory => "name a file, not a folder",
             _ => "write elsewhere, or change the permissions",
         };
         Failure::input(Error::io(path, error).advise(advice))

@@ -42,7 +42,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     fs::write(folder.join("airframe.toml"), toml_text(&airframe))?;
     let info = DatasetInfo::parse(
         "camera = \"camera.toml\"\nairframe = \"airframe.toml\"\nexposure_us = 1000.0\nrate_hz = 5.0\n",
-        &folder.join("dataset.toml"),
+        folder.join("dataset.toml"),
     )?;
     let mut writer = DatasetWriter::create(&folder, &info)?;
     let mut rng = Pcg64::new(2018, 6);

@@ -134,6 +134,12 @@ pub(crate) fn json_reason(error: &serde_json::Error) -> String {
 pub(crate) fn in_plain_words(reason: &str) -> String {
     let mut words = reason.trim().replace('\n', ", ").replace(" field `", " key `");
     for (rust, plain) in [
+        ("EOF while parsing", "it ends inside"),
+        ("non-finite float", "no finite number:"),
+        (" rejected by the configured policy", ""),
+        (", set DuplicateKeyPolicy in Options if acceptable", ""),
+        ("invalid floating point", "no number where one is expected"),
+        ("invalid u64", "no whole number, 0 or more, where one is expected"),
         ("expected f64", "expected a number"),
         ("expected u8", "expected a whole number of 0 to 255"),
         ("expected u32", "expected a whole number, 0 or more"),

@@ -22,7 +22,7 @@ pub(super) fn text<'a>(bytes: &'a [u8], path: &Path) -> Result<&'a str> {
     if let Some((_, what)) = picture.iter().find(|(magic, _)| bytes.starts_with(magic)) {
         return Err(wrong(what));
     }
-    let text = std::str::from_utf8(bytes).map_err(|_| wrong("no text in UTF-8"))?;
+    let text = std::str::from_utf8(bytes).map_err(|_| wrong("binary data, or text other than UTF-8"))?;
     if text.contains('\0') {
         return Err(wrong("binary data"));
     }
@@ -139,7 +139,7 @@ mod tests {
             (b"\x89PNG\r\n\x1a\n", "a PNG picture"),
             (b"\xff\xd8\xff\xe0", "a JPEG picture"),
             (b"a\0b", "this is binary data"),
-            (b"\xfe\xff", "this is no text"),
+            (b"\xfe\xff", "this is binary data, or text other than UTF-8"),
             (b"# only\n\n", "nothing but comments"),
             (b"# X Y Z Type Pitch Yaw id\n0.17 0.17 0 0 0.0 0 0\n", "an LED layout"),
             (b"0,0,1,0\n1,1,0,0\n", "a list of blink sequences"),

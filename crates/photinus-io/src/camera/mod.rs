@@ -129,6 +129,11 @@ impl CameraFile {
 /// What to do about a value that no calibration has.
 const RENEW: &str = "correct it there, or export the calibration again";
 
+/// What to do about a text that a parser refused.
+fn advice_for(reason: &str) -> &'static str {
+    if reason.starts_with("missing key") { "add it" } else { RENEW }
+}
+
 /// A camera error in a file, with what to do about it.
 fn camera_error(path: &Path, error: CameraError) -> Error {
     use CameraError as E;

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use serde::de::{DeserializeOwned, IgnoredAny};
 
-use super::RENEW;
+use super::advice_for;
 use crate::error::in_plain_words;
 use crate::{Error, Place, Result};
 
@@ -15,7 +15,7 @@ pub(super) fn parse<T: DeserializeOwned>(text: &str, path: &Path) -> Result<T> {
         let message = error.without_snippet().to_string();
         // the place says the line, with the file, as every error does
         let reason = in_plain_words(message.split(" at line ").next().unwrap_or_default());
-        let advice = if reason.starts_with("missing key") { "add it" } else { RENEW };
+        let advice = advice_for(&reason);
         let wrong = Error::format(path, reason).advise(advice);
         match error.location().and_then(|location| usize::try_from(location.line()).ok()) {
             Some(line) if line > 0 => wrong.at(Place::Line(line)),

@@ -149,18 +149,17 @@ fn is_video(path: &Path) -> std::result::Result<bool, Failure> {
 /// Image files: all of them must be there, whatever they hold.
 fn images(paths: &[PathBuf]) -> std::result::Result<Input, Failure> {
     for path in paths {
-        if path.is_dir() {
-            return Err(Failure::Input(format!(
-                "{}: a folder among several inputs; name one dataset folder, or image files",
-                path.display()
-            )));
+        let refuse =
+            |reason: &str, advice: &str| Err(Failure::input(Error::format(path, reason).advise(advice)));
+        if path.as_os_str() == "-" {
+            return refuse("a stream among several inputs", "name it alone, or image files");
         }
-        let file = kind_of(path).map_err(Failure::input)?;
-        if file == Kind::Video {
-            return Err(Failure::Input(format!(
-                "{}: a video among several inputs; name one video, or image files",
-                path.display()
-            )));
+        match kind_of(path).map_err(Failure::input)? {
+            Kind::Dataset => {
+                return refuse("a folder among several inputs", "name one dataset folder, or image files");
+            }
+            Kind::Video => return refuse("a video among several inputs", "name one video, or image files"),
+            _ => {}
         }
     }
     let count = paths.len() as u64;

@@ -27,8 +27,13 @@ pub(crate) enum Kind {
 /// like; what is no text, for an image.
 ///
 /// # Errors
-/// [`Error`] when it cannot be read.
+/// [`Error`] when it cannot be read, or is standard input, which can be read only once.
 pub(crate) fn kind_of(path: &Path) -> Result<Kind> {
+    if path.as_os_str() == "-" {
+        return Err(
+            Error::format(path, "what it holds can be told of files only").advise("save it to a file first")
+        );
+    }
     if path.is_dir() {
         return Ok(Kind::Dataset);
     }
@@ -86,8 +91,8 @@ fn kind_of_keys(first: &str, text: &str) -> Kind {
     let is_toml = first.starts_with('[') || first.contains('=');
     match is_toml {
         true if text.contains("[[led]]") || text.contains("[ring]") || has("ring") => Kind::Airframe,
-        true if has("exposure_us") || has("airframe") => Kind::DatasetTable,
         true if text.contains("scale_px_m2") => Kind::SpotCurve,
+        true if has("exposure_us") || has("airframe") => Kind::DatasetTable,
         true if has("name") && !has("model") => Kind::Airframe,
         _ => Kind::Camera,
     }
@@ -113,7 +118,7 @@ mod tests {
             ("name = \"hexa\"\nring = { arms = 6 }\n", Kind::Airframe),
             ("camera = \"c\"\nairframe = \"a\"\nexposure_us = 1.0\n", Kind::DatasetTable),
             ("model = \"ocam\"\n", Kind::Camera),
-            ("[upper]\nscale_px_m2 = 3\n", Kind::SpotCurve),
+            ("exposure_us = 1000\n[upper]\nscale_px_m2 = 3\n", Kind::SpotCurve),
             ("image_width: 640\n", Kind::Camera),
             ("", Kind::Camera),
         ] {

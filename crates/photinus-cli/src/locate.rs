@@ -7,20 +7,18 @@ use photinus::airframe::Airframe;
 use photinus::camera::{Bearing, Camera};
 use photinus::locator::{Locator, Settings, Stage};
 use photinus::ranging::SpotCurve;
-use photinus::spots::{Brightness, Spot};
-use photinus_io::airframe::read_airframe;
+use photinus::spots::Spot;
 use photinus_io::dataset::Dataset;
 use photinus_io::results::NeighbourRecord;
 use photinus_io::{Error, Result};
 
-use crate::camera_file;
+use crate::beforehand::{self, Conditions};
 use crate::clock::Clock;
 use crate::detect::in_frame;
 use crate::failure::Failure;
 use crate::input::{Entry, Input, InputArgs};
 use crate::output::OutputArgs;
 use crate::run;
-use crate::spot_curve::read_spot_curve;
 use crate::spot_options::{SpotArgs, mask_of};
 use crate::terminal::Terminal;
 
@@ -45,7 +43,7 @@ pub(crate) struct Args {
     #[command(flatten)]
     input: InputArgs,
     /// Spots of another detector in place of frames: JSON lines, see docs/file-formats.md
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["contrast", "threshold", "mask"])]
     spots: Option<PathBuf>,
     /// The camera's calibration, in any format that `photinus info` knows [default: that of the dataset]
     #[arg(long, value_name = "FILE")]
@@ -66,7 +64,7 @@ pub(crate) struct Args {
     spot_options: SpotArgs,
     #[command(flatten)]
     output: OutputArgs,
-    /// Write a table with a row per neighbour
+    /// Write a table with a row per neighbour; - is standard output
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
 }
@@ -86,11 +84,7 @@ impl Args {
 
     fn camera(&self, dataset: Option<&Dataset>, terminal: &Terminal) -> std::result::Result<Camera, Failure> {
         let path = needed(self.camera.as_deref(), "camera", dataset.map(|d| d.path(&d.info().camera)))?;
-        let file = camera_file::read(&path).map_err(Failure::input)?;
-        for oddity in &file.oddities {
-            terminal.note(format_args!("{}: {oddity}", path.display()));
-        }
-        Ok(file.camera)
+        Ok(beforehand::camera(&path, terminal).map_err(Failure::input)?.camera)
     }
 
     fn airframe(
@@ -99,11 +93,7 @@ impl Args {
         terminal: &Terminal,
     ) -> std::result::Result<Airframe, Failure> {
         let path = needed(self.airframe.as_deref(), "airframe", dataset.map(|d| d.path(&d.info().airframe)))?;
-        let file = read_airframe(&path).map_err(Failure::input)?;
-        for note in &file.notes {
-            terminal.note(format_args!("{}: {note}", path.display()));
-        }
-        Ok(file.airframe)
+        beforehand::airframe(&path, terminal).map_err(Failure::input)
     }
 
     fn spot_curve(
@@ -112,15 +102,17 @@ impl Args {
         terminal: &Terminal,
     ) -> std::result::Result<Option<SpotCurve>, Failure> {
         let of_dataset = || dataset.and_then(|d| d.info().spot_curve.as_ref().map(|named| d.path(named)));
-        let path = self.spot_curve.clone().or_else(of_dataset);
-        let is_papers = path.as_deref().is_some_and(|path| path.as_os_str() == "paper");
-        if is_papers && self.spot_options.settings().brightness != Brightness::Threshold(200) {
-            terminal.warning(
-                "the paper's spot curve was measured with a threshold of 200: give --threshold 200, or bounds that \
-                 come from spot sizes are wrong",
-            );
+        let Some(path) = self.spot_curve.clone().or_else(of_dataset) else { return Ok(None) };
+        let file = beforehand::spot_curve(&path).map_err(Failure::input)?;
+        let brightness = self.spot_options.settings().brightness;
+        let now = Conditions {
+            brightness: self.spots.is_none().then_some(brightness),
+            exposure_us: dataset.map(|dataset| dataset.info().exposure_us),
+        };
+        for difference in beforehand::differences(&file, &now) {
+            terminal.warning(format_args!("{}: {difference}", path.display()));
         }
-        path.map(|path| read_spot_curve(&path).map_err(Failure::input)).transpose()
+        Ok(Some(file.curve))
     }
 }
 

@@ -6,7 +6,7 @@
 //! ```
 
 mod aligned;
-mod camera_file;
+mod beforehand;
 mod clock;
 mod convert;
 mod detect;
@@ -18,7 +18,6 @@ mod locate;
 mod output;
 mod overlay;
 mod run;
-mod spot_curve;
 mod spot_options;
 mod summary;
 mod terminal;

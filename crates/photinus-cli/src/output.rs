@@ -30,7 +30,7 @@ pub(crate) struct OutputArgs {
 #[derive(Default)]
 pub(crate) struct Outputs {
     results: Option<ResultsWriter<Box<dyn Write>>>,
-    table: Option<CsvWriter<File>>,
+    table: Option<CsvWriter<Box<dyn Write>>>,
     overlay: Option<Overlay>,
 }
 
@@ -46,15 +46,24 @@ impl OutputArgs {
         for path in self.out.as_deref().into_iter().chain(csv) {
             refuse_to_replace(path, read)?;
         }
+        if self.out.as_deref().is_some_and(is_stdout) && csv.is_some_and(is_stdout) {
+            let reason = "--out and --csv both write to standard output: name a file for one of them";
+            return Err(Failure::Input(reason.to_owned()));
+        }
         let results = match &self.out {
             None => None,
-            Some(path) if path.as_os_str() == "-" => {
-                Some(ResultsWriter::new(Box::new(std::io::stdout()) as Box<dyn Write>, path))
+            Some(path) => {
+                let (sink, name) = sink(path)?;
+                Some(ResultsWriter::new(sink, name))
             }
-            Some(path) => Some(ResultsWriter::new(Box::new(create(path)?) as Box<dyn Write>, path)),
         };
-        let table =
-            csv.map(|path| CsvWriter::new(create(path)?, path).map_err(Failure::input)).transpose()?;
+        let table = match csv {
+            None => None,
+            Some(path) => {
+                let (sink, name) = sink(path)?;
+                Some(CsvWriter::new(sink, name).map_err(Failure::input)?)
+            }
+        };
         let overlay = self
             .overlay
             .as_ref()
@@ -86,11 +95,24 @@ impl Outputs {
     }
 }
 
+fn is_stdout(path: &Path) -> bool {
+    path.as_os_str() == "-"
+}
+
+/// Opens an output, with its name for the messages; `-` is standard output.
+fn sink(path: &Path) -> Result<(Box<dyn Write>, &Path), Failure> {
+    match is_stdout(path) {
+        true => Ok((Box::new(std::io::stdout()), Path::new("standard output"))),
+        false => Ok((Box::new(create(path)?), path)),
+    }
+}
+
 /// Creates a file, or says why it cannot be.
 pub(crate) fn create(path: &Path) -> Result<File, Failure> {
     File::create(path).map_err(|error| {
         let advice = match error.kind() {
             std::io::ErrorKind::NotFound => "make its folder first, or write elsewhere",
+            std::io::ErrorKind::IsADirectory => "name a file, not a folder",
             _ => "write elsewhere, or change the permissions",
         };
         Failure::input(Error::io(path, error).advise(advice))

@@ -4,6 +4,7 @@
 
 use std::collections::HashSet;
 use std::mem::discriminant;
+use std::path::Path;
 
 use photinus_io::Result;
 use photinus_io::image::Conversion;
@@ -13,7 +14,7 @@ use crate::failure::Failure;
 use crate::input::{Entry, Input};
 use crate::output::Outputs;
 use crate::summary::Summary;
-use crate::terminal::Terminal;
+use crate::terminal::{Terminal, input_name};
 
 /// After so many failed frames the others are only counted: the first ones say what is wrong.
 const REPORTED_FAILURES: u64 = 10;
@@ -76,7 +77,8 @@ fn tell_conversions(
 ) {
     for conversion in &entry.conversions {
         if told.insert(discriminant(conversion)) {
-            terminal.note(format_args!("{}: {conversion} (said once)", entry.record.source));
+            let source = input_name(Path::new(&entry.record.source));
+            terminal.note(format_args!("{source}: {conversion} (said once)"));
         }
     }
 }

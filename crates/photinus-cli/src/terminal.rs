@@ -3,8 +3,10 @@
 //! `error:` means that something is missing from the result, `warning:` that there is something to do, `note:` that
 //! something was taken otherwise than it stands in a file.
 
+use std::borrow::Cow;
 use std::fmt::Display;
 use std::io::{ErrorKind, Write};
+use std::path::Path;
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -13,6 +15,14 @@ use crate::failure::Failure;
 
 /// Work shorter than this shows no progress.
 const PATIENCE: Duration = Duration::from_secs(1);
+
+/// What an input is called in messages.
+pub(crate) fn input_name(path: &Path) -> Cow<'_, str> {
+    match path.as_os_str() == "-" {
+        true => "standard input".into(),
+        false => path.to_string_lossy(),
+    }
+}
 
 /// Where the program talks.
 pub(crate) struct Terminal {

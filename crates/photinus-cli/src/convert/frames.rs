@@ -4,13 +4,10 @@ use std::fs::File;
 use std::io::BufWriter;
 use std::path::{Path, PathBuf};
 
-use photinus_io::Error;
-use photinus_io::airframe::read_airframe;
-use photinus_io::dataset::{DatasetInfo, DatasetWriter};
 use photinus_io::video::Y4mWriter;
 
 use super::Format;
-use crate::camera_file;
+use super::dataset::DatasetSink;
 use crate::detect::in_frame;
 use crate::failure::Failure;
 use crate::input::{Entry, Input};
@@ -23,21 +20,21 @@ pub(super) struct FrameArgs {
     /// Frames per second, where the input does not tell
     #[arg(long, value_name = "HZ", value_parser = positive)]
     rate: Option<f64>,
-    /// The camera of a new dataset; the file is copied into it
+    /// The camera of a new dataset; the file is copied into it [default: that of the input, if a dataset]
     #[arg(long, value_name = "FILE")]
-    camera: Option<PathBuf>,
-    /// The airframe of a new dataset; the file is copied into it
+    pub(super) camera: Option<PathBuf>,
+    /// The airframe of a new dataset; the file is copied into it [default: that of the input, if a dataset]
     #[arg(long, value_name = "FILE")]
-    airframe: Option<PathBuf>,
-    /// The exposure of a new dataset, microseconds
+    pub(super) airframe: Option<PathBuf>,
+    /// The exposure of a new dataset, microseconds [default: that of the input, if a dataset]
     #[arg(long, value_name = "US", value_parser = positive)]
-    exposure_us: Option<f64>,
+    pub(super) exposure_us: Option<f64>,
 }
 
 /// Where frames go.
 enum Sink {
     Video { writer: Option<Y4mWriter<BufWriter<File>>>, file: Option<File>, rate: (u32, u32) },
-    Dataset { writer: DatasetWriter, rate_hz: f64 },
+    Dataset(DatasetSink),
 }
 
 /// Writes every frame of `input` to `out`.
@@ -48,12 +45,13 @@ pub(super) fn convert(
     args: &FrameArgs,
     terminal: &mut Terminal,
 ) -> Result<(), Failure> {
-    let of_dataset = input.dataset.as_ref().map(|dataset| dataset.info().rate_hz);
+    let dataset = input.dataset.as_ref();
+    let of_dataset = dataset.map(|dataset| dataset.info().rate_hz);
     let mut entries = input.entries;
     let head: Vec<_> = entries.by_ref().take(2).collect();
     let rate_hz = args.rate.or(of_dataset).or_else(|| rate_of(&head));
     let mut sink = match format {
-        Format::Dataset => Sink::dataset(out, args, rate_hz)?,
+        Format::Dataset => Sink::Dataset(DatasetSink::create(out, args, rate_hz, dataset)?),
         _ => Sink::Video { writer: None, file: Some(create(out)?), rate: rate_hz.map_or((0, 0), fraction) },
     };
     if format == Format::Y4m && rate_hz.is_none() {
@@ -67,7 +65,7 @@ pub(super) fn convert(
     for entry in head.into_iter().chain(entries) {
         let written = entry.and_then(|entry| {
             with_gravity += u64::from(entry.gravity.is_some());
-            sink.write(&entry, good, out)
+            sink.write(&entry, out)
         });
         match written {
             Ok(()) => good += 1,
@@ -88,46 +86,12 @@ pub(super) fn convert(
 }
 
 impl Sink {
-    fn dataset(out: &Path, args: &FrameArgs, rate_hz: Option<f64>) -> Result<Self, Failure> {
-        let needed =
-            |what: &str| Failure::Input(format!("a dataset needs --{what}; see photinus convert --help"));
-        let camera = args.camera.as_deref().ok_or_else(|| needed("camera"))?;
-        let airframe = args.airframe.as_deref().ok_or_else(|| needed("airframe"))?;
-        let exposure_us = args.exposure_us.ok_or_else(|| needed("exposure-us"))?;
-        let rate_hz = rate_hz.ok_or_else(|| needed("rate"))?;
-        // Only files that can be read make a dataset that can be.
-        camera_file::read(camera).map_err(Failure::input)?;
-        read_airframe(airframe).map_err(Failure::input)?;
-        let inside = |path: &Path, name: &str| {
-            let extension = path.extension().map_or(String::new(), |e| format!(".{}", e.to_string_lossy()));
-            PathBuf::from(format!("{name}{extension}"))
-        };
-        let info = DatasetInfo {
-            camera: inside(camera, "camera"),
-            airframe: inside(airframe, "airframe"),
-            exposure_us,
-            rate_hz,
-            spot_curve: None,
-            mask: None,
-        };
-        let writer = DatasetWriter::create(out, &info).map_err(Failure::input)?;
-        for (from, to) in [(camera, &info.camera), (airframe, &info.airframe)] {
-            let to = out.join(to);
-            std::fs::copy(from, &to).map_err(|error| Failure::input(Error::io(to, error)))?;
-        }
-        Ok(Self::Dataset { writer, rate_hz })
-    }
-
-    /// Writes frame `number` of those that came through.
-    fn write(&mut self, entry: &Entry, number: u64, out: &Path) -> photinus_io::Result<()> {
-        let Some(image) = &entry.image else { return Ok(()) };
-        let (frame, gravity) = (image.view(), entry.gravity);
+    fn write(&mut self, entry: &Entry, out: &Path) -> photinus_io::Result<()> {
         match self {
-            Self::Dataset { writer, rate_hz } => {
-                let time_s = entry.record.time_s.unwrap_or(number as f64 / *rate_hz);
-                writer.frame(&frame, time_s, gravity).map(drop)
-            }
+            Self::Dataset(dataset) => dataset.write(entry),
             Self::Video { writer, file, rate } => {
+                let Some(image) = &entry.image else { return Ok(()) };
+                let frame = image.view();
                 if let (None, Some(file)) = (&writer, file.take()) {
                     let size = (frame.width(), frame.height());
                     *writer = Some(Y4mWriter::new(BufWriter::new(file), out, size, *rate)?);
@@ -143,7 +107,7 @@ impl Sink {
     fn finish(self) -> photinus_io::Result<()> {
         match self {
             Self::Video { writer: Some(writer), .. } => writer.finish().map(drop),
-            Self::Video { .. } | Self::Dataset { .. } => Ok(()),
+            Self::Video { .. } | Self::Dataset(_) => Ok(()),
         }
     }
 }

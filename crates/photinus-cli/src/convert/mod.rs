@@ -1,5 +1,6 @@
 //! `photinus convert`: the same in another format, and what is lost on the way.
 
+mod dataset;
 mod frames;
 mod text;
 
@@ -22,6 +23,7 @@ Examples:
   photinus convert results.jsonl results.csv            a row per neighbour
   photinus convert video.y4m recording --camera camera.txt --airframe quad.toml --exposure-us 1000
   photinus convert *.png video.y4m --rate 60
+  photinus convert recording copy --camera recalibrated.txt
 
 What the new format cannot hold is told.";
 
@@ -67,6 +69,9 @@ pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> Result<(), Failure> {
     let is_stream = first.as_os_str() == "-";
     let kind = if is_stream { Kind::Video } else { kind_of(first).map_err(Failure::input)? };
     let format = format(args, kind)?;
+    if args.out.as_os_str() == "-" {
+        return Err(Failure::Input("standard output: convert writes files; name one".to_owned()));
+    }
     refuse_to_replace(&args.out, &args.inputs)?;
     let is_frames = matches!(format, Format::Y4m | Format::Dataset);
     if let (false, [other, ..]) = (is_frames, others) {

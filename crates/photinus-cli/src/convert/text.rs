@@ -2,13 +2,12 @@
 
 use std::path::Path;
 
-use photinus_io::CameraFile;
-use photinus_io::airframe::{AirframeFile, layout_text, read_airframe, toml_text};
+use photinus_io::airframe::{layout_text, toml_text};
 use photinus_io::camera::{write_camera_toml, write_ocam_text};
 use photinus_io::results::{CsvWriter, read_results};
 
 use super::write;
-use crate::camera_file;
+use crate::beforehand;
 use crate::failure::Failure;
 use crate::output::create;
 use crate::terminal::Terminal;
@@ -17,11 +16,9 @@ use crate::terminal::Terminal;
 const POOR_INVERSE_PX: f64 = 0.1;
 
 pub(super) fn camera_to_ocam(path: &Path, out: &Path, terminal: &Terminal) -> Result<(), Failure> {
-    let file = camera(path, terminal)?;
+    let file = beforehand::camera(path, terminal).map_err(Failure::input)?;
     let mut text = Vec::new();
-    let inverse = write_ocam_text(&file.camera, &mut text, out).map_err(|error| {
-        Failure::input(error.advise("write it as Photinus TOML: end the output in .toml"))
-    })?;
+    let inverse = write_ocam_text(&file.camera, &mut text, out).map_err(Failure::input)?;
     write(out, &text)?;
     let told = format!(
         "{}: the inverse polynomial is a new one of degree {}, within {:.2e} px of the direct one",
@@ -38,7 +35,7 @@ pub(super) fn camera_to_ocam(path: &Path, out: &Path, terminal: &Terminal) -> Re
 }
 
 pub(super) fn camera_to_toml(path: &Path, out: &Path, terminal: &Terminal) -> Result<(), Failure> {
-    let file = camera(path, terminal)?;
+    let file = beforehand::camera(path, terminal).map_err(Failure::input)?;
     let mut text = Vec::new();
     write_camera_toml(&file.camera, &mut text, out).map_err(Failure::running)?;
     write(out, &text)?;
@@ -51,16 +48,8 @@ pub(super) fn camera_to_toml(path: &Path, out: &Path, terminal: &Terminal) -> Re
     Ok(())
 }
 
-fn camera(path: &Path, terminal: &Terminal) -> Result<CameraFile, Failure> {
-    let file = camera_file::read(path).map_err(Failure::input)?;
-    for oddity in &file.oddities {
-        terminal.note(format_args!("{}: {oddity}", path.display()));
-    }
-    Ok(file)
-}
-
 pub(super) fn airframe_to_layout(path: &Path, out: &Path, terminal: &Terminal) -> Result<(), Failure> {
-    let airframe = airframe(path, terminal)?.airframe;
+    let airframe = beforehand::airframe(path, terminal).map_err(Failure::input)?;
     write(out, layout_text(&airframe).as_bytes())?;
     if out.file_stem().is_none_or(|stem| stem.to_string_lossy() != airframe.name()) {
         terminal.note(format_args!(
@@ -81,16 +70,8 @@ pub(super) fn airframe_to_layout(path: &Path, out: &Path, terminal: &Terminal) -
 }
 
 pub(super) fn airframe_to_toml(path: &Path, out: &Path, terminal: &Terminal) -> Result<(), Failure> {
-    let airframe = airframe(path, terminal)?.airframe;
+    let airframe = beforehand::airframe(path, terminal).map_err(Failure::input)?;
     write(out, toml_text(&airframe).as_bytes())
-}
-
-fn airframe(path: &Path, terminal: &Terminal) -> Result<AirframeFile, Failure> {
-    let file = read_airframe(path).map_err(Failure::input)?;
-    for note in &file.notes {
-        terminal.note(format_args!("{}: {note}", path.display()));
-    }
-    Ok(file)
 }
 
 pub(super) fn results_to_csv(path: &Path, out: &Path, terminal: &Terminal) -> Result<(), Failure> {

@@ -3,16 +3,15 @@
 use std::path::Path;
 
 use photinus::camera::{Camera, IdealLaw, Model, Pixel};
-use photinus_io::{CameraFile, CameraFormat, Result};
+use photinus_io::{CameraFile, CameraFormat, Result, read_camera};
 
 use super::Report;
-use crate::camera_file;
 
 /// Farther than this a pixel must not come back from its own bearing, px.
 const ROUND_TRIP_PX: f64 = 1e-6;
 
 pub(super) fn report(path: &Path) -> Result<Report> {
-    let CameraFile { camera, format, oddities, inverse } = camera_file::read(path)?;
+    let CameraFile { camera, format, oddities, inverse } = read_camera(path)?;
     let mut report = Report::new("a camera");
     let centre = camera.model().centre();
     report.fact("format", format_name(format));

@@ -7,12 +7,11 @@ use photinus_io::airframe::read_airframe;
 use photinus_io::dataset::Dataset;
 use photinus_io::image::{ImageFile, read_image};
 use photinus_io::mask::read_mask;
+use photinus_io::spot_curve::read_spot_curve;
 use photinus_io::video::Y4mFrames;
-use photinus_io::{Error, Result};
+use photinus_io::{Error, Result, read_camera};
 
 use super::{Report, airframe, counted};
-use crate::camera_file;
-use crate::spot_curve::read_spot_curve;
 
 pub(super) fn image(path: &Path) -> Result<Report> {
     let ImageFile { image, conversions } = read_image(path)?;
@@ -77,7 +76,7 @@ pub(super) fn dataset(folder: &Path) -> Result<Report> {
     let with_gravity = rows.iter().filter(|row| row.gravity.is_some()).count();
     report.fact("gravity", format!("known for {with_gravity} of {} frames", rows.len()));
 
-    let camera = camera_file::read(&dataset.path(&info.camera));
+    let camera = read_camera(&dataset.path(&info.camera));
     let size = camera.as_ref().ok().map(|file| (file.camera.width(), file.camera.height()));
     let mut part = |name: &str, told: Result<String>| match told {
         Ok(text) => report.facts.row([name.to_owned(), text]),
@@ -109,7 +108,7 @@ pub(super) fn dataset(folder: &Path) -> Result<Report> {
         part("mask", told);
     }
     if let Some(curve) = &info.spot_curve {
-        part("spot curve", read_spot_curve(&dataset.path(curve)).map(|_| curve.display().to_string()));
+        part("spot curve", read_spot_curve(dataset.path(curve)).map(|_| curve.display().to_string()));
     }
     let truth = dataset.truth().map(|truth| match truth {
         Some(frames) => format!("for {}", counted(frames.len(), "frame")),

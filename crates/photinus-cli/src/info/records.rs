@@ -5,10 +5,10 @@ use std::path::Path;
 use photinus_io::Result;
 use photinus_io::blink::read_blink_codes;
 use photinus_io::results::read_results;
+use photinus_io::spot_curve::{SpotCurveFile, read_spot_curve};
 
 use super::{Report, counted};
 use crate::aligned::{Aligned, Side};
-use crate::spot_curve::read_spot_curve;
 use crate::summary::Summary;
 
 /// After so many bad lines the others are only counted.
@@ -86,15 +86,18 @@ fn same_when_turned(words: &[Vec<bool>]) -> Option<(usize, usize)> {
 }
 
 pub(super) fn spot_curve(path: &Path) -> Result<Report> {
-    let curve = read_spot_curve(path)?;
+    let SpotCurveFile { curve, exposure_us, threshold } = read_spot_curve(path)?;
     let mut report = Report::new("a curve of spot sizes");
+    let known = |value: Option<String>| value.unwrap_or_else(|| "not stated".to_owned());
+    report.fact("exposure", known(exposure_us.map(|us| format!("{us} us"))));
+    report.fact("threshold", known(threshold.map(|level| level.to_string())));
     let mut table = Aligned::new(2, &[Side::Right; 3]);
     table.row(["distance m", "smallest px", "largest px"]);
     for distance_m in [0.5, 1.0, 2.0, 4.0, 8.0, 16.0] {
         let (smallest, largest) = (curve.min_area_px(distance_m), curve.max_area_px(distance_m));
         table.row([distance_m.to_string(), smallest.to_string(), largest.to_string()]);
     }
-    report.facts = table;
+    report.tables.push(table);
     Ok(report)
 }
 

@@ -22,6 +22,7 @@ fn spot(u_px: f64, v_px: f64) -> SpotRecord {
         sigma_px: 0.1,
         covariance_px2: [[0.01, 0.0], [0.0, 0.01]],
         middle_px: [u_px as u32, v_px as u32],
+        extent_px: None,
         background: 4.0,
         bearing: None,
         bound_rad: None,

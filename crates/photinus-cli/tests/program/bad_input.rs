@@ -50,6 +50,15 @@ fn usage() {
     refuses(&stage, &format!("{LOCATE} --max-tilt 200"), 2, &["0 to 180"]);
     refuses(&stage, "detect .", 2, &["holds no dataset.toml", "; name the folder of a dataset"]);
     refuses(&stage, "detect . frame.png", 2, &["a folder among several inputs; name"]);
+    refuses(
+        &stage,
+        "detect - frame.png",
+        2,
+        &["standard input: a stream among several inputs; name it alone"],
+    );
+    refuses(&stage, "info -", 2, &["standard input: what it holds can be told of files only; save it"]);
+    refuses(&stage, &format!("{LOCATE} --csv - --out -"), 2, &["both write to standard output: name a file"]);
+    refuses(&stage, &format!("{LOCATE} --spots frame.png --threshold 9"), 2, &["cannot be used with"]);
 }
 
 #[test]
@@ -128,7 +137,10 @@ fn calibrations_that_are_no_camera() {
         &stage,
         &words,
         2,
-        &["folds.txt, line 1: the angle off the axis stops growing at", "; if the lens was calibrated"],
+        &[
+            "folds.txt, line 1: the angle off the axis stops growing at",
+            "; if the lens was calibrated no farther, restrict the field with field_limit_deg = ",
+        ],
     );
     let words = with("unknown.toml", format!("{CAMERA}lens = 3\n"));
     refuses(&stage, &words, 2, &["unknown.toml, line 6: unknown", "`lens`"]);
@@ -171,7 +183,7 @@ fn spot_curves_that_are_none() {
         &stage,
         &format!("{LOCATE} --spot-curve curve.toml"),
         2,
-        &["curve.toml: an envelope of offset 1 px, scale -3 px m^2", "; an example: upper"],
+        &["curve.toml, `upper`: an envelope of offset 1 px, scale -3 px m^2", "; an example: upper"],
     );
     stage.file("curve.toml", "upper = { offset_px = 1, scale_px_m2 = 3, shift = 0 }\n");
     refuses(
@@ -210,6 +222,7 @@ fn a_cut_video_keeps_the_frames_before() {
     assert_eq!(stage.read("r.jsonl").lines().count(), 2);
     let done = stage.run_with("detect - --out -", &whole[..whole.len() - 1000]);
     assert_eq!((done.code, done.out.lines().count()), (1, 2));
+    assert!(done.err.contains("error: standard input, frame 2: the stream ends after"), "{}", done.err);
     assert!(stage.run("info cut.y4m").out.contains("  ! cut.y4m, frame 2: the stream ends after"));
 }
 

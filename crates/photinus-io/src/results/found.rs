@@ -74,6 +74,7 @@ impl From<&Spot> for SpotRecord {
             sigma_px: spot.sigma_px(),
             covariance_px2: [[c.m11, c.m12], [c.m21, c.m22]],
             middle_px: [spot.middle.0, spot.middle.1],
+            extent_px: Some([spot.extent.left, spot.extent.top, spot.extent.right, spot.extent.bottom]),
             background: spot.background,
             bearing: None,
             bound_rad: None,
@@ -83,13 +84,17 @@ impl From<&Spot> for SpotRecord {
 }
 
 impl From<&SpotRecord> for Spot {
-    /// The extent, which no file has, becomes the square of the spot's area around its middle pixel.
+    /// A spot that states only its area gets the box that no spot of that area leaves.
     fn from(record: &SpotRecord) -> Self {
         let [[uu, uv], [vu, vv]] = record.covariance_px2;
         let [u, v] = record.middle_px;
-        let reach = (f64::from(record.area_px).sqrt() / 2.0).floor() as u32;
+        let centre = Pixel::new(record.u_px, record.v_px);
+        let extent = match record.extent_px {
+            Some([left, top, right, bottom]) => Extent { left, top, right, bottom },
+            None => widest_extent(centre, record.area_px),
+        };
         Self {
-            centre: Pixel::new(record.u_px, record.v_px),
+            centre,
             covariance_px2: Matrix2::new(uu, uv, vu, vv),
             area_px: record.area_px,
             peak: record.peak,
@@ -97,14 +102,19 @@ impl From<&SpotRecord> for Spot {
             flux: record.flux,
             background: record.background,
             middle: (u, v),
-            extent: Extent {
-                left: u.saturating_sub(reach),
-                top: v.saturating_sub(reach),
-                right: u.saturating_add(reach),
-                bottom: v.saturating_add(reach),
-            },
+            extent,
         }
     }
+}
+
+/// The pixels within half of `area_px` of the centre, along either axis. S pixels that touch, also by a corner, and
+/// whose mean is the centre reach no further: the farthest is the end of a straight line.
+fn widest_extent(centre: Pixel, area_px: u32) -> Extent {
+    let reach_px = f64::from(area_px.max(1)) / 2.0;
+    // Saturates: no pixel is left of 0.
+    let first = |at: f64| (at - reach_px + 0.5).floor() as u32;
+    let last = |at: f64| (at + reach_px - 0.5).ceil() as u32;
+    Extent { left: first(centre.u), top: first(centre.v), right: last(centre.u), bottom: last(centre.v) }
 }
 
 impl From<&Rejected> for RejectedRecord {
@@ -132,6 +142,8 @@ mod tests {
     use photinus::camera::{Camera, Ideal, IdealLaw, Model};
     use photinus::locator::{Locator, Settings};
     use photinus::ranging::SpotCurve;
+    use proptest::prelude::*;
+    use proptest::{collection, sample::Index};
 
     use super::*;
 
@@ -177,7 +189,41 @@ mod tests {
         let record = SpotRecord::from(&spot);
         assert_eq!(Spot::from(&record), spot);
         assert!((record.sigma_px - 0.2).abs() < 1e-12);
-        let huge = SpotRecord { area_px: u32::MAX, middle_px: [u32::MAX; 2], ..record };
-        assert_eq!(Spot::from(&huge).extent.right, u32::MAX);
+    }
+
+    fn stated(u_px: f64, v_px: f64, area_px: u32) -> Extent {
+        let text = format!("{{\"u_px\":{u_px},\"v_px\":{v_px},\"area_px\":{area_px}}}");
+        Spot::from(&serde_json::from_str::<SpotRecord>(&text).unwrap()).extent
+    }
+
+    #[test]
+    fn a_spot_that_states_only_its_area_gets_a_box_of_that_side() {
+        assert_eq!(stated(10.0, 20.0, 1), Extent { left: 10, top: 20, right: 10, bottom: 20 });
+        assert_eq!(stated(10.0, 20.0, 5), Extent { left: 8, top: 18, right: 12, bottom: 22 });
+        assert_eq!(stated(10.5, 20.0, 4), Extent { left: 9, top: 18, right: 12, bottom: 22 });
+        assert_eq!(stated(-0.5, 0.2, 9).left, 0, "no pixel is left of the first");
+        let all = Extent { left: 0, top: 0, right: 2_147_483_657, bottom: 2_147_483_667 };
+        assert_eq!(stated(10.0, 20.0, u32::MAX), all);
+    }
+
+    proptest! {
+        #[test]
+        fn no_spot_leaves_the_box_of_its_area(steps in collection::vec((any::<Index>(), 0..8_usize), 0..40)) {
+            const NEAR: [(i32, i32); 8] = [(-1, -1), (0, -1), (1, -1), (-1, 0), (1, 0), (-1, 1), (0, 1), (1, 1)];
+            let mut pixels = vec![(100, 100)];
+            for (at, to) in steps {
+                let ((u, v), (du, dv)) = (*at.get(&pixels), NEAR[to]);
+                if !pixels.contains(&(u + du, v + dv)) {
+                    pixels.push((u + du, v + dv));
+                }
+            }
+            let mean = |of: fn(&(i32, i32)) -> i32| {
+                f64::from(pixels.iter().map(of).sum::<i32>()) / pixels.len() as f64
+            };
+            let extent = stated(mean(|p| p.0), mean(|p| p.1), pixels.len() as u32);
+            for (u, v) in pixels.iter().map(|&(u, v)| (u as u32, v as u32)) {
+                prop_assert!((extent.left..=extent.right).contains(&u) && (extent.top..=extent.bottom).contains(&v));
+            }
+        }
     }
 }

@@ -27,15 +27,15 @@ fn neighbour() -> NeighbourRecord {
         spots: vec![0],
         bearing: [0.0, 0.0, 1.0],
         distance_m: Distance {
-            estimate: 7.25,
+            estimate: Some(7.25),
             sigma: Some(0.5),
             min: 5.0,
             max: None,
             perpendicular: Some(7.5),
             inline: Some(5.0),
         },
-        position_m: [0.0, 0.0, 7.25],
-        position_covariance_m2: [[0.25, 0.0, 0.125], [0.0, 0.5, 0.0], [0.125, 0.0, 1.0]],
+        position_m: Some([0.0, 0.0, 7.25]),
+        position_covariance_m2: Some([[0.25, 0.0, 0.125], [0.0, 0.5, 0.0], [0.125, 0.0, 1.0]]),
         orientation_xyzw: None,
         orientation_covariance_rad2: None,
         modes: vec![],
@@ -148,7 +148,7 @@ fn a_table_has_a_row_per_neighbour() {
     let mut writer = CsvWriter::new(&mut bytes, "t").unwrap();
     let mut two = record();
     two.neighbours.push(NeighbourRecord { orientation_xyzw: Some([0.0, 0.0, 0.0, 1.0]), ..neighbour() });
-    two.neighbours[1].distance_m.estimate = f64::NAN;
+    two.neighbours[1].distance_m.estimate = Some(f64::NAN);
     writer.write(&two).unwrap();
     writer.write(&FrameRecord { neighbours: vec![], ..record() }).unwrap();
     drop(writer);

@@ -56,7 +56,7 @@ pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> Result<(), Failure> {
             let Some(image) = &entry.image else { return Ok(()) };
             let frame = image.view();
             if let Some(mask) = &mask {
-                mask.check_size(frame.width(), frame.height()).map_err(|error| in_frame(error, entry))?;
+                mask.check_size(frame.width(), frame.height())?;
             }
             let found = detector
                 .detect(&frame, mask_of(mask.as_ref()))

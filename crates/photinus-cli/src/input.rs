@@ -54,6 +54,11 @@ pub(crate) struct Input {
 }
 
 impl InputArgs {
+    /// Inputs without further options.
+    pub(crate) fn of(inputs: &[PathBuf]) -> Self {
+        Self { inputs: inputs.to_vec(), raw: None, frames: None }
+    }
+
     /// Opens the frames.
     pub(crate) fn open(&self) -> std::result::Result<Input, Failure> {
         let mut input = self.source()?;
@@ -85,9 +90,9 @@ impl InputArgs {
                 "no input: name a dataset folder, image files, a Y4M video, or - for Y4M on standard input"
                     .to_owned(),
             )),
-            _ if self.raw.is_some() => {
-                Err(Failure::Input("--raw takes one stream: name one file, or - for standard input".to_owned()))
-            }
+            _ if self.raw.is_some() => Err(Failure::Input(
+                "--raw takes one stream: name one file, or - for standard input".to_owned(),
+            )),
             [path] if path.is_dir() => {
                 let dataset = Dataset::read(path).map_err(Failure::input)?;
                 let files = dataset.frames().iter().map(|row| dataset.path(&row.image)).collect();
@@ -96,7 +101,7 @@ impl InputArgs {
                 input.dataset = Some(dataset);
                 Ok(input)
             }
-            [path] if path.as_os_str() == "-" || kind_of(path).map_err(Failure::input)? == Kind::Video => {
+            [path] if is_video(path)? => {
                 let frames = FrameSource::y4m(open(path)?, path).map_err(Failure::input)?;
                 Ok(Input::new(frames, None, self.inputs.clone()))
             }
@@ -133,6 +138,12 @@ impl Entry {
         let record = FrameRecord { neighbours: Vec::new(), ..record };
         Self { record, image: None, gravity: None, conversions: Vec::new() }
     }
+}
+
+/// Whether an input is a video. What can be read only once (standard input, a pipe) is taken for one.
+fn is_video(path: &Path) -> std::result::Result<bool, Failure> {
+    let is_pipe = path.exists() && !path.is_file();
+    Ok(path.as_os_str() == "-" || is_pipe || kind_of(path).map_err(Failure::input)? == Kind::Video)
 }
 
 /// Image files: all of them must be there, whatever they hold.

@@ -43,13 +43,18 @@ fn kind_of_content(head: &[u8]) -> Kind {
         return Kind::Video;
     }
     let pictures: [&[u8]; 5] = [b"\x89PNG", b"\xff\xd8\xff", b"BM", b"II*\0", b"MM\0*"];
-    let is_pnm = head.len() > 2 && head[0] == b'P' && (b'1'..=b'7').contains(&head[1]) && head[2].is_ascii_whitespace();
+    let is_pnm = head.len() > 2
+        && head[0] == b'P'
+        && (b'1'..=b'7').contains(&head[1])
+        && head[2].is_ascii_whitespace();
     if is_pnm || head.contains(&0) || pictures.iter().any(|magic| head.starts_with(magic)) {
         return Kind::Image;
     }
     let text = String::from_utf8_lossy(head);
     let mut lines = text.trim_start_matches('\u{feff}').lines().map(str::trim);
-    let Some(first) = lines.find(|line| !line.is_empty() && !line.starts_with('#')) else { return Kind::Camera };
+    let Some(first) = lines.find(|line| !line.is_empty() && !line.starts_with('#')) else {
+        return Kind::Camera;
+    };
     if first.starts_with('{') {
         return if first.contains("\"spots\"") { Kind::Results } else { Kind::Camera };
     }
@@ -57,7 +62,10 @@ fn kind_of_content(head: &[u8]) -> Kind {
         return Kind::Blink;
     }
     let words = first.split('#').next().unwrap_or_default().split_whitespace();
-    if words.clone().count() == 7 && words.clone().all(|word| word.parse::<f64>().is_ok()) && !counts_itself(first) {
+    if words.clone().count() == 7
+        && words.clone().all(|word| word.parse::<f64>().is_ok())
+        && !counts_itself(first)
+    {
         return Kind::Airframe;
     }
     kind_of_keys(first, &text)
@@ -71,7 +79,9 @@ fn counts_itself(line: &str) -> bool {
 /// The kind of a TOML file, by a key that only that kind has.
 fn kind_of_keys(first: &str, text: &str) -> Kind {
     let has = |key: &str| {
-        text.lines().any(|line| line.trim_start().strip_prefix(key).is_some_and(|rest| rest.trim_start().starts_with('=')))
+        text.lines().any(|line| {
+            line.trim_start().strip_prefix(key).is_some_and(|rest| rest.trim_start().starts_with('='))
+        })
     };
     let is_toml = first.starts_with('[') || first.contains('=');
     match is_toml {

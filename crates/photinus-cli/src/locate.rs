@@ -7,13 +7,13 @@ use photinus::airframe::Airframe;
 use photinus::camera::{Bearing, Camera};
 use photinus::locator::{Locator, Settings, Stage};
 use photinus::ranging::SpotCurve;
-use photinus::spots::Spot;
+use photinus::spots::{Brightness, Spot};
 use photinus_io::airframe::read_airframe;
 use photinus_io::dataset::Dataset;
-use photinus_io::read_camera;
 use photinus_io::results::NeighbourRecord;
 use photinus_io::{Error, Result};
 
+use crate::camera_file;
 use crate::clock::Clock;
 use crate::detect::in_frame;
 use crate::failure::Failure;
@@ -86,14 +86,18 @@ impl Args {
 
     fn camera(&self, dataset: Option<&Dataset>, terminal: &Terminal) -> std::result::Result<Camera, Failure> {
         let path = needed(self.camera.as_deref(), "camera", dataset.map(|d| d.path(&d.info().camera)))?;
-        let file = read_camera(&path).map_err(Failure::input)?;
+        let file = camera_file::read(&path).map_err(Failure::input)?;
         for oddity in &file.oddities {
-            terminal.warning(format_args!("{}: {oddity}", path.display()));
+            terminal.note(format_args!("{}: {oddity}", path.display()));
         }
         Ok(file.camera)
     }
 
-    fn airframe(&self, dataset: Option<&Dataset>, terminal: &Terminal) -> std::result::Result<Airframe, Failure> {
+    fn airframe(
+        &self,
+        dataset: Option<&Dataset>,
+        terminal: &Terminal,
+    ) -> std::result::Result<Airframe, Failure> {
         let path = needed(self.airframe.as_deref(), "airframe", dataset.map(|d| d.path(&d.info().airframe)))?;
         let file = read_airframe(&path).map_err(Failure::input)?;
         for note in &file.notes {
@@ -102,9 +106,20 @@ impl Args {
         Ok(file.airframe)
     }
 
-    fn spot_curve(&self, dataset: Option<&Dataset>) -> std::result::Result<Option<SpotCurve>, Failure> {
+    fn spot_curve(
+        &self,
+        dataset: Option<&Dataset>,
+        terminal: &Terminal,
+    ) -> std::result::Result<Option<SpotCurve>, Failure> {
         let of_dataset = || dataset.and_then(|d| d.info().spot_curve.as_ref().map(|named| d.path(named)));
         let path = self.spot_curve.clone().or_else(of_dataset);
+        let is_papers = path.as_deref().is_some_and(|path| path.as_os_str() == "paper");
+        if is_papers && self.spot_options.settings().brightness != Brightness::Threshold(200) {
+            terminal.warning(
+                "the paper's spot curve was measured with a threshold of 200: give --threshold 200, or bounds that \
+                 come from spot sizes are wrong",
+            );
+        }
         path.map(|path| read_spot_curve(&path).map_err(Failure::input)).transpose()
     }
 }
@@ -115,7 +130,7 @@ pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> std::result::Result<(
     let dataset = input.dataset.as_ref();
     let camera = args.camera(dataset, terminal)?;
     let airframe = args.airframe(dataset, terminal)?;
-    let curve = args.spot_curve(dataset)?;
+    let curve = args.spot_curve(dataset, terminal)?;
     let mask = args.spot_options.mask(dataset, terminal)?;
     if let Some(mask) = &mask {
         mask.check_size(camera.width(), camera.height()).map_err(Failure::input)?;
@@ -156,7 +171,11 @@ fn fill(entry: &mut Entry, locator: &mut Locator, airframe: &str, clock: &mut Cl
 }
 
 /// The file that was named, or that of the dataset.
-fn needed(named: Option<&Path>, what: &str, of_dataset: Option<PathBuf>) -> std::result::Result<PathBuf, Failure> {
+fn needed(
+    named: Option<&Path>,
+    what: &str,
+    of_dataset: Option<PathBuf>,
+) -> std::result::Result<PathBuf, Failure> {
     named.map(Path::to_owned).or(of_dataset).ok_or_else(|| {
         Failure::Input(format!("no {what}: give --{what} FILE, or a dataset folder, which names its own"))
     })
@@ -188,25 +207,30 @@ fn neighbour_line(neighbour: &NeighbourRecord) -> String {
         None => format!("{:.2} m or more", distance.min),
     };
     let [x, y, z] = neighbour.bearing;
-    let (azimuth, elevation) = (libm::atan2(x, z).to_degrees(), libm::atan2(-y, libm::hypot(x, z)).to_degrees());
+    let (azimuth, elevation) =
+        (libm::atan2(x, z).to_degrees(), libm::atan2(-y, libm::hypot(x, z)).to_degrees());
     let side = |degrees: f64, positive: &str, negative: &str| {
         format!("{:5.1}° {}", degrees.abs(), if degrees < 0.0 { negative } else { positive })
     };
     format!(
-        "{}  {estimate:>6} {sigma:<6} m  {bounds:<17}  {:<12} {:<11}  {} spots",
+        "{}  {estimate:>6} {sigma:<6} m  {bounds:<17}  {:<12} {:<11}  {} {}",
         neighbour.airframe,
         side(azimuth, "right", "left"),
         side(elevation, "up", "down"),
-        neighbour.spots.len()
+        neighbour.spots.len(),
+        if neighbour.spots.len() == 1 { "spot" } else { "spots" }
     )
 }
 
 fn gravity(text: &str) -> std::result::Result<Unit<Vector3<f64>>, String> {
     let wrong = || "give three numbers, such as 0,1,0 for a level camera".to_owned();
-    let numbers: Vec<f64> =
-        text.split(',').map(|word| word.trim().parse().map_err(|_| wrong())).collect::<std::result::Result<_, _>>()?;
+    let numbers: Vec<f64> = text
+        .split(',')
+        .map(|word| word.trim().parse().map_err(|_| wrong()))
+        .collect::<std::result::Result<_, _>>()?;
     let [x, y, z] = numbers.as_slice() else { return Err(wrong()) };
-    let down = Bearing::new(Vector3::new(*x, *y, *z)).ok_or_else(|| "these numbers have no direction".to_owned())?;
+    let down =
+        Bearing::new(Vector3::new(*x, *y, *z)).ok_or_else(|| "these numbers have no direction".to_owned())?;
     Ok(Unit::new_unchecked(*down.vector()))
 }
 

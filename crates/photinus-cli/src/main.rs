@@ -6,6 +6,7 @@
 //! ```
 
 mod aligned;
+mod camera_file;
 mod clock;
 mod convert;
 mod detect;
@@ -30,7 +31,7 @@ use terminal::Terminal;
 
 /// Tells a flying robot where its neighbours are, from one ultraviolet camera.
 #[derive(Parser)]
-#[command(version, subcommand_required = true, arg_required_else_help = true, after_help = EXAMPLES)]
+#[command(name = "photinus", version, subcommand_required = true, arg_required_else_help = true, after_help = EXAMPLES)]
 struct Program {
     #[command(subcommand)]
     command: Command,
@@ -66,11 +67,22 @@ fn main() -> ExitCode {
         Command::Locate(args) => locate::run(&args, &mut terminal),
         Command::Detect(args) => detect::run(&args, &mut terminal),
         Command::Info(args) => info::run(&args, &terminal),
-        Command::Convert(args) => convert::run(&args, &terminal),
+        Command::Convert(args) => convert::run(&args, &mut terminal),
     };
     let Err(failure) = done else { return ExitCode::SUCCESS };
     if let Some(message) = failure.message() {
         terminal.error(message);
     }
     failure.exit_code()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_command_line_is_in_order() {
+        use clap::CommandFactory;
+        Program::command().debug_assert();
+    }
 }

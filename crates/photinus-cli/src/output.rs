@@ -53,9 +53,8 @@ impl OutputArgs {
             }
             Some(path) => Some(ResultsWriter::new(Box::new(create(path)?) as Box<dyn Write>, path)),
         };
-        let table = csv
-            .map(|path| CsvWriter::new(create(path)?, path).map_err(Failure::input))
-            .transpose()?;
+        let table =
+            csv.map(|path| CsvWriter::new(create(path)?, path).map_err(Failure::input)).transpose()?;
         let overlay = self
             .overlay
             .as_ref()

@@ -8,7 +8,7 @@
 
 use std::path::Path;
 
-use photinus::ranging::{Envelope, SpotCurve};
+use photinus::ranging::{Envelope, SpotCurve, SpotCurveError};
 use photinus_io::{Error, Place, Result};
 use serde::Deserialize;
 
@@ -47,12 +47,23 @@ pub(crate) fn read_spot_curve(path: &Path) -> Result<SpotCurve> {
     }
     let text = std::fs::read_to_string(path).map_err(|error| Error::io(path, error))?;
     let table: Table = toml::from_str(&text).map_err(|error| {
-        let refused = Error::format(path, error.message().replace('\n', ", ").replace(" field `", " key `")).advise(EXAMPLE);
+        let refused = Error::format(path, error.message().replace('\n', ", ").replace(" field `", " key `"))
+            .advise(EXAMPLE);
         match error.span().and_then(|span| text.get(..span.start)) {
             Some(before) => refused.at(Place::Line(1 + before.matches('\n').count())),
             None => refused,
         }
     })?;
     SpotCurve::new(table.upper.into(), table.lower.map(Envelope::from), table.limit_m)
-        .map_err(|error| Error::format(path, error.to_string()).advise(EXAMPLE))
+        .map_err(|error| Error::format(path, in_plain_words(&error)).advise(EXAMPLE))
+}
+
+fn in_plain_words(error: &SpotCurveError) -> String {
+    match error {
+        SpotCurveError::Envelope(Envelope { offset_px, scale_px_m2, shift_m }) => format!(
+            "an envelope of offset {offset_px} px, scale {scale_px_m2} px m^2 and shift {shift_m} m: \
+             the numbers must be finite, the offset 0 or more, the scale above 0"
+        ),
+        other => other.to_string(),
+    }
 }

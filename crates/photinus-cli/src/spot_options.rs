@@ -36,7 +36,11 @@ impl SpotArgs {
     }
 
     /// The mask that was named, or that of the dataset.
-    pub(crate) fn mask(&self, dataset: Option<&Dataset>, terminal: &Terminal) -> Result<Option<MaskFile>, Failure> {
+    pub(crate) fn mask(
+        &self,
+        dataset: Option<&Dataset>,
+        terminal: &Terminal,
+    ) -> Result<Option<MaskFile>, Failure> {
         let of_dataset = || dataset.and_then(|dataset| Some(dataset.path(dataset.info().mask.as_ref()?)));
         let Some(path) = self.mask.clone().or_else(of_dataset) else { return Ok(None) };
         let file = read_mask(&path).map_err(Failure::input)?;

@@ -31,7 +31,8 @@ impl Summary {
         }
         self.neighbours += record.neighbours.len();
         self.frames_with_neighbours += u64::from(!record.neighbours.is_empty());
-        self.distances_m.extend(record.neighbours.iter().filter_map(|neighbour| neighbour.distance_m.estimate));
+        self.distances_m
+            .extend(record.neighbours.iter().filter_map(|neighbour| neighbour.distance_m.estimate));
     }
 
     /// When the first and the last frame were taken, s.
@@ -47,8 +48,14 @@ impl Summary {
     /// What was counted, without times.
     pub(crate) fn counts(&self, indent: usize) -> Aligned {
         let mut table = Aligned::new(indent, &[]);
-        let failed = if self.failed > 0 { format!(", {} failed", self.failed) } else { String::new() };
-        table.row(["frames".to_owned(), format!("{}{failed}", self.frames)]);
+        let frames = match self.failed {
+            0 => self.frames.to_string(),
+            failed => format!("{} done, {failed} failed", self.frames),
+        };
+        table.row(["frames".to_owned(), frames]);
+        if self.frames == 0 {
+            return table;
+        }
         if let Some((first_s, last_s)) = self.span_s {
             table.row(["time".to_owned(), format!("{first_s:.3} to {last_s:.3} s")]);
         }
@@ -86,13 +93,14 @@ impl Summary {
     }
 
     fn reasons(&self) -> String {
-        if self.rejected.is_empty() {
-            return "0".to_owned();
-        }
         let all: usize = self.rejected.values().sum();
         let reasons: Vec<String> =
             self.rejected.iter().map(|(reason, count)| format!("{count} {reason}")).collect();
-        format!("{all}: {}", reasons.join(", "))
+        match reasons.as_slice() {
+            [] => "none".to_owned(),
+            [one] => one.clone(),
+            several => format!("{all}: {}", several.join(", ")),
+        }
     }
 
     fn distances(&self) -> Option<String> {

@@ -25,7 +25,9 @@ pub(super) fn report(path: &Path) -> Result<Report> {
     report.fact("markers", format!("{markers} (LEDs closer than 3 cm are one)"));
     let ring = match airframe.ring() {
         Some(ring) => format!("{} markers, radius {:.4} m", ring.markers, ring.radius_m),
-        None => "none: the markers are on no regular ring, so there is no l_A and l_B of the paper".to_owned(),
+        None => {
+            "none: the markers are on no regular ring, so there is no l_A and l_B of the paper".to_owned()
+        }
     };
     report.fact("ring", ring);
     report.fact("reach", format!("{:.4} m from the origin to the farthest marker", airframe.max_radius_m()));

@@ -3,17 +3,16 @@
 use std::path::Path;
 
 use photinus::camera::{Camera, IdealLaw, Model, Pixel};
-use photinus_io::{CameraFile, CameraFormat, Result, read_camera};
+use photinus_io::{CameraFile, CameraFormat, Result};
 
 use super::Report;
+use crate::camera_file;
 
 /// Farther than this a pixel must not come back from its own bearing, px.
 const ROUND_TRIP_PX: f64 = 1e-6;
-/// An inverse polynomial of the file farther than this from the direct one is worth a word, px.
-const POOR_INVERSE_PX: f64 = 0.5;
 
 pub(super) fn report(path: &Path) -> Result<Report> {
-    let CameraFile { camera, format, oddities, inverse } = read_camera(path)?;
+    let CameraFile { camera, format, oddities, inverse } = camera_file::read(path)?;
     let mut report = Report::new("a camera");
     let centre = camera.model().centre();
     report.fact("format", format_name(format));
@@ -34,21 +33,19 @@ pub(super) fn report(path: &Path) -> Result<Report> {
                 inverse.worst_rad.to_degrees()
             ),
         );
-        if inverse.max_px > POOR_INVERSE_PX {
-            report.notes.push(format!(
-                "programs that project with the file's inverse polynomial are wrong by up to {:.1} px; \
-                 `photinus convert` writes a good one",
-                inverse.max_px
-            ));
-        }
     }
     let (worst_px, answered) = round_trip(&camera);
     report.fact(
         "round trip",
-        format!("pixel to bearing to pixel within {worst_px:.0e} px, over {:.0} % of the image", 100.0 * answered),
+        format!(
+            "pixel to bearing to pixel within {worst_px:.0e} px, over {:.0} % of the image",
+            100.0 * answered
+        ),
     );
     if worst_px > ROUND_TRIP_PX {
-        report.notes.push(format!("a pixel comes back from its bearing {worst_px:.1e} px away: report this file"));
+        report
+            .notes
+            .push(format!("a pixel comes back from its bearing {worst_px:.1e} px away: report this file"));
     }
     report.notes.extend(oddities);
     Ok(report)
@@ -95,7 +92,9 @@ fn field_of_view(camera: &Camera) -> String {
     let corners = [to(-0.5, -0.5), to(right, bottom), to(right, -0.5), to(-0.5, bottom)];
     let diagonal = (corners[0] + corners[1]).max(corners[2] + corners[3]).to_degrees();
     let widest = corners.into_iter().fold(0.0, f64::max).to_degrees();
-    format!("horizontal {horizontal}, vertical {vertical}, diagonal {diagonal:.1}°, widest {widest:.1}° off the axis")
+    format!(
+        "horizontal {horizontal}, vertical {vertical}, diagonal {diagonal:.1}°, widest {widest:.1}° off the axis"
+    )
 }
 
 fn limit(camera: &Camera) -> String {
@@ -161,7 +160,10 @@ mod tests {
         // phi = k r with k = 3.767e-3 rad/px: 752 px across are 162.3 deg.
         let lens = Ideal::new(IdealLaw::Equidistant, [1.0 / 3.767e-3; 2], Pixel::new(375.5, 239.5)).unwrap();
         let camera = Camera::new(Model::Ideal(lens.clone()), 752, 480, None).unwrap();
-        assert!(field_of_view(&camera).starts_with("horizontal 162.3°, vertical 103.6°, diagonal 192.5°, widest 96.3°"));
+        assert!(
+            field_of_view(&camera)
+                .starts_with("horizontal 162.3°, vertical 103.6°, diagonal 192.6°, widest 96.3°")
+        );
         let limited = Camera::new(Model::Ideal(lens), 752, 480, Some(1.0)).unwrap();
         assert!(field_of_view(&limited).starts_with("horizontal 114.6°, vertical 103.6°, diagonal 114.6°"));
         let (worst_px, answered) = round_trip(&camera);

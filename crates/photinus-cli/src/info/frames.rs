@@ -8,9 +8,10 @@ use photinus_io::dataset::Dataset;
 use photinus_io::image::{ImageFile, read_image};
 use photinus_io::mask::read_mask;
 use photinus_io::video::Y4mFrames;
-use photinus_io::{Error, Result, read_camera};
+use photinus_io::{Error, Result};
 
 use super::{Report, airframe, counted};
+use crate::camera_file;
 use crate::spot_curve::read_spot_curve;
 
 pub(super) fn image(path: &Path) -> Result<Report> {
@@ -44,7 +45,10 @@ pub(super) fn video(path: &Path) -> Result<Report> {
     let mut frames = Y4mFrames::new(file, path)?;
     let mut report = Report::new("a Y4M video");
     report.fact("size", format!("{} x {} px", frames.width(), frames.height()));
-    report.fact("rate", frames.rate_hz().map_or("unknown".to_owned(), |rate| format!("{rate} frames per second")));
+    report.fact(
+        "rate",
+        frames.rate_hz().map_or("unknown".to_owned(), |rate| format!("{rate} frames per second")),
+    );
     report.notes.extend(frames.conversions().iter().map(ToString::to_string));
     let rate_hz = frames.rate_hz();
     let (mut whole, mut last) = (0_u32, None);
@@ -66,11 +70,14 @@ pub(super) fn dataset(folder: &Path) -> Result<Report> {
     let mut report = Report::new("a dataset");
     let span_s = rows.last().zip(rows.first()).map_or(0.0, |(last, first)| last.time_s - first.time_s);
     report.fact("frames", format!("{} over {span_s:.2} s", rows.len()));
-    report.fact("camera ran at", format!("{} frames per second, {} us exposure", info.rate_hz, info.exposure_us));
+    report.fact(
+        "camera ran at",
+        format!("{} frames per second, {} us exposure", info.rate_hz, info.exposure_us),
+    );
     let with_gravity = rows.iter().filter(|row| row.gravity.is_some()).count();
     report.fact("gravity", format!("known for {with_gravity} of {} frames", rows.len()));
 
-    let camera = read_camera(&dataset.path(&info.camera));
+    let camera = camera_file::read(&dataset.path(&info.camera));
     let size = camera.as_ref().ok().map(|file| (file.camera.width(), file.camera.height()));
     let mut part = |name: &str, told: Result<String>| match told {
         Ok(text) => report.facts.row([name.to_owned(), text]),
@@ -130,7 +137,9 @@ fn images(dataset: &Dataset, size: Option<(usize, usize)>, notes: &mut Vec<Strin
         Some(Ok(file)) => {
             let (width, height) = (file.image.width(), file.image.height());
             if size.is_some_and(|size| size != (width, height)) {
-                notes.push(format!("the first image is {width}x{height}, which is not the size of the camera"));
+                notes.push(format!(
+                    "the first image is {width}x{height}, which is not the size of the camera"
+                ));
             }
             format!("{}, {width} x {height} px", dataset.frames().len() - missing.len())
         }

@@ -51,7 +51,8 @@ pub(super) fn blink(path: &Path) -> Result<Report> {
         let values = words.iter().map(|word| of(word));
         (values.clone().min().unwrap_or(0), values.max().unwrap_or(0))
     };
-    let told = |(low, high): (usize, usize)| if low == high { low.to_string() } else { format!("{low} to {high}") };
+    let told =
+        |(low, high): (usize, usize)| if low == high { low.to_string() } else { format!("{low} to {high}") };
     report.fact("bits on", told(range(|word| word.iter().filter(|&&on| on).count())));
     report.fact("longest dark run", format!("{} frames", told(range(|word| longest_run(word, false)))));
     report.fact("longest lit run", format!("{} frames", told(range(|word| longest_run(word, true)))));
@@ -59,7 +60,9 @@ pub(super) fn blink(path: &Path) -> Result<Report> {
         report.notes.push("a word that is never on shows no marker".to_owned());
     }
     if let Some((a, b)) = same_when_turned(words) {
-        report.notes.push(format!("words {a} and {b} are the same but for their beginning: they cannot be told apart"));
+        report.notes.push(format!(
+            "words {a} and {b} are the same but for their beginning: they cannot be told apart"
+        ));
     }
     Ok(report)
 }
@@ -76,7 +79,8 @@ fn longest_run(word: &[bool], value: bool) -> usize {
 
 /// Two words that are each other, begun at another bit.
 fn same_when_turned(words: &[Vec<bool>]) -> Option<(usize, usize)> {
-    let turned = |word: &[bool], by: usize| word[by..].iter().chain(&word[..by]).copied().collect::<Vec<bool>>();
+    let turned =
+        |word: &[bool], by: usize| word[by..].iter().chain(&word[..by]).copied().collect::<Vec<bool>>();
     let same = |a: usize, b: usize| (0..words[b].len()).any(|by| turned(&words[b], by) == words[a]);
     (0..words.len()).flat_map(|b| (0..b).map(move |a| (a, b))).find(|&(a, b)| same(a, b))
 }

@@ -2,8 +2,8 @@
 
 use photinus::frame::FrameView;
 use tiny_skia::{
-    ColorU8 as Colour, FillRule, LineCap, LineJoin, Paint, Path, PathBuilder, Pixmap, Point, PremultipliedColorU8, Rect,
-    Stroke, Transform,
+    ColorU8 as Colour, FillRule, LineCap, LineJoin, Paint, Path, PathBuilder, Pixmap, Point,
+    PremultipliedColorU8, Rect, Stroke, Transform,
 };
 
 use super::text::Font;
@@ -56,7 +56,12 @@ impl<'f> Canvas<'f> {
     /// A picture of one colour; `None` when there is no memory for one so large.
     pub(super) fn new(width: u32, height: u32, ground: Colour, font: &'f Font) -> Option<Self> {
         let mut pixmap = Pixmap::new(width, height)?;
-        pixmap.fill(tiny_skia::Color::from_rgba8(ground.red(), ground.green(), ground.blue(), ground.alpha()));
+        pixmap.fill(tiny_skia::Color::from_rgba8(
+            ground.red(),
+            ground.green(),
+            ground.blue(),
+            ground.alpha(),
+        ));
         Some(Self { pixmap, font })
     }
 
@@ -66,7 +71,13 @@ impl<'f> Canvas<'f> {
     }
 
     /// A grey frame, every pixel `scale` x `scale` large, its levels replaced through `levels`.
-    pub(super) fn frame(&mut self, frame: &FrameView<'_>, (left, top): (u32, u32), scale: u32, levels: &[u8; 256]) {
+    pub(super) fn frame(
+        &mut self,
+        frame: &FrameView<'_>,
+        (left, top): (u32, u32),
+        scale: u32,
+        levels: &[u8; 256],
+    ) {
         let (width, height) = (self.pixmap.width() as usize, self.pixmap.height() as usize);
         let (left, top, scale) = (left as usize, top as usize, scale.max(1) as usize);
         let rows = (frame.height() * scale).min(height.saturating_sub(top));

@@ -21,12 +21,8 @@ pub(super) const SPOT: Colour = opaque(0xF0, 0xE4, 0x42);
 pub(super) const REJECTED: Colour = opaque(0xE8, 0x6A, 0x17);
 
 /// Sky blue, orange, bluish green, reddish purple; blue and green a shade off the published ones, for both grounds.
-const NEIGHBOURS: [Colour; 4] = [
-    opaque(0x3F, 0xA7, 0xE0),
-    opaque(0xE6, 0x9F, 0x00),
-    opaque(0x19, 0xB4, 0x88),
-    opaque(0xCC, 0x79, 0xA7),
-];
+const NEIGHBOURS: [Colour; 4] =
+    [opaque(0x3F, 0xA7, 0xE0), opaque(0xE6, 0x9F, 0x00), opaque(0x19, 0xB4, 0x88), opaque(0xCC, 0x79, 0xA7)];
 
 /// The colour of neighbour `number`: after the last one the first follows again, told apart by their numbers.
 pub(super) fn neighbour(number: usize) -> Colour {

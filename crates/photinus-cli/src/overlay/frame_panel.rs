@@ -36,13 +36,14 @@ impl FramePanel {
         }
         let mut labels = Labels::new(area);
         for spot in &record.spots {
-            labels.take(self.at(spot.u_px, spot.v_px), self.radius(spot.area_px));
+            labels.take(self.at(spot.u_px, spot.v_px), self.radius_of(record, spot));
         }
         for (number, neighbour) in record.neighbours.iter().enumerate() {
             self.neighbour(canvas, &mut labels, record, neighbour, number);
         }
         for (index, spot) in record.spots.iter().enumerate() {
-            self.spot(canvas, &mut labels, spot, index, colour_of_spot(record, index));
+            let mark = (self.radius_of(record, spot), colour_of_spot(record, index));
+            self.spot(canvas, &mut labels, spot, index, mark);
         }
         for rejected in &record.rejected {
             self.rejected(canvas, &mut labels, rejected);
@@ -88,9 +89,15 @@ impl FramePanel {
         canvas.words(words(&second), Point::from_xy(corner.x, corner.y + 2.2 * size), Align::Left);
     }
 
-    fn spot(&self, canvas: &mut Canvas<'_>, labels: &mut Labels, spot: &SpotRecord, index: usize, colour: Colour) {
+    fn spot(
+        &self,
+        canvas: &mut Canvas<'_>,
+        labels: &mut Labels,
+        spot: &SpotRecord,
+        index: usize,
+        (radius, colour): (f32, Colour),
+    ) {
         let centre = self.at(spot.u_px, spot.v_px);
-        let radius = self.radius(spot.area_px);
         canvas.circle(centre, radius, Pen::new(colour, 1.6 * self.unit).on(colours::SHADE));
         self.label(canvas, labels, centre, radius, &index.to_string(), colour);
     }
@@ -105,7 +112,15 @@ impl FramePanel {
     }
 
     /// A short word beside a mark, where there is room.
-    fn label(&self, canvas: &mut Canvas<'_>, labels: &mut Labels, centre: Point, reach: f32, text: &str, colour: Colour) {
+    fn label(
+        &self,
+        canvas: &mut Canvas<'_>,
+        labels: &mut Labels,
+        centre: Point,
+        reach: f32,
+        text: &str,
+        colour: Colour,
+    ) {
         let size = 12.0 * self.unit;
         let words = Words { text, size, colour, halo: Some(colours::SHADE) };
         let (room, gap) = ((canvas.width_of(words), size), reach + 2.0 * self.unit);
@@ -122,7 +137,19 @@ impl FramePanel {
         Point::from_xy(x as f32, y as f32)
     }
 
-    /// A circle a little larger than the spot.
+    /// The circle of a spot: clear of its light, and of the next circle where there is room for that.
+    fn radius_of(&self, record: &FrameRecord, spot: &SpotRecord) -> f32 {
+        let squared = |other: &SpotRecord| {
+            let (du, dv) = (other.u_px - spot.u_px, other.v_px - spot.v_px);
+            du * du + dv * dv
+        };
+        // The spot itself, and another in the very same place, leave no room to speak of.
+        let others = record.spots.iter().map(squared).filter(|&squared| squared > 0.0);
+        let room = others.fold(f64::INFINITY, f64::min).sqrt() as f32 * self.scale as f32 / 2.0 - self.unit;
+        self.radius(spot.area_px).min(room).max(self.radius(spot.area_px) - 3.0 * self.unit)
+    }
+
+    /// A circle a little larger than so many pixels.
     fn radius(&self, area_px: u32) -> f32 {
         (f64::from(area_px) / std::f64::consts::PI).sqrt() as f32 * self.scale as f32 + 5.0 * self.unit
     }
@@ -146,7 +173,8 @@ fn distance_lines(distance: &Distance, number: usize) -> (String, String) {
 
 /// What a neighbour of a frame is called in the picture: A, B, ... and by its number after Z.
 pub(super) fn name(number: usize) -> String {
-    let letter = u8::try_from(number).ok().filter(|&number| number < 26).map(|number| char::from(b'A' + number));
+    let letter =
+        u8::try_from(number).ok().filter(|&number| number < 26).map(|number| char::from(b'A' + number));
     letter.map_or_else(|| (number + 1).to_string(), |letter| letter.to_string())
 }
 
@@ -164,8 +192,11 @@ fn chain<'a>(spots: &[&'a SpotRecord]) -> Vec<&'a SpotRecord> {
         });
         high - low
     };
-    let along: fn(&SpotRecord) -> f64 =
-        if spread(|spot| spot.u_px) >= spread(|spot| spot.v_px) { |spot| spot.u_px } else { |spot| spot.v_px };
+    let along: fn(&SpotRecord) -> f64 = if spread(|spot| spot.u_px) >= spread(|spot| spot.v_px) {
+        |spot| spot.u_px
+    } else {
+        |spot| spot.v_px
+    };
     let mut sorted = spots.to_vec();
     sorted.sort_by(|a, b| along(a).total_cmp(&along(b)));
     sorted

@@ -16,7 +16,12 @@ impl Labels {
 
     /// Keeps words off a square around `centre`.
     pub(super) fn take(&mut self, centre: Point, reach: f32) {
-        self.taken.extend(Rect::from_ltrb(centre.x - reach, centre.y - reach, centre.x + reach, centre.y + reach));
+        self.taken.extend(Rect::from_ltrb(
+            centre.x - reach,
+            centre.y - reach,
+            centre.x + reach,
+            centre.y + reach,
+        ));
     }
 
     /// Takes room for a box of `width` x `height` beside `centre`, at least `reach` away across and down, and gives its

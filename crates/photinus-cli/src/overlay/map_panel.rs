@@ -28,7 +28,13 @@ pub(super) struct MapPanel<'a> {
 
 impl<'a> MapPanel<'a> {
     /// A plot in `area` wide enough for the neighbours of a frame. `field`: see [`Ground::field`].
-    pub(super) fn new(area: Rect, ground: Ground, field: &'a [bool], record: &FrameRecord, unit: f32) -> Self {
+    pub(super) fn new(
+        area: Rect,
+        ground: Ground,
+        field: &'a [bool],
+        record: &FrameRecord,
+        unit: f32,
+    ) -> Self {
         let range_m = range_for(record);
         // How far the field reaches behind the camera, as a share of the range.
         let cos = |degree: usize| libm::cos((degree as f64).to_radians());
@@ -64,7 +70,8 @@ impl<'a> MapPanel<'a> {
     }
 
     fn title(&self, canvas: &mut Canvas<'_>) {
-        let frame = if self.ground.is_level { "level, by gravity" } else { "camera frame, x right, z forward" };
+        let frame =
+            if self.ground.is_level { "level, by gravity" } else { "camera frame, x right, z forward" };
         let text = format!("From above ({frame}), {} m", self.range_m);
         let words = Words { text: &text, size: 14.0 * self.unit, colour: colours::INK, halo: None };
         let at = Point::from_xy(self.camera.x, self.on_rim(0.0).y - 16.0 * self.unit);
@@ -118,7 +125,7 @@ impl<'a> MapPanel<'a> {
         let colour = colours::neighbour(number);
         let way = self.ground.of(&neighbour.bearing.into());
         let (distance, slant) = (&neighbour.distance_m, way.norm());
-        if !(slant >= 1e-3 && slant <= 1.0 + 1e-9) {
+        if !(1e-3..=1.0 + 1e-9).contains(&slant) {
             // Straight above or below (or no direction at all, in results of others): a point.
             return canvas.disc(self.camera, 6.0 * self.unit, colour);
         }
@@ -163,7 +170,13 @@ impl<'a> MapPanel<'a> {
         canvas.polygon(&corners.map(|corner| self.at(corner)), colours::neighbour(number));
     }
 
-    fn label(&self, canvas: &mut Canvas<'_>, labels: &mut Labels, neighbour: &NeighbourRecord, number: usize) {
+    fn label(
+        &self,
+        canvas: &mut Canvas<'_>,
+        labels: &mut Labels,
+        neighbour: &NeighbourRecord,
+        number: usize,
+    ) {
         let distance = &neighbour.distance_m;
         let way = self.ground.of(&neighbour.bearing.into());
         let rim_m = self.range_m / way.norm().max(1e-3);
@@ -175,14 +188,17 @@ impl<'a> MapPanel<'a> {
         let size = 13.0 * self.unit;
         let words = Words { text: &text, size, colour: colours::INK, halo: Some(colours::PAPER) };
         labels.take(at, 6.0 * self.unit);
-        if let Some(corner) = labels.place(at, (10.0 * self.unit, 10.0 * self.unit), (canvas.width_of(words), size)) {
+        if let Some(corner) =
+            labels.place(at, (10.0 * self.unit, 10.0 * self.unit), (canvas.width_of(words), size))
+        {
             canvas.words(words, Point::from_xy(corner.x, corner.y + 0.86 * size), Align::Left);
         }
     }
 
     fn own_camera(&self, canvas: &mut Canvas<'_>) {
         let px = |px: f32| f64::from(px * self.unit) / self.px_per_m;
-        let corners = [Vector2::new(0.0, px(9.0)), Vector2::new(px(7.0), -px(6.0)), Vector2::new(-px(7.0), -px(6.0))];
+        let corners =
+            [Vector2::new(0.0, px(9.0)), Vector2::new(px(7.0), -px(6.0)), Vector2::new(-px(7.0), -px(6.0))];
         canvas.polygon(&corners.map(|corner| self.at(corner)), colours::INK);
     }
 
@@ -218,7 +234,8 @@ fn range_for(record: &FrameRecord) -> f64 {
 
 /// A step of 1, 2 or 5 times a power of ten that divides the range into four or five, or a quarter of it.
 fn ring_step(range_m: f64) -> f64 {
-    let divides = |step_m: &f64| (3.9..=5.1).contains(&(range_m / step_m)) && (range_m / step_m).fract() < 1e-9;
+    let divides =
+        |step_m: &f64| (3.9..=5.1).contains(&(range_m / step_m)) && (range_m / step_m).fract() < 1e-9;
     [0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0].into_iter().find(divides).unwrap_or(range_m / 4.0)
 }
 

@@ -32,7 +32,7 @@ use map_panel::MapPanel;
 use text::Font;
 
 /// The width that a frame is drawn at, px, as near as whole pixels come to it.
-const FRAME_WIDTH_PX: u32 = 1200;
+const FRAME_WIDTH_PX: u32 = 1450;
 /// The picture's smallest height without legend, px: the map needs room.
 const SMALLEST_HEIGHT_PX: u32 = 480;
 

@@ -9,7 +9,7 @@ use photinus_io::results::{FrameRecord, NeighbourRecord};
 
 use crate::Settings;
 use crate::pairing::leds::LedPairing;
-use crate::pairing::neighbours::pair;
+use crate::pairing::neighbours::{bearing_error_rad, pair};
 
 /// How much `distance_m` of truth may differ from the length of its position, as a share of it.
 const DISTANCE_TOLERANCE: f64 = 1e-3;
@@ -111,6 +111,13 @@ pub struct Pair<'a> {
     pub truth: &'a TruthNeighbour,
     /// What was reported.
     pub found: &'a NeighbourRecord,
+}
+
+impl Pair<'_> {
+    /// The angle between the reported bearing and truth, rad.
+    pub fn bearing_error_rad(&self) -> Option<f64> {
+        bearing_error_rad(self.truth, self.found)
+    }
 }
 
 /// A frame of truth and what the results say of it.

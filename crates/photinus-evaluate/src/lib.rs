@@ -21,6 +21,7 @@ mod score;
 
 use photinus_io::dataset::TruthFrame;
 use photinus_io::results::FrameRecord;
+use serde::Serialize;
 
 pub use frames::{EvaluateError, Pair, Side};
 pub use score::bounds::{BoundScore, Bounds, Violation};
@@ -34,7 +35,7 @@ pub use score::tracks::{IdentityScore, TrackScore};
 pub use score::{Frames, Scores};
 
 /// What a user may choose about scoring.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Settings {
     /// A spot is no farther than this from its LED, px, or than its own radius where that is more. Default 3.
     pub spot_gate_px: f64,
@@ -44,7 +45,8 @@ pub struct Settings {
     pub lateral_gate_m: f64,
     /// Times of the same frame may differ by this, s. Default 1 ms.
     pub time_tolerance_s: f64,
-    /// How distances are binned.
+    /// How distances are binned: the edges between bins, m.
+    #[serde(rename = "bins_m")]
     pub bins: RangeBins,
 }
 

@@ -12,7 +12,6 @@ pub(crate) mod tracks;
 use serde::Serialize;
 
 use crate::frames::Compared;
-use crate::pairing::neighbours::bearing_error_rad;
 use crate::{Bounds, ByRange, DistanceScore, IdentityScore, Neighbours, PaperScore, PositionScore};
 use crate::{Settings, Spots, Spread, TrackScore};
 
@@ -72,7 +71,7 @@ pub(crate) fn score(compared: &Compared<'_>, settings: &Settings) -> Scores {
             bins,
             pairs,
             |pair| Some(pair.truth.distance_m),
-            |pairs| Spread::of(pairs.iter().filter_map(|pair| bearing_error_rad(pair.truth, pair.found))),
+            |pairs| Spread::of(pairs.iter().filter_map(|pair| pair.bearing_error_rad())),
         ),
         distance: ByRange::new(bins, pairs, |pair| Some(pair.truth.distance_m), DistanceScore::new),
         bounds: Bounds::new(pairs, bins),

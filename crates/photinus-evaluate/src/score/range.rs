@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 /// The edges between bins of distance.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RangeBins(Vec<f64>);
 
 impl RangeBins {

@@ -6,6 +6,7 @@ mod bins;
 mod plots;
 mod tables;
 
+use std::fs::File;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -109,20 +110,21 @@ pub(crate) fn run(args: &Args, terminal: &Terminal) -> Result<(), Failure> {
     let dataset = Dataset::read(&args.dataset).map_err(Failure::input)?;
     let truth = read_truth(args, &dataset)?;
     let (results, bad_lines) = read_records(args, &dataset, terminal)?;
+    let json = args.json.as_deref().map(|path| JsonFile::open(path, args, &dataset)).transpose()?;
+    let plots = args.plots.as_deref().map(PlotFolder::create).transpose().map_err(Failure::input)?;
     let settings = args.settings(&dataset);
     let evaluation = evaluate(&truth, &results, &settings).map_err(|error| args.refuse(&error))?;
-    let is_json_alone = args.json.as_deref().is_some_and(|path| path.as_os_str() == "-");
-    let plots = args.plots.as_deref().map(PlotFolder::create).transpose().map_err(Failure::input)?;
 
-    if let Some(path) = &args.json {
+    let is_for_people = !args.quiet && !matches!(json, Some(JsonFile::Standard));
+    if let Some(json) = json {
         let (dataset, results, scores) = (&args.dataset, &args.results, &evaluation.scores);
-        write_json(path, &args.results, &Report { dataset, results, settings: &settings, scores }, terminal)?;
+        json.write(&Report { dataset, results, settings: &settings, scores }, terminal)?;
     }
     if let Some(plots) = plots {
         plots.draw(&evaluation, &truth).map_err(Failure::running)?;
     }
     warn(&evaluation.scores, args, terminal);
-    if !(is_json_alone || args.quiet) {
+    if is_for_people {
         terminal.result(tables::Tables(&evaluation.scores))?;
     }
     if bad_lines > 0 { Err(Failure::Frames { all: results.is_empty() }) } else { Ok(()) }
@@ -177,14 +179,33 @@ fn read_records(
     }
 }
 
-fn write_json(path: &Path, results: &Path, report: &Report<'_>, terminal: &Terminal) -> Result<(), Failure> {
-    let text = serde_json::to_string_pretty(report)
-        .map_err(|error| Failure::running(Error::format(path, error.to_string())))?;
-    if path.as_os_str() == "-" {
-        return terminal.result(text);
+/// Where the JSON goes, open before any work is done.
+enum JsonFile {
+    Standard,
+    File(File, PathBuf),
+}
+
+impl JsonFile {
+    fn open(path: &Path, args: &Args, dataset: &Dataset) -> Result<Self, Failure> {
+        if path.as_os_str() == "-" {
+            return Ok(Self::Standard);
+        }
+        let of_dataset = ["dataset.toml", "frames.csv", "truth.jsonl"].map(|name| dataset.path(name));
+        let read: Vec<PathBuf> = of_dataset.into_iter().chain([args.results.clone()]).collect();
+        refuse_to_replace(path, &read)?;
+        Ok(Self::File(create(path)?, path.to_owned()))
     }
-    refuse_to_replace(path, &[results.to_owned()])?;
-    writeln!(create(path)?, "{text}").map_err(|error| Failure::running(Error::io(path, error)))
+
+    fn write(self, report: &Report<'_>, terminal: &Terminal) -> Result<(), Failure> {
+        let text = serde_json::to_string_pretty(report)
+            .map_err(|error| Failure::Running(format!("the scores as JSON: {error}")))?;
+        match self {
+            Self::Standard => terminal.result(text),
+            Self::File(mut file, path) => {
+                writeln!(file, "{text}").map_err(|error| Failure::running(Error::io(path, error)))
+            }
+        }
+    }
 }
 
 /// What is likely not meant.

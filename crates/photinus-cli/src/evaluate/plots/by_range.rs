@@ -43,9 +43,16 @@ fn marked(data: Vec<(f64, f64)>, colour: &str, marker: MarkerShape, legend: &str
         return Vec::new();
     }
     let marks = points(data.clone(), colour, marker, legend).with_size(4.0).with_marker_opacity(1.0);
-    let mut joined = line(data, colour, "");
-    joined.legend_label = None;
-    vec![joined.into(), marks.into()]
+    vec![line(data, colour).into(), marks.into()]
+}
+
+/// Points, their colour, mark and name.
+type Kind<'a> = (Vec<(f64, f64)>, &'a str, MarkerShape, &'a str);
+
+/// Points of several kinds, where there are any.
+fn named_points<const N: usize>(kinds: [Kind<'_>; N]) -> Vec<Plot> {
+    let kinds = kinds.into_iter().filter(|kind| !kind.0.is_empty());
+    kinds.map(|(data, colour, marker, legend)| points(data, colour, marker, legend).into()).collect()
 }
 
 /// Points of pairs over the true distance.
@@ -123,7 +130,7 @@ fn distance_error(scores: &Scores, pairs: &[Pair<'_>]) -> Option<Figure> {
     plots.extend(marked(bias, ESTIMATE, MarkerShape::Square, "bias"));
     plots.extend(marked(rms, WRONG, MarkerShape::Triangle, "rms"));
     let mut figure = figure("distance-error", plots, "estimate - truth (m)")?;
-    figure.layout = figure.layout.with_reference_line(level(0.0, ""));
+    figure.layout = figure.layout.with_reference_line(level(0.0));
     Some(figure)
 }
 
@@ -133,20 +140,19 @@ fn bounds(pairs: &[Pair<'_>]) -> Option<Figure> {
     if near.is_empty() {
         return None;
     }
-    let (low, high): (Vec<_>, Vec<_>) = near.into_iter().partition(|point| point.1 > 0.0);
-    let (beyond, above): (Vec<_>, Vec<_>) = far.into_iter().partition(|point| point.1 < 0.0);
-    let mut plots: Vec<Plot> = Vec::new();
-    for (data, colour, marker, legend) in [
-        (above, PERPENDICULAR, MarkerShape::TriangleDown, "max - truth"),
-        (high, INLINE, MarkerShape::Triangle, "min - truth"),
-        ([low, beyond].concat(), WRONG, MarkerShape::Cross, "violated"),
-    ] {
-        if !data.is_empty() {
-            plots.push(points(data, colour, marker, legend).into());
-        }
+    let (too_far, near): (Vec<_>, Vec<_>) = near.into_iter().partition(|point| point.1 > 0.0);
+    let (too_near, far): (Vec<_>, Vec<_>) = far.into_iter().partition(|point| point.1 < 0.0);
+    let violations = [too_far, too_near].concat();
+    let mut plots = named_points([
+        (far, PERPENDICULAR, MarkerShape::TriangleDown, "max - truth"),
+        (near, INLINE, MarkerShape::Triangle, "min - truth"),
+    ]);
+    if !violations.is_empty() {
+        let crosses = points(violations, WRONG, MarkerShape::Cross, "violated");
+        plots.push(crosses.with_size(5.0).with_marker_opacity(1.0).into());
     }
     let mut figure = figure("bounds", plots, "bound - truth (m)")?;
-    figure.layout = figure.layout.with_reference_line(level(0.0, "truth"));
+    figure.layout = figure.layout.with_reference_line(level(0.0));
     Some(figure)
 }
 
@@ -165,7 +171,7 @@ fn position_nees(scores: &Scores) -> Option<Figure> {
     }
     plots.extend(marked(nees, ESTIMATE, MarkerShape::Circle, "mean NEES / 3"));
     let mut figure = figure("position-nees", plots, "NEES of the position / 3")?;
-    figure.layout = figure.layout.with_reference_line(level(1.0, "")).with_y_axis_min(0.0);
+    figure.layout = figure.layout.with_reference_line(level(1.0)).with_y_axis_min(0.0);
     Some(figure)
 }
 
@@ -175,17 +181,12 @@ fn paper(pairs: &[Pair<'_>]) -> Option<Figure> {
     if perpendicular.is_empty() && inline.is_empty() {
         return None;
     }
-    let mut plots: Vec<Plot> = Vec::new();
     let both = perpendicular.iter().chain(&inline).map(|point| point.0);
     let (nearest, farthest) = both.fold((f64::INFINITY, 0.0f64), |(near, far), x| (near.min(x), far.max(x)));
-    for (data, colour, marker, legend) in [
+    let mut plots = named_points([
         (perpendicular, PERPENDICULAR, MarkerShape::TriangleDown, "l_A (perpendicular)"),
         (inline, INLINE, MarkerShape::Triangle, "l_B (inline)"),
-    ] {
-        if !data.is_empty() {
-            plots.push(points(data, colour, marker, legend).into());
-        }
-    }
-    plots.push(line(vec![(nearest, nearest), (farthest, farthest)], TRUTH, "truth").into());
+    ]);
+    plots.push(line(vec![(nearest, nearest), (farthest, farthest)], TRUTH).with_legend("truth").into());
     figure("paper-distances", plots, "distance (m)")
 }

@@ -10,7 +10,7 @@ use photinus_io::dataset::TruthFrame;
 use super::Figure;
 use super::style::{BOUNDS, ESTIMATE, INLINE, PERPENDICULAR, TRUTH, axes, band, line, points, thinned};
 
-/// The axis ends at so many times the farthest truth, and bounds beyond it are cut there.
+/// The axis ends at so many times the farthest truth: bounds are cut there, and estimates beyond it are not drawn.
 const HEADROOM: f64 = 1.4;
 
 /// The figure of neighbour `id`; `None` where it was never found.
@@ -49,7 +49,7 @@ pub(super) fn distance(id: u32, evaluation: &Evaluation<'_>, truth: &[TruthFrame
         }
     }
     let truth = thinned(there.iter().map(|&(_, time_s, distance_m)| (time_s, distance_m)).collect());
-    plots.push(line(truth, TRUTH, "truth").into());
+    plots.push(line(truth, TRUTH).with_legend("truth").into());
     let layout = axes(&plots, "time (s)", "distance (m)")
         .with_title(format!("neighbour {id}"))
         .with_width(900.0)

@@ -1,5 +1,6 @@
 //! How figures look. Colours stay apart for colour-blind eyes (Okabe and Ito 2008); line style or mark tells the same.
 
+use kuva::plot::legend::{LegendEntry, LegendShape};
 use kuva::plot::scatter::MarkerShape;
 use kuva::prelude::{BandPlot, Layout, LegendPosition, LinePlot, Plot, ReferenceLine, ScatterPlot, Theme};
 
@@ -22,8 +23,20 @@ pub(super) fn axes(plots: &[Plot], x_label: &str, y_label: &str) -> Layout {
         .with_theme(Theme::minimal())
         .with_x_label(x_label)
         .with_y_label(y_label)
+        .with_legend_entries(plots.iter().filter_map(entry).collect())
         .with_legend_position(LegendPosition::OutsideBottomColumns)
         .with_legend_box(false)
+}
+
+/// What the legend says of a plot: the library leaves out bands.
+fn entry(plot: &Plot) -> Option<LegendEntry> {
+    let (label, color, shape) = match plot {
+        Plot::Scatter(points) => (&points.legend_label, &points.color, LegendShape::Marker(points.marker)),
+        Plot::Line(line) => (&line.legend_label, &line.color, LegendShape::Line),
+        Plot::Band(band) => (&band.legend_label, &band.color, LegendShape::Rect),
+        _ => return None,
+    };
+    Some(LegendEntry { label: label.clone()?, color: color.clone(), shape, dasharray: None })
 }
 
 /// Every n-th, so that no more than a figure can show are left.
@@ -44,8 +57,8 @@ pub(super) fn points(data: Vec<(f64, f64)>, colour: &str, marker: MarkerShape, l
 }
 
 /// A line.
-pub(super) fn line(data: Vec<(f64, f64)>, colour: &str, legend: &str) -> LinePlot {
-    LinePlot::new().with_data(data).with_color(colour).with_stroke_width(1.8).with_legend(legend)
+pub(super) fn line(data: Vec<(f64, f64)>, colour: &str) -> LinePlot {
+    LinePlot::new().with_data(data).with_color(colour).with_stroke_width(1.8)
 }
 
 /// An area between two lines, of points (x, lower, upper).
@@ -57,6 +70,6 @@ pub(super) fn band(data: &[(f64, f64, f64)], colour: &str) -> BandPlot {
 }
 
 /// A dashed line across, for what a value should be.
-pub(super) fn level(value: f64, label: &str) -> ReferenceLine {
-    ReferenceLine::horizontal(value).with_color(FAINT).with_label(label)
+pub(super) fn level(value: f64) -> ReferenceLine {
+    ReferenceLine::horizontal(value).with_color(FAINT)
 }

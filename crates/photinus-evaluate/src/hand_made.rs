@@ -78,6 +78,7 @@ pub(crate) fn record(frame: u64, spots: Vec<SpotRecord>, neighbours: Vec<Neighbo
     FrameRecord {
         frame: Some(frame),
         time_s: Some(frame as f64 / 10.0),
+        latency_s: None,
         source: String::new(),
         spots,
         rejected: vec![],

@@ -31,7 +31,8 @@ impl fmt::Display for Tables<'_> {
         bounds(f, &scores.bounds)?;
         paper(f, scores)?;
         identity(f, scores.identity.as_ref())?;
-        tracks(f, scores.tracks.as_ref())
+        tracks(f, scores.tracks.as_ref())?;
+        latency(f, scores.latency_s.as_ref())
     }
 }
 
@@ -202,4 +203,11 @@ fn tracks(f: &mut fmt::Formatter<'_>, score: Option<&TrackScore>) -> fmt::Result
         score.fragments,
         percent(score.coverage)
     )
+}
+
+fn latency(f: &mut fmt::Formatter<'_>, latency_s: Option<&Spread>) -> fmt::Result {
+    let Some(latency_s) = latency_s else { return Ok(()) };
+    let [median, p95, max] =
+        [latency_s.median, latency_s.p95, latency_s.max].map(|s| number(s.map(|s| 1e3 * s), 1));
+    writeln!(f, "\nlatency  median {median} ms, 95 % {p95} ms, longest {max} ms")
 }

@@ -56,6 +56,7 @@ fn result(frame: u64) -> FrameRecord {
     FrameRecord {
         frame: Some(frame),
         time_s: Some(frame as f64 / 20.0),
+        latency_s: Some(0.004),
         source: String::new(),
         spots: vec![],
         rejected: vec![],
@@ -105,6 +106,8 @@ fn tables_and_json_say_how_well_it_went() {
     assert_eq!(scores["position"]["overall"]["nees"], 1.0);
     assert_eq!(scores["bounds"]["violations"][0]["frame"], 7);
     assert_eq!(scores["bounds"]["overall"]["inside"], 18);
+    assert_eq!(scores["latency_s"]["median"], 0.004);
+    assert!(done.out.contains("latency  median 4.0 ms, 95 % 4.0 ms, longest 4.0 ms"));
     assert_eq!(scores["paper"]["overall"]["between"], 1.0);
     assert_eq!(scores["spots"]["overall"]["recall"], 0.0);
     assert_eq!(scores["bearing_error_rad"]["bins"][0]["to_m"], 5.0);

@@ -38,6 +38,8 @@ pub struct Scores {
     pub identity: Option<IdentityScore>,
     /// Tracks; `None` where no neighbour is on one.
     pub tracks: Option<TrackScore>,
+    /// From the end of the exposure until the result stood, s; `None` where no record tells.
+    pub latency_s: Option<Spread>,
 }
 
 /// Frames on either side.
@@ -58,6 +60,9 @@ pub(crate) fn score(compared: &Compared<'_>, settings: &Settings) -> Scores {
     let (bins, pairs) = (&settings.bins, &compared.pairs);
     let evaluated = compared.frames.iter().filter(|frame| frame.record.is_some()).count();
     let truth = compared.frames.len();
+    let latency_s = Spread::of(
+        compared.frames.iter().filter_map(|frame| frame.record.and_then(|record| record.latency_s)),
+    );
     Scores {
         frames: Frames {
             truth,
@@ -79,5 +84,6 @@ pub(crate) fn score(compared: &Compared<'_>, settings: &Settings) -> Scores {
         paper: ByRange::new(bins, pairs, |pair| Some(pair.truth.distance_m), PaperScore::new),
         identity: IdentityScore::new(pairs),
         tracks: TrackScore::new(compared),
+        latency_s: Some(latency_s).filter(|latency_s| latency_s.count > 0),
     }
 }

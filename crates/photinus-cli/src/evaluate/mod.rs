@@ -125,7 +125,7 @@ pub(crate) fn run(args: &Args, terminal: &Terminal) -> Result<(), Failure> {
     }
     warn(&evaluation.scores, args, terminal);
     if is_for_people {
-        terminal.result(tables::Tables(&evaluation.scores))?;
+        terminal.result(tables::Tables(&evaluation.scores).to_string().trim_end())?;
     }
     if bad_lines > 0 { Err(Failure::Frames { all: results.is_empty() }) } else { Ok(()) }
 }

@@ -126,6 +126,7 @@ impl Entry {
         let record = FrameRecord {
             frame: Some(frame.index),
             time_s: frame.time_s,
+            latency_s: None,
             source: frame.source,
             spots: Vec::new(),
             rejected: Vec::new(),

@@ -3,6 +3,7 @@
 //! ```text
 //! input -> run: detect or locate, frame by frame -> output (JSON lines, CSV, overlay, lines to read) -> summary
 //! info, convert: what a file holds, and the same in another format
+//! evaluate: results against the truth of a dataset
 //! ```
 
 mod aligned;
@@ -10,6 +11,7 @@ mod beforehand;
 mod clock;
 mod convert;
 mod detect;
+mod evaluate;
 mod failure;
 mod info;
 mod input;
@@ -41,6 +43,7 @@ Examples:
   photinus info camera.txt                     what a file holds, whether it is in order
   photinus detect photo.png --overlay seen     the spots of a photo, and a picture of them
   photinus locate recording --out results.jsonl --overlay seen
+  photinus evaluate recording results.jsonl    how well that went, where the truth is known
 
 Every command explains itself: photinus locate --help
 
@@ -52,6 +55,7 @@ enum Command {
     Detect(detect::Args),
     Info(info::Args),
     Convert(convert::Args),
+    Evaluate(evaluate::Args),
 }
 
 fn main() -> ExitCode {
@@ -59,6 +63,7 @@ fn main() -> ExitCode {
     let quiet = match &command {
         Command::Locate(args) => args.quiet(),
         Command::Detect(args) => args.quiet(),
+        Command::Evaluate(args) => args.quiet(),
         Command::Info(_) | Command::Convert(_) => false,
     };
     let mut terminal = Terminal::new(quiet);
@@ -67,6 +72,7 @@ fn main() -> ExitCode {
         Command::Detect(args) => detect::run(&args, &mut terminal),
         Command::Info(args) => info::run(&args, &terminal),
         Command::Convert(args) => convert::run(&args, &mut terminal),
+        Command::Evaluate(args) => evaluate::run(&args, &terminal),
     };
     let Err(failure) = done else { return ExitCode::SUCCESS };
     if let Some(message) = failure.message() {

@@ -53,6 +53,7 @@ fn record() -> FrameRecord {
     FrameRecord {
         frame: Some(17),
         time_s: Some(0.283),
+        latency_s: None,
         source: "images/000017.png".to_owned(),
         spots: vec![
             spot(280.0, 231.0),

@@ -8,5 +8,6 @@
 
 mod bad_input;
 mod commands;
+mod evaluate;
 mod real_photos;
 mod stage;

@@ -15,6 +15,9 @@ pub struct FrameRecord {
     /// When it was taken, s.
     #[serde(default)]
     pub time_s: Option<f64>,
+    /// From the end of the exposure until the result stood, s, where that was measured.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub latency_s: Option<f64>,
     /// The image file or stream; empty where it is missing.
     #[serde(default)]
     pub source: String,

@@ -50,6 +50,7 @@ fn record() -> FrameRecord {
     FrameRecord {
         frame: Some(17),
         time_s: Some(0.283),
+        latency_s: None,
         source: "images/000017.png".to_owned(),
         spots: vec![spot()],
         rejected: vec![rejected],
@@ -115,8 +116,9 @@ fn numbers_that_are_not_finite_become_null() {
     let mut record = record();
     record.neighbours[0].distance_m.max = Some(f64::INFINITY);
     record.time_s = Some(f64::NAN);
+    record.latency_s = Some(f64::NAN);
     let read = read(&json(&record)).remove(0).unwrap();
-    assert_eq!((read.time_s, read.neighbours[0].distance_m.max), (None, None));
+    assert_eq!((read.time_s, read.latency_s, read.neighbours[0].distance_m.max), (None, None, None));
 }
 
 #[test]

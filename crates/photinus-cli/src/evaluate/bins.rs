@@ -1,0 +1,20 @@
+//! Numbers of the command line.
+
+use photinus_evaluate::RangeBins;
+
+/// Edges of bins, m.
+pub(super) fn parse(text: &str) -> Result<RangeBins, String> {
+    let edges: Result<Vec<f64>, _> = text.split(',').map(|edge| edge.trim().parse()).collect();
+    edges
+        .ok()
+        .and_then(RangeBins::new)
+        .ok_or_else(|| "give distances in m that grow, such as 2,5,10".to_owned())
+}
+
+/// A number above 0.
+pub(super) fn positive(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(value) if value > 0.0 && f64::is_finite(value) => Ok(value),
+        _ => Err("give a number above 0".to_owned()),
+    }
+}

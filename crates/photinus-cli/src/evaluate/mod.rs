@@ -1,0 +1,230 @@
+//! `photinus evaluate`: a dataset's truth and results -> tables, JSON, plots.
+//!
+//! What is counted and how stands in [`photinus_evaluate`]; here it is read, refused in words, and shown.
+
+mod bins;
+mod plots;
+mod tables;
+
+use std::fs::File;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use photinus_evaluate::{EvaluateError, RangeBins, Scores, Settings, Side, evaluate};
+use photinus_io::dataset::{Dataset, TruthFrame};
+use photinus_io::results::{FrameRecord, read_results};
+use photinus_io::{Error, Place};
+use serde::Serialize;
+
+use crate::failure::Failure;
+use crate::output::{create, refuse_to_replace};
+use crate::terminal::Terminal;
+use plots::PlotFolder;
+
+const EXAMPLES: &str = "\
+Examples:
+  photinus locate flight --out results.jsonl        first, locate
+  photinus evaluate flight results.jsonl            then see how well
+  photinus evaluate flight results.jsonl --plots figures --json scores.json
+  photinus evaluate flight results.jsonl --bins 2,5,10 -q --json - | jq .distance.overall
+
+Frames of truth that the results do not hold count as missed.";
+
+/// After so many bad lines the others are only counted.
+const REPORTED_LINES: usize = 5;
+
+/// Hold results against the truth of a dataset: recall, errors, bounds, covariances
+#[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
+pub(crate) struct Args {
+    /// The folder of a dataset with truth.jsonl
+    #[arg(value_name = "DIR")]
+    dataset: PathBuf,
+    /// What `photinus locate --out` wrote for it
+    #[arg(value_name = "RESULTS")]
+    results: PathBuf,
+    /// Write every number as JSON, described in docs/file-formats.md; - is standard output, in place of the tables
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+    /// Draw plots, PNG and SVG, into this folder, which is made
+    #[arg(long, value_name = "DIR")]
+    plots: Option<PathBuf>,
+    /// Edges between bins of true distance [default: 1,2,3,4,6,8,10,12,15,20,30,50]
+    #[arg(long, value_name = "M,M,...", value_parser = bins::parse)]
+    bins: Option<RangeBins>,
+    /// A spot is no farther than this from its LED, or than its own radius where that is more
+    #[arg(long, value_name = "PX", default_value_t = 3.0, value_parser = bins::positive)]
+    spot_gate: f64,
+    /// A neighbour's bearing is no farther than this from truth, but for near ones, which may be 0.6 m aside
+    #[arg(long, value_name = "DEG", default_value_t = 3.0, value_parser = bins::positive)]
+    bearing_gate: f64,
+    /// Print no tables and no warnings
+    #[arg(short, long)]
+    quiet: bool,
+}
+
+/// What `--json` writes.
+#[derive(Serialize)]
+struct Report<'a> {
+    dataset: &'a Path,
+    results: &'a Path,
+    settings: &'a Settings,
+    #[serde(flatten)]
+    scores: &'a Scores,
+}
+
+impl Args {
+    /// Whether only errors and results are to be printed.
+    pub(crate) fn quiet(&self) -> bool {
+        self.quiet
+    }
+
+    fn settings(&self, dataset: &Dataset) -> Settings {
+        Settings {
+            spot_gate_px: self.spot_gate,
+            bearing_gate_rad: self.bearing_gate.to_radians(),
+            time_tolerance_s: 0.5 / dataset.info().rate_hz,
+            bins: self.bins.clone().unwrap_or_default(),
+            ..Settings::default()
+        }
+    }
+
+    fn refuse(&self, error: &EvaluateError) -> Failure {
+        let (file, advice) = match error.side() {
+            Side::Truth => (self.dataset.join("truth.jsonl"), "mend the truth, or make it again"),
+            Side::Results if matches!(error, EvaluateError::RepeatedFrame(..)) => {
+                (self.results.clone(), "give the results of one run")
+            }
+            Side::Results => (self.results.clone(), "give the results of this dataset"),
+        };
+        let refused = Error::format(file, error.to_string()).advise(advice);
+        Failure::input(match error.frame() {
+            Some(frame) => refused.at(Place::Frame(frame)),
+            None => refused,
+        })
+    }
+}
+
+/// Runs the command.
+pub(crate) fn run(args: &Args, terminal: &Terminal) -> Result<(), Failure> {
+    let dataset = Dataset::read(&args.dataset).map_err(Failure::input)?;
+    let truth = read_truth(args, &dataset)?;
+    let (results, bad_lines) = read_records(args, &dataset, terminal)?;
+    let json = args.json.as_deref().map(|path| JsonFile::open(path, args, &dataset)).transpose()?;
+    let plots = args.plots.as_deref().map(PlotFolder::create).transpose().map_err(Failure::input)?;
+    let settings = args.settings(&dataset);
+    let evaluation = evaluate(&truth, &results, &settings).map_err(|error| args.refuse(&error))?;
+
+    let is_for_people = !args.quiet && !matches!(json, Some(JsonFile::Standard));
+    if let Some(json) = json {
+        let (dataset, results, scores) = (&args.dataset, &args.results, &evaluation.scores);
+        json.write(&Report { dataset, results, settings: &settings, scores }, terminal)?;
+    }
+    if let Some(plots) = plots {
+        plots.draw(&evaluation, &truth).map_err(Failure::running)?;
+    }
+    warn(&evaluation.scores, args, terminal);
+    if is_for_people {
+        terminal.result(tables::Tables(&evaluation.scores).to_string().trim_end())?;
+    }
+    if bad_lines > 0 { Err(Failure::Frames { all: results.is_empty() }) } else { Ok(()) }
+}
+
+fn read_truth(args: &Args, dataset: &Dataset) -> Result<Vec<TruthFrame>, Failure> {
+    let truth = dataset.truth().map_err(Failure::input)?;
+    truth.ok_or_else(|| {
+        Failure::input(
+            Error::format(&args.dataset, "the folder holds no truth.jsonl")
+                .advise("only results of a dataset with truth can be evaluated, such as a simulated one"),
+        )
+    })
+}
+
+/// The records that can be read, and how many lines cannot: their frames count as missed.
+fn read_records(
+    args: &Args,
+    dataset: &Dataset,
+    terminal: &Terminal,
+) -> Result<(Vec<FrameRecord>, usize), Failure> {
+    let (mut records, mut bad_lines) = (Vec::new(), 0);
+    for record in read_results(&args.results).map_err(Failure::input)? {
+        match record {
+            Ok(record) => records.push(record),
+            Err(error) => {
+                bad_lines += 1;
+                if bad_lines <= REPORTED_LINES {
+                    terminal.error(error);
+                }
+            }
+        }
+    }
+    if bad_lines > REPORTED_LINES {
+        terminal.error(format_args!("{} more lines are no results", bad_lines - REPORTED_LINES));
+    }
+    if records.is_empty() {
+        let refused = Error::format(&args.results, "it holds no result");
+        return Err(Failure::input(
+            refused.advise("give what `photinus locate --out` wrote for this dataset"),
+        ));
+    }
+    let is_listed = |frame: u64| dataset.frames().binary_search_by_key(&frame, |row| row.frame).is_ok();
+    match records.iter().filter_map(|record| record.frame).find(|&frame| !is_listed(frame)) {
+        None => Ok((records, bad_lines)),
+        Some(frame) => {
+            let listed = dataset.path("frames.csv");
+            let reason = format!("{} lists no such frame", listed.display());
+            let refused = Error::format(&args.results, reason).at(Place::Frame(frame));
+            Err(Failure::input(refused.advise("give the results of this dataset")))
+        }
+    }
+}
+
+/// Where the JSON goes, open before any work is done.
+enum JsonFile {
+    Standard,
+    File(File, PathBuf),
+}
+
+impl JsonFile {
+    fn open(path: &Path, args: &Args, dataset: &Dataset) -> Result<Self, Failure> {
+        if path.as_os_str() == "-" {
+            return Ok(Self::Standard);
+        }
+        let of_dataset = ["dataset.toml", "frames.csv", "truth.jsonl"].map(|name| dataset.path(name));
+        let read: Vec<PathBuf> = of_dataset.into_iter().chain([args.results.clone()]).collect();
+        refuse_to_replace(path, &read)?;
+        Ok(Self::File(create(path)?, path.to_owned()))
+    }
+
+    fn write(self, report: &Report<'_>, terminal: &Terminal) -> Result<(), Failure> {
+        let text = serde_json::to_string_pretty(report)
+            .map_err(|error| Failure::Running(format!("the scores as JSON: {error}")))?;
+        match self {
+            Self::Standard => terminal.result(text),
+            Self::File(mut file, path) => {
+                writeln!(file, "{text}").map_err(|error| Failure::running(Error::io(path, error)))
+            }
+        }
+    }
+}
+
+/// What is likely not meant.
+fn warn(scores: &Scores, args: &Args, terminal: &Terminal) {
+    let frames = scores.frames;
+    if frames.missing > 0 {
+        terminal.warning(format_args!(
+            "{}: {} of {} frames are not in it and count as missed",
+            args.results.display(),
+            frames.missing,
+            frames.truth
+        ));
+    }
+    let neighbours = scores.neighbours.by_range.overall;
+    if neighbours.found == 0 && neighbours.visible > 0 && neighbours.false_neighbours > 0 {
+        terminal.warning(format_args!(
+            "{}: no neighbour is where truth has one; check that these are the results of {}",
+            args.results.display(),
+            args.dataset.display()
+        ));
+    }
+}

@@ -1,0 +1,254 @@
+//! `photinus evaluate`: what it prints, writes and refuses.
+
+use nalgebra::{Rotation3, UnitQuaternion, Vector3};
+use photinus::airframe::Airframe;
+use photinus::camera::{Bearing, Camera};
+use photinus_io::airframe::read_airframe;
+use photinus_io::dataset::{TruthFrame, TruthLed, TruthNeighbour};
+use photinus_io::read_camera;
+use photinus_io::results::{Distance, FrameRecord, NeighbourRecord, ResultsWriter};
+
+use crate::stage::Stage;
+
+const FRAMES: u64 = 20;
+
+/// A neighbour that comes nearer, frame by frame at 20 Hz, straight ahead.
+fn distance_m(frame: u64) -> f64 {
+    8.0 - 0.25 * frame as f64
+}
+
+fn truth(frame: u64) -> TruthFrame {
+    let leds = [40.0, 50.0].map(|u_px| TruthLed { u_px, v_px: 30.0, led: None });
+    let neighbour = TruthNeighbour {
+        id: 1,
+        position_m: [0.0, 0.0, distance_m(frame)],
+        orientation_xyzw: [0.0, 0.0, 0.0, 1.0],
+        distance_m: distance_m(frame),
+        leds: leds.to_vec(),
+    };
+    TruthFrame { frame, time_s: frame as f64 / 20.0, neighbours: vec![neighbour] }
+}
+
+/// Half a metre too far, and out of the bounds in frame 7.
+fn result(frame: u64) -> FrameRecord {
+    let estimate = distance_m(frame) + 0.5;
+    let near_m = if frame == 7 { 0.25 } else { -1.0 };
+    let neighbour = NeighbourRecord {
+        track: None,
+        id: None,
+        airframe: "hexa".to_owned(),
+        spots: vec![],
+        bearing: [0.0, 0.0, 1.0],
+        distance_m: Distance {
+            estimate: Some(estimate),
+            sigma: Some(0.5),
+            min: distance_m(frame) + near_m,
+            max: Some(distance_m(frame) + 1.0),
+            perpendicular: Some(distance_m(frame) + 1.0),
+            inline: Some(distance_m(frame) - 1.0),
+        },
+        position_m: Some([0.0, 0.0, estimate]),
+        position_covariance_m2: Some([[0.01, 0.0, 0.0], [0.0, 0.01, 0.0], [0.0, 0.0, 0.25]]),
+        orientation_xyzw: None,
+        orientation_covariance_rad2: None,
+        modes: vec![],
+    };
+    FrameRecord {
+        frame: Some(frame),
+        time_s: Some(frame as f64 / 20.0),
+        latency_s: Some(0.004),
+        source: String::new(),
+        spots: vec![],
+        rejected: vec![],
+        neighbours: vec![neighbour],
+    }
+}
+
+fn lines(frames: impl Iterator<Item = FrameRecord>) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    let mut writer = ResultsWriter::new(&mut bytes, "results");
+    frames.for_each(|frame| writer.write(&frame).unwrap());
+    drop(writer);
+    bytes
+}
+
+/// A dataset with truth in flight/, and results.jsonl of all its frames but the last.
+fn stage(test: &str) -> Stage {
+    let stage = Stage::new(test);
+    std::fs::create_dir_all(stage.path("flight")).unwrap();
+    stage.file(
+        "flight/dataset.toml",
+        "camera = \"camera.toml\"\nairframe = \"hexa.toml\"\nexposure_us = 1000.0\nrate_hz = 20.0\n",
+    );
+    let row = |frame: u64| format!("{frame},{},images/{frame:06}.png,,,\n", frame as f64 / 20.0);
+    let rows: String = (0..FRAMES).map(row).collect();
+    stage.file("flight/frames.csv", format!("frame,time_s,image,gx,gy,gz\n{rows}"));
+    let truth: Vec<String> = (0..FRAMES).map(|frame| serde_json::to_string(&truth(frame)).unwrap()).collect();
+    stage.file("flight/truth.jsonl", truth.join("\n"));
+    stage.file("results.jsonl", lines((0..FRAMES - 1).map(result)));
+    stage
+}
+
+#[test]
+fn tables_and_json_say_how_well_it_went() {
+    let stage = stage("evaluate");
+    let done = stage.run("evaluate flight results.jsonl --json scores.json --bins 5");
+    assert_eq!(done.code, 0);
+    assert!(done.err.contains("warning: results.jsonl: 1 of 20 frames are not in it and count as missed"));
+    assert!(done.out.contains("      all       20     19       1      0      95.0        100.0\n"));
+    assert!(
+        done.out
+            .contains("violated: frame 7, neighbour 1, at 6.250 m, bounds 6.500 to 7.250 m, out by 0.250 m")
+    );
+    let scores: serde_json::Value = serde_json::from_str(&stage.read("scores.json")).unwrap();
+    assert_eq!(scores["neighbours"]["overall"]["recall"], 0.95);
+    assert_eq!(scores["distance"]["overall"]["error_m"]["bias"], 0.5);
+    assert_eq!(scores["position"]["overall"]["nees"], 1.0);
+    assert_eq!(scores["bounds"]["violations"][0]["frame"], 7);
+    assert_eq!(scores["bounds"]["overall"]["inside"], 18);
+    assert_eq!(scores["latency_s"]["median"], 0.004);
+    assert!(done.out.contains("latency  median 4.0 ms, 95 % 4.0 ms, longest 4.0 ms"));
+    assert_eq!(scores["paper"]["overall"]["between"], 1.0);
+    assert_eq!(scores["spots"]["overall"]["recall"], 0.0);
+    assert_eq!(scores["bearing_error_rad"]["bins"][0]["to_m"], 5.0);
+
+    let alone = stage.run("evaluate flight results.jsonl --json - -q --bins 5");
+    assert_eq!((alone.out, alone.err), (stage.read("scores.json"), String::new()));
+}
+
+/// A hexarotor that spins as it recedes, seen from its side: its LEDs that shine at the camera, as spots to the pixel.
+fn spinning(frame: u64, camera: &Camera, airframe: &Airframe) -> (TruthFrame, String) {
+    let position_m = Vector3::new(0.4, -0.1, 1.5 + 0.1 * frame as f64);
+    let body_up = Rotation3::from_axis_angle(&Vector3::x_axis(), std::f64::consts::FRAC_PI_2);
+    let camera_from_body = body_up * Rotation3::from_axis_angle(&Vector3::z_axis(), 0.3 * frame as f64);
+    let mut leds = Vec::new();
+    for (led, number) in airframe.leds().iter().zip(0..) {
+        let at_m = position_m + camera_from_body * led.position_m;
+        let faces = (camera_from_body * led.axis.into_inner()).dot(&at_m.normalize()) < -0.3;
+        let pixel = camera.pixel(&Bearing::new(at_m).unwrap());
+        if let (true, Some(pixel)) = (faces, pixel) {
+            leds.push(TruthLed { u_px: pixel.u, v_px: pixel.v, led: Some(number) });
+        }
+    }
+    let spot = |led: &TruthLed| format!("{{\"u_px\":{},\"v_px\":{}}}", led.u_px.round(), led.v_px.round());
+    let spots: Vec<String> = leds.iter().map(spot).collect();
+    let q = UnitQuaternion::from_rotation_matrix(&camera_from_body);
+    let neighbour = TruthNeighbour {
+        id: 1,
+        position_m: position_m.into(),
+        orientation_xyzw: [q.i, q.j, q.k, q.w],
+        distance_m: position_m.norm(),
+        leds,
+    };
+    let time_s = frame as f64 / 20.0;
+    let truth = TruthFrame { frame, time_s, neighbours: vec![neighbour] };
+    (truth, format!("{{\"frame\":{frame},\"time_s\":{time_s},\"spots\":[{}]}}", spots.join(",")))
+}
+
+#[test]
+fn what_locate_says_of_exact_geometry_keeps_its_bounds() {
+    let stage = stage("evaluate-locate");
+    // As fine as the cameras of the paper, so that markers stay apart.
+    let camera = "model = \"equidistant\"\nwidth_px = 752\nheight_px = 480\ncentre_px = [375.5, 239.5]\n\
+                  focal_px = [265.0, 265.0]\n";
+    stage.file("camera.toml", camera);
+    let camera = read_camera(&stage.path("camera.toml")).unwrap().camera;
+    let airframe = read_airframe(stage.path("hexa.toml")).unwrap().airframe;
+    let seen = (0..FRAMES).map(|frame| spinning(frame, &camera, &airframe));
+    let (truth, spots): (Vec<String>, Vec<String>) =
+        seen.map(|(truth, spots)| (serde_json::to_string(&truth).unwrap(), spots)).unzip();
+    stage.file("flight/truth.jsonl", truth.join("\n"));
+    stage.file("spots.jsonl", spots.join("\n"));
+
+    let located = stage
+        .run("locate --spots spots.jsonl --camera camera.toml --airframe hexa.toml -q --out located.jsonl");
+    assert_eq!(located.code, 0);
+    let done = stage.run("evaluate flight located.jsonl --json scores.json");
+    assert_eq!(done.code, 0);
+    let scores: serde_json::Value = serde_json::from_str(&stage.read("scores.json")).unwrap();
+    assert_eq!(scores["spots"]["overall"]["recall"], 1.0);
+    assert_eq!(scores["neighbours"]["overall"]["recall"], 1.0);
+    assert_eq!(scores["neighbours"]["overall"]["precision"], 1.0);
+    assert_eq!(scores["bounds"]["overall"]["coverage"], 1.0, "{}", scores["bounds"]["violations"]);
+    // The middle of what shows is no farther aside than the airframe's radius, at the nearest distance.
+    assert!(scores["bearing_error_rad"]["overall"]["max"].as_f64().unwrap() < 0.4 / 1.5);
+    assert!(scores["distance"]["overall"]["relative_error"]["rms"].as_f64().unwrap() < 0.3);
+}
+
+#[test]
+fn plots_are_png_and_svg() {
+    let stage = stage("evaluate-plots");
+    assert_eq!(stage.run("evaluate flight results.jsonl --plots figures -q").code, 0);
+    for name in ["recall-precision", "distance-error", "bounds", "position-nees", "distance-over-time-1"] {
+        let png = std::fs::read(stage.path(&format!("figures/{name}.png"))).unwrap();
+        assert!(png.starts_with(b"\x89PNG"), "{name}");
+        assert!(stage.read(&format!("figures/{name}.svg")).contains("</svg>"), "{name}");
+    }
+    let over_time = stage.read("figures/distance-over-time-1.svg");
+    for words in ["time (s)", "distance (m)", "bounds", "estimate", "truth", "l_A", "l_B"] {
+        assert!(over_time.contains(words), "{words}");
+    }
+    let before = over_time;
+    stage.run("evaluate flight results.jsonl --plots figures -q");
+    assert_eq!(before, stage.read("figures/distance-over-time-1.svg"), "the same picture every time");
+}
+
+#[test]
+fn a_line_that_is_no_result_is_told_and_its_frame_missed() {
+    let stage = stage("evaluate-lines");
+    let mut bytes = lines((0..FRAMES - 1).map(result));
+    bytes.extend(b"{\"frame\":19,\"spots\":[\n");
+    stage.file("results.jsonl", bytes);
+    let done = stage.run("evaluate flight results.jsonl");
+    assert_eq!(done.code, 1);
+    assert!(done.err.contains("error: results.jsonl, line 20: "), "{}", done.err);
+    assert!(done.err.contains("the line is cut"));
+    assert!(done.out.contains("1 missing"), "the rest is scored");
+}
+
+#[test]
+fn what_cannot_be_compared_is_refused() {
+    let stage = stage("evaluate-refused");
+    let refuses = |words: &str, parts: &[&str]| {
+        let done = stage.run(words);
+        assert_eq!((done.code, done.out.as_str()), (2, ""), "{words}");
+        for part in parts {
+            assert!(done.err.contains(part), "{words}\n{}\nlacks `{part}`", done.err);
+        }
+    };
+    stage.file("empty.jsonl", "");
+    stage.file("longer.jsonl", lines([0, 25].into_iter().map(result)));
+    stage.file("twice.jsonl", lines([3, 3].into_iter().map(result)));
+    let late = FrameRecord { time_s: Some(9.0), ..result(3) };
+    stage.file("late.jsonl", lines([late].into_iter()));
+
+    refuses("evaluate no results.jsonl", &["no: the folder holds no dataset.toml"]);
+    refuses("evaluate flight no.jsonl", &["no.jsonl: ", "; check the path"]);
+    refuses(
+        "evaluate flight empty.jsonl",
+        &["empty.jsonl: it holds no result; give what `photinus locate --out`"],
+    );
+    refuses(
+        "evaluate flight longer.jsonl",
+        &["longer.jsonl, frame 25: ", "lists no such frame; give the results of this dataset"],
+    );
+    refuses(
+        "evaluate flight twice.jsonl",
+        &["twice.jsonl, frame 3: the frame stands twice in the results; give"],
+    );
+    refuses(
+        "evaluate flight late.jsonl",
+        &["late.jsonl, frame 3: ", "at 9 s, truth at 0.15 s; give the results of"],
+    );
+    refuses("evaluate flight results.jsonl --bins 5,2", &["give distances in m that grow"]);
+    refuses("evaluate flight results.jsonl --json results.jsonl", &["it would be replaced"]);
+    refuses("evaluate flight results.jsonl --json flight/truth.jsonl", &["it would be replaced"]);
+    refuses("evaluate flight results.jsonl --json no/s.json", &["no/s.json: ", "make its folder first"]);
+    refuses("evaluate flight results.jsonl --plots results.jsonl", &["name a folder that can be made"]);
+
+    let wrong = stage.read("flight/truth.jsonl").replace("\"distance_m\":7.0", "\"distance_m\":70.0");
+    stage.file("flight/truth.jsonl", wrong);
+    refuses("evaluate flight results.jsonl", &["truth.jsonl, frame 4: neighbour 1 is at 70 m"]);
+    std::fs::remove_file(stage.path("flight/truth.jsonl")).unwrap();
+    refuses("evaluate flight results.jsonl", &["flight: the folder holds no truth.jsonl; only results of"]);
+}

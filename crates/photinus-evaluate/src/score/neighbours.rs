@@ -1,0 +1,180 @@
+//! Neighbours against those of truth: how many were found, missed, made up, taken together, taken apart.
+
+use photinus_io::results::NeighbourRecord;
+use serde::Serialize;
+
+use super::range::{ByRange, RangeBins};
+use super::spread::share;
+use crate::frames::{Compared, ComparedFrame};
+
+/// Neighbours against those of truth.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Neighbours {
+    /// Over all, and by range: of truth, or, for false ones, of their estimate.
+    #[serde(flatten)]
+    pub by_range: ByRange<NeighbourScore>,
+    /// Reported neighbours whose spots are of two or more of truth's.
+    pub merged: usize,
+    /// Neighbours of truth whose spots were given to two or more reported ones.
+    pub split: usize,
+}
+
+/// How many neighbours were found. Counts are over frames: the same one in ten frames counts ten times.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct NeighbourScore {
+    /// Those of truth with an LED in the image.
+    pub visible: usize,
+    /// Those of them that were found.
+    pub found: usize,
+    /// Those that were not.
+    pub missed: usize,
+    /// Found with no LED in the image: neither right nor wrong.
+    pub unseen: usize,
+    /// Reported where none is.
+    #[serde(rename = "false")]
+    pub false_neighbours: usize,
+    /// found / visible.
+    pub recall: Option<f64>,
+    /// found / (found + false).
+    pub precision: Option<f64>,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Count {
+    Found,
+    Missed,
+    Unseen,
+    False,
+}
+
+impl Neighbours {
+    pub(crate) fn new(compared: &Compared<'_>, bins: &RangeBins) -> Self {
+        let counts: Vec<(Option<f64>, Count)> =
+            compared.frames.iter().flat_map(|frame| counts(frame, compared.has_leds)).collect();
+        Self {
+            by_range: ByRange::new(bins, &counts, |(range_m, _)| *range_m, NeighbourScore::new),
+            merged: compared.frames.iter().map(merged).sum(),
+            split: compared.frames.iter().map(split).sum(),
+        }
+    }
+}
+
+/// What one frame has to count, each with its range.
+fn counts(frame: &ComparedFrame<'_>, has_leds: bool) -> Vec<(Option<f64>, Count)> {
+    let mut counts = Vec::new();
+    for (truth, there) in frame.truth.neighbours.iter().enumerate() {
+        let is_found = frame.neighbours.iter().any(|pair| pair.0 == truth);
+        let is_visible = !has_leds || !there.leds.is_empty();
+        let count = match (is_visible, is_found) {
+            (true, true) => Count::Found,
+            (true, false) => Count::Missed,
+            (false, true) => Count::Unseen,
+            (false, false) => continue,
+        };
+        counts.push((Some(there.distance_m), count));
+    }
+    for (found, reported) in frame.found().iter().enumerate() {
+        if !frame.neighbours.iter().any(|pair| pair.1 == found) {
+            counts.push((reported.distance_m.estimate, Count::False));
+        }
+    }
+    counts
+}
+
+/// The neighbours of truth that a reported one's spots are of.
+fn owners(frame: &ComparedFrame<'_>, reported: &NeighbourRecord) -> Vec<usize> {
+    let owners = reported.spots.iter().filter_map(|&spot| frame.leds.neighbour_of_spot(spot));
+    let mut owners: Vec<usize> = owners.collect();
+    owners.sort_unstable();
+    owners.dedup();
+    owners
+}
+
+fn merged(frame: &ComparedFrame<'_>) -> usize {
+    frame.found().iter().filter(|reported| owners(frame, reported).len() > 1).count()
+}
+
+fn split(frame: &ComparedFrame<'_>) -> usize {
+    let mut parts = vec![0; frame.truth.neighbours.len()];
+    for owner in frame.found().iter().flat_map(|reported| owners(frame, reported)) {
+        parts[owner] += 1;
+    }
+    parts.into_iter().filter(|&parts| parts > 1).count()
+}
+
+impl NeighbourScore {
+    fn new(counts: &[&(Option<f64>, Count)]) -> Self {
+        let count = |of: Count| counts.iter().filter(|(_, count)| *count == of).count();
+        let (found, missed, false_neighbours) =
+            (count(Count::Found), count(Count::Missed), count(Count::False));
+        Self {
+            visible: found + missed,
+            found,
+            missed,
+            unseen: count(Count::Unseen),
+            false_neighbours,
+            recall: share(found, found + missed),
+            precision: share(found, found + false_neighbours),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use photinus_io::results::FrameRecord;
+
+    use super::*;
+    use crate::hand_made::{found_at, record, shining, spot, there, truth};
+    use crate::{Settings, evaluate};
+
+    const LEFT: [f64; 3] = [-1.0, 0.0, 5.0];
+    const RIGHT: [f64; 3] = [1.0, 0.0, 5.0];
+
+    #[test]
+    fn found_missed_false_and_unseen_by_hand() {
+        let truth = [
+            truth(0, vec![shining(1, LEFT, &[[10.0, 10.0]]), shining(2, RIGHT, &[[30.0, 10.0]])]),
+            truth(1, vec![there(1, LEFT), there(2, RIGHT)]),
+            truth(2, vec![shining(1, LEFT, &[[10.0, 10.0]])]),
+        ];
+        let results = [
+            record(0, vec![], vec![found_at(LEFT), found_at([0.0, -3.0, 3.0])]),
+            record(1, vec![], vec![found_at(RIGHT)]),
+        ];
+        let evaluation = evaluate(&truth, &results, &Settings::default()).unwrap();
+        let all = evaluation.scores.neighbours.by_range.overall;
+        assert_eq!((all.visible, all.found, all.missed), (3, 1, 2), "the frame without a result is missed");
+        assert_eq!((all.unseen, all.false_neighbours), (1, 1));
+        assert_eq!((all.recall, all.precision), (Some(1.0 / 3.0), Some(0.5)));
+        assert_eq!(evaluation.pairs.len(), 2, "the errors of what is unseen count");
+        let frames = evaluation.scores.frames;
+        assert_eq!((frames.truth, frames.evaluated, frames.missing, frames.without_truth), (3, 2, 1, 0));
+    }
+
+    #[test]
+    fn without_leds_every_neighbour_counts_as_visible() {
+        let truth = [truth(0, vec![there(1, LEFT), there(2, RIGHT)])];
+        let results = [record(0, vec![], vec![found_at(LEFT)])];
+        let scores = evaluate(&truth, &results, &Settings::default()).unwrap().scores;
+        assert_eq!(scores.neighbours.by_range.overall.recall, Some(0.5));
+        assert!(scores.spots.is_none());
+    }
+
+    #[test]
+    fn spots_taken_together_and_apart_are_counted() {
+        let leds = |u_px: f64| [[u_px, 10.0], [u_px + 10.0, 10.0]];
+        let truth = [truth(0, vec![shining(1, LEFT, &leds(10.0)), shining(2, RIGHT, &leds(50.0))])];
+        let spots: Vec<_> = [10.0, 20.0, 50.0, 60.0].map(|u_px| spot(u_px, 10.0, 1)).to_vec();
+        let of = |spots: &[usize]| NeighbourRecord { spots: spots.to_vec(), ..found_at(LEFT) };
+        let scored = |groups: &[&[usize]]| {
+            let neighbours = groups.iter().map(|group| of(group)).collect();
+            let results: [FrameRecord; 1] = [record(0, spots.clone(), neighbours)];
+            let scores = evaluate(&truth, &results, &Settings::default()).unwrap().scores.neighbours;
+            (scores.merged, scores.split)
+        };
+        assert_eq!(scored(&[&[0, 1], &[2, 3]]), (0, 0));
+        assert_eq!(scored(&[&[0, 1, 2, 3]]), (1, 0));
+        assert_eq!(scored(&[&[0], &[1], &[2, 3]]), (0, 1));
+        assert_eq!(scored(&[&[0, 2], &[1, 3, 77]]), (2, 2), "an index of no spot is of nobody");
+    }
+}

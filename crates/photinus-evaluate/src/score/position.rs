@@ -1,0 +1,86 @@
+//! Positions against truth, and whether their covariances keep their word.
+
+use nalgebra::{Matrix3, Vector3};
+use serde::Serialize;
+
+use super::spread::{Spread, mean, share};
+use crate::frames::Pair;
+
+/// 95 % of a chi-square of 3 degrees of freedom are below this.
+pub const CHI_SQUARE_3_95: f64 = 7.814_727_903_251_178;
+
+/// Estimated positions against truth.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct PositionScore {
+    /// Distance of the estimate from truth, m; `count` is how many have an estimate.
+    pub error_m: Spread,
+    /// Those with a covariance that can be inverted.
+    pub with_covariance: usize,
+    /// Mean of the squared error over the covariance (normalised estimation error squared); 3 where covariances are right,
+    /// more where they promise too much.
+    pub nees: Option<f64>,
+    /// Standard error of that mean, were errors Gaussian and independent: sqrt(6 / count).
+    pub nees_standard_error: Option<f64>,
+    /// The share of true positions inside the 95 % ellipsoid; 0.95 where covariances are right.
+    pub inside_95: Option<f64>,
+}
+
+impl PositionScore {
+    pub(crate) fn new(pairs: &[&Pair<'_>]) -> Self {
+        let nees: Vec<f64> = pairs.iter().filter_map(|pair| pair.nees()).collect();
+        let inside = nees.iter().filter(|&&nees| nees <= CHI_SQUARE_3_95).count();
+        let count = nees.len();
+        Self {
+            error_m: Spread::of(pairs.iter().filter_map(|pair| Some(pair.position_error_m()?.norm()))),
+            with_covariance: count,
+            nees: mean(nees.iter().copied()),
+            nees_standard_error: (count > 0).then(|| (6.0 / count as f64).sqrt()),
+            inside_95: share(inside, count),
+        }
+    }
+}
+
+impl Pair<'_> {
+    fn position_error_m(&self) -> Option<Vector3<f64>> {
+        Some(Vector3::from(self.found.position_m?) - Vector3::from(self.truth.position_m))
+    }
+
+    /// Squared error of the position over its covariance; `None` without a position or a covariance that can be inverted.
+    pub fn nees(&self) -> Option<f64> {
+        let covariance_m2 = Matrix3::from(self.found.position_covariance_m2?);
+        let error_m = self.position_error_m()?;
+        let nees = error_m.dot(&covariance_m2.cholesky()?.solve(&error_m));
+        nees.is_finite().then_some(nees)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use photinus_io::results::NeighbourRecord;
+
+    use crate::hand_made::{found_at, record, there, truth};
+    use crate::{Settings, evaluate};
+
+    #[test]
+    fn errors_and_their_squares_over_the_covariance_by_hand() {
+        let truth: Vec<_> = (0..3).map(|frame| truth(frame, vec![there(1, [0.0, 0.0, 10.0])])).collect();
+        let with = |position_m, covariance| NeighbourRecord {
+            position_m: Some(position_m),
+            position_covariance_m2: covariance,
+            ..found_at([0.0, 0.0, 10.0])
+        };
+        let covariance = [[0.04, 0.0, 0.0], [0.0, 0.01, 0.0], [0.0, 0.0, 1.0]];
+        let singular = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 0.0]];
+        let results = [
+            record(0, vec![], vec![with([0.2, 0.1, 11.0], Some(covariance))]),
+            record(1, vec![], vec![with([0.0, 0.0, 13.0], Some(covariance))]),
+            record(2, vec![], vec![with([0.0, 0.0, 10.0], Some(singular))]),
+        ];
+        let all = evaluate(&truth, &results, &Settings::default()).unwrap().scores.position.overall;
+        assert_eq!((all.error_m.count, all.with_covariance), (3, 2));
+        assert!((all.error_m.rms.unwrap() - (10.05f64 / 3.0).sqrt()).abs() < 1e-12);
+        assert!((all.nees.unwrap() - 6.0).abs() < 1e-9, "(3 + 9) / 2");
+        assert_eq!(all.inside_95, Some(0.5));
+        assert_eq!(all.nees_standard_error, Some(3f64.sqrt()));
+    }
+}

@@ -12,7 +12,7 @@ use super::part::Part;
 use super::patch::{self, Patch, Surroundings};
 use super::rejection::Reason;
 use super::settings::{Brightness, Settings};
-use super::skirt;
+use super::skirt::{self, Fit};
 use crate::camera::Pixel;
 use crate::frame::FrameView;
 
@@ -20,6 +20,9 @@ use crate::frame::FrameView;
 const WITHIN_A_PIXEL: f64 = 0.288_675_134_594_812_9;
 /// Radius around the summit of a spot in which its own light is far above that of a spot beside it, px.
 const SUMMIT_PX: f64 = 1.8;
+/// A skirt that fits no better than this (squared misfit over degrees of freedom) is not that of a Gaussian: charge has
+/// overflowed, or the spot is a core in a halo. Its summit says less than its formal covariance.
+const LARGEST_MISFIT: f64 = 5.0;
 /// Error of the centre of an undersampled spot whose window is cut short by another spot, px.
 const CROWDED_BLUR_PX: f64 = 0.07;
 
@@ -61,7 +64,8 @@ impl Meter {
         let noise = settings.noise;
         let dark = (noise.read_dn * noise.read_dn + 1.0 / 12.0) as f32;
         let variance = PixelVariance { dark: dark.max(window.around.variance), shot: noise.shot as f32 };
-        let (centre, covariance_px2) = self.centre(part, &window, variance, height / flux);
+        let concentration = self.patch.concentration(nearest_pixel(part.guess));
+        let (centre, covariance_px2) = self.centre(part, &window, variance, concentration);
         Ok(Spot {
             centre,
             covariance_px2,
@@ -75,23 +79,24 @@ impl Meter {
         })
     }
 
-    /// The centre and its covariance; `summit_share` is the summit's part of the flux.
+    /// The centre and its covariance; `concentration` as [`Patch::concentration`] has it.
     fn centre(
         &self,
         part: &Part,
         window: &Window,
         variance: PixelVariance,
-        summit_share: f64,
+        concentration: f64,
     ) -> (Pixel, Matrix2<f64>) {
         let (radius, saturated_px) = (part.radius_px, part.outline.saturated_px);
         let skirt = |reach_px: f64| {
             skirt::fit(&self.patch, part.guess, reach_px as f32, lowest_saturated(window), variance)
         };
+        let placed = |fit: Fit| (fit.centre, fit.covariance_px2);
         let balanced = || {
             let (centre, covariance) =
                 centroid::balance(&self.patch, part.guess, window.radius_px as f32, variance)?;
             let blur = match saturated_px {
-                0 => blur_of_sampling(summit_share),
+                0 => blur_of_sampling(concentration),
                 _ => blur_of_saturation(saturated_px),
             };
             let missing = match (part.outline.cut, window.crowded) {
@@ -103,12 +108,13 @@ impl Meter {
         };
         let found = if saturated_px > 0 {
             let fit = skirt((radius + 2.5).min(window.radius_px + 1.0));
-            fit.filter(|(_, covariance)| covariance.trace() < 2.0 * blur_of_saturation(saturated_px))
-                .or_else(balanced)
+            let worst = 2.0 * blur_of_saturation(saturated_px);
+            let good = fit.filter(|fit| fit.misfit < LARGEST_MISFIT && fit.covariance_px2.trace() < worst);
+            good.map(placed).or_else(balanced)
         } else if part.outline.cut {
-            skirt(SUMMIT_PX.max(radius)).or_else(balanced)
+            skirt(SUMMIT_PX.max(radius)).map(placed).or_else(balanced)
         } else if window.crowded {
-            skirt(SUMMIT_PX).or_else(balanced)
+            skirt(SUMMIT_PX).map(placed).or_else(balanced)
         } else {
             balanced()
         };
@@ -156,12 +162,11 @@ fn reach_px(window_px: f64) -> i32 {
     window_px as i32 + 2
 }
 
-/// Variance that the pixel grid adds to a centre when most light falls into one pixel, px^2. `share` is the summit's part
-/// of the flux: 0.3 for a Gaussian of 0.7 px, where nothing is lost, 1 for a spot within one pixel.
-fn blur_of_sampling(share: f64) -> f64 {
-    let lost = ((share - 0.35) / 0.65).clamp(0.0, 1.0);
-    let sigma = WITHIN_A_PIXEL * lost * lost * lost;
-    sigma * sigma
+/// Variance that the pixel grid adds to a centre when the light falls into few pixels, px^2: nothing for a Gaussian of
+/// 0.7 px (concentration 0.19), a pixel's own for a spot within one.
+fn blur_of_sampling(concentration: f64) -> f64 {
+    let lost = ((concentration - 0.2) / 0.8).clamp(0.0, 1.0);
+    WITHIN_A_PIXEL * WITHIN_A_PIXEL * lost * lost
 }
 
 /// Variance of the centre of a saturated core that shows no skirt, px^2: its outline is known to a pixel all around.

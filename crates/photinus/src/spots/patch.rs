@@ -84,6 +84,20 @@ impl Patch {
         ((place.u - f64::from(self.left)) as f32, (place.v - f64::from(self.top)) as f32)
     }
 
+    /// How few pixels the light falls into: one over their effective number, from 1/9 to 1, among the pixel (`u`, `v`) and the
+    /// eight around it.
+    pub(super) fn concentration(&self, (u, v): (i32, i32)) -> f64 {
+        let (column, row) = ((u - self.left) as usize, (v - self.top) as usize);
+        let rows = self.signal.chunks_exact(self.stride).skip(row.saturating_sub(1)).take(3);
+        let near = rows.flat_map(|row| row.iter().skip(column.saturating_sub(1)).take(3));
+        let (mut sum, mut squares) = (0.0, 0.0);
+        for signal in near.map(|&signal| f64::from(signal.max(0.0))) {
+            sum += signal;
+            squares += signal * signal;
+        }
+        if sum > 0.0 { squares / (sum * sum) } else { 1.0 }
+    }
+
     /// Signal within `radius_px` of `centre`, grey levels.
     pub(super) fn flux(&self, centre: Pixel, radius_px: f32) -> f64 {
         let (x, y) = self.local(centre);

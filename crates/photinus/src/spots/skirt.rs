@@ -26,6 +26,15 @@ const FAINTEST_SIGMAS: f32 = 4.0;
 /// ... nor is signal below this, grey levels: ripples of lens and processing.
 const FAINTEST_DN: f32 = 6.0;
 
+/// The parabola's summit.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Fit {
+    pub(super) centre: Pixel,
+    pub(super) covariance_px2: Matrix2<f64>,
+    /// Squared misfit over degrees of freedom: about 1 where the spot is a Gaussian.
+    pub(super) misfit: f64,
+}
+
 /// Fits the skirt of a saturated spot near `guess`, within `radius_px` of it; `None` where too little of it shows.
 pub(super) fn fit(
     patch: &Patch,
@@ -33,7 +42,7 @@ pub(super) fn fit(
     radius_px: f32,
     saturation: f32,
     variance: PixelVariance,
-) -> Option<(Pixel, Matrix2<f64>)> {
+) -> Option<Fit> {
     let (x0, y0) = patch.local(guess);
     let faintest = Lanes::splat(FAINTEST_DN.max(FAINTEST_SIGMAS * variance.dark.sqrt()));
     let saturation = Lanes::splat(saturation);
@@ -114,7 +123,7 @@ impl Normal {
         self.pixels += columns.pixels;
     }
 
-    fn solve(&self, guess: Pixel, radius_px: f64) -> Option<(Pixel, Matrix2<f64>)> {
+    fn solve(&self, guess: Pixel, radius_px: f64) -> Option<Fit> {
         let pixels = lanes::sum(self.pixels);
         if pixels < FEWEST_PX {
             return None;
@@ -145,7 +154,7 @@ impl Normal {
             0.0, 0.5, 0.0, du,
             0.0, 0.0, 0.5, dv,
         ) / -curvature;
-        let covariance = slope * inverse * slope.transpose() * misfit.max(1.0);
-        Some((Pixel::new(guess.u + du, guess.v + dv), covariance))
+        let covariance_px2 = slope * inverse * slope.transpose() * misfit.max(1.0);
+        Some(Fit { centre: Pixel::new(guess.u + du, guess.v + dv), covariance_px2, misfit })
     }
 }

@@ -25,8 +25,8 @@ use size::{plausible_m, size_nats};
 
 /// What a neighbour costs, nats: fewer neighbours are the better explanation.
 pub(super) const NEIGHBOUR_NATS: f64 = 8.0;
-/// Views with this share of the best one's weight do not count: all of them together are a percent or two.
-const NEGLIGIBLE: f32 = 1e-3;
+/// Views with less than this share of the best one's weight do not count: the mean moves by far less than its sigma.
+const NEGLIGIBLE: f32 = 3e-2;
 /// What cannot be, nats.
 pub(super) const IMPOSSIBLE: f64 = 1e9;
 

@@ -20,7 +20,7 @@ pub mod mask;
 pub mod results;
 #[cfg(test)]
 mod scratch;
-mod table;
+pub mod table;
 pub mod video;
 mod whole;
 

@@ -63,7 +63,8 @@ mod tests {
     #[test]
     fn single_pixel_spots_begin_and_prevail_where_the_paper_has_them() {
         let led = experiment(200);
-        assert!((led.first_one_px_m(1000.0) - 3.14).abs() < 0.06, "{}", led.first_one_px_m(1000.0));
+        let first_m = led.first_one_px_m(1000.0); // 3.14 m in the paper
+        assert!((3.08..3.2).contains(&first_m), "{first_m}");
         for (exposure_us, paper_m) in
             [(100.0, 2.12), (200.0, 3.23), (500.0, 5.06), (1000.0, 6.62), (2000.0, 8.34), (5000.0, 14.16)]
         {

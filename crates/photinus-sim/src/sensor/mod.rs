@@ -13,6 +13,7 @@ mod readout;
 
 pub use charge::Charge;
 pub use noise::NoiseTable;
+pub(crate) use noise::hash;
 pub use overflow::{Overflow, Overflown};
 pub use readout::{Background, Readout};
 

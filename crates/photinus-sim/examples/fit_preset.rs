@@ -11,7 +11,8 @@ use rand_distr::{Distribution, StandardNormal, StandardUniform};
 use rand_pcg::Pcg64;
 
 const LAST_TWO_PX_M: f64 = 6.62;
-const FIRST_ONE_PX_M: f64 = 314e-2;
+#[allow(clippy::approx_constant, reason = "a distance, not a ratio")]
+const FIRST_ONE_PX_M: f64 = 3.14;
 const SINGLE_PIXEL_M: [(f64, f64); 6] =
     [(100.0, 2.12), (200.0, 3.23), (500.0, 5.06), (1000.0, 6.62), (2000.0, 8.34), (5000.0, 14.16)];
 const ENVELOPE_M: [f64; 10] = [0.5, 0.6, 0.75, 0.9, 1.1, 1.3, 1.6, 2.0, 2.5, 3.0];

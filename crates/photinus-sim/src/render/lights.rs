@@ -18,6 +18,16 @@ struct Instants {
     exposure: Exposure,
 }
 
+/// An LED during an exposure.
+struct Source<'a> {
+    led: &'a Led,
+    /// How bright this unit is against the mean one.
+    factor: f64,
+    blink: Option<Blink>,
+    /// Where it is at the middle, world frame, m.
+    place_m: Vector3<f64>,
+}
+
 /// Light that goes from an LED to the camera, by whichever way.
 struct Ray {
     /// Where the camera sees the LED, world frame, at each instant, m.
@@ -83,25 +93,15 @@ impl Simulator<'_> {
             let led_m = instants.world_from_body.map(|body| (body * Point3::from(led.position_m)).coords);
             let camera_m = instants.world_from_camera[1].translation.vector;
             let blink = target.blink.as_ref().and_then(|plan| plan.of(led));
+            let light = Source { led, factor: self.unit_factors[index][number], blink, place_m: led_m[1] };
             let direct = Ray { seen_m: led_m, camera_m, reflected: 1.0 };
-            let factor = self.unit_factors[index][number];
-            let mut draw = |ray: &Ray| -> Option<Pixel> {
-                let (pixel, drawn_e) =
-                    self.draw_led(led, factor, blink.as_ref(), ray, (instants, led_m[1]), bodies)?;
+            if let Some((pixel, drawn_e)) = self.draw_led(&light, &direct, instants, bodies) {
                 *electrons += drawn_e;
-                Some(pixel)
-            };
-            if let Some(pixel) = draw(&direct) {
-                let led = u32::try_from(number).ok();
-                seen.push(TruthLed { u_px: pixel.u, v_px: pixel.v, led });
+                seen.push(TruthLed { u_px: pixel.u, v_px: pixel.v, led: u32::try_from(number).ok() });
             }
-            if let Some(ray) = self.scene.water.and_then(|water| mirrored(&water, &led_m, &camera_m)) {
-                if let Some((_, drawn_e)) =
-                    self.draw_led(led, factor, blink.as_ref(), &ray, (instants, led_m[1]), bodies)
-                {
-                    *electrons += drawn_e;
-                }
-            }
+            let over_water = self.scene.water.and_then(|water| mirrored(&water, &led_m, &camera_m));
+            let drawn = over_water.and_then(|ray| self.draw_led(&light, &ray, instants, bodies));
+            *electrons += drawn.map_or(0.0, |(_, drawn_e)| drawn_e);
         }
         seen
     }
@@ -109,21 +109,19 @@ impl Simulator<'_> {
     /// Draws the light of an LED along a ray; gives where and how much, or `None` when nothing arrives.
     fn draw_led(
         &mut self,
-        led: &Led,
-        factor: f64,
-        blink: Option<&Blink>,
+        source: &Source<'_>,
         ray: &Ray,
-        (instants, led_m): (&Instants, Vector3<f64>),
+        instants: &Instants,
         bodies: &[Isometry3<f64>],
     ) -> Option<(Pixel, f64)> {
         let body_from_world = instants.world_from_body[1].inverse();
-        let lobe = led.intensity(&(body_from_world * Point3::from(ray.camera_m)).coords);
+        let lobe = source.led.intensity(&(body_from_world * Point3::from(ray.camera_m)).coords);
         let exposure = instants.exposure;
         let lit = |from: f64, to: f64| {
             let at = |share: f64| exposure.start_s + share * exposure.length_s;
-            blink.map_or(1.0, |blink| blink.share(at(from), at(to)))
+            source.blink.as_ref().map_or(1.0, |blink| blink.share(at(from), at(to)))
         };
-        if lobe <= 0.0 || lit(0.0, 1.0) <= 0.0 || self.is_hidden(&ray.camera_m, &led_m, bodies) {
+        if lobe <= 0.0 || lit(0.0, 1.0) <= 0.0 || self.is_hidden(&ray.camera_m, &source.place_m, bodies) {
             return None;
         }
         let path = self.path(ray, instants)?;
@@ -132,7 +130,7 @@ impl Simulator<'_> {
         let bearing = Bearing::new(seen_m.coords)?;
         let distance_m = seen_m.coords.norm();
         let preset = &self.scene.preset;
-        let irradiance = preset.emitter.irradiance_w_m2(lobe * factor * ray.reflected, distance_m);
+        let irradiance = preset.emitter.irradiance_w_m2(lobe * source.factor * ray.reflected, distance_m);
         let off_axis_rad = bearing.off_axis_rad();
         let power_w = preset.lens.gathered_w(irradiance, off_axis_rad);
         let all_e = preset.sensor.photo_electrons(power_w, exposure.length_s, preset.emitter.photon_j());

@@ -1,3 +1,93 @@
-//! The program `photinus`.
+//! The program `photinus`: tells where the neighbours of a flying robot are, from ultraviolet frames.
+//!
+//! ```text
+//! input -> run: detect or locate, frame by frame -> output (JSON lines, CSV, overlay, lines to read) -> summary
+//! info, convert: what a file holds, and the same in another format
+//! simulate: a scene -> frames with truth
+//! ```
 
-fn main() {}
+mod aligned;
+mod beforehand;
+mod clock;
+mod convert;
+mod detect;
+mod failure;
+mod info;
+mod input;
+mod kind;
+mod locate;
+mod output;
+mod overlay;
+mod run;
+mod simulate;
+mod spot_options;
+mod summary;
+mod terminal;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+use terminal::Terminal;
+
+/// Tells a flying robot where its neighbours are, from one ultraviolet camera.
+#[derive(Parser)]
+#[command(name = "photinus", version, subcommand_required = true, arg_required_else_help = true, after_help = EXAMPLES)]
+struct Program {
+    #[command(subcommand)]
+    command: Command,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  photinus info camera.txt                     what a file holds, whether it is in order
+  photinus detect photo.png --overlay seen     the spots of a photo, and a picture of them
+  photinus locate recording --out results.jsonl --overlay seen
+  photinus simulate scene.toml --out recording frames with truth, where there is no recording
+
+Every command explains itself: photinus locate --help
+
+Exit codes: 0 done, 1 something failed while running, 2 bad usage or input.";
+
+#[derive(Subcommand)]
+enum Command {
+    Locate(locate::Args),
+    Detect(detect::Args),
+    Info(info::Args),
+    Convert(convert::Args),
+    Simulate(simulate::Args),
+}
+
+fn main() -> ExitCode {
+    let command = Program::parse().command;
+    let quiet = match &command {
+        Command::Locate(args) => args.quiet(),
+        Command::Detect(args) => args.quiet(),
+        Command::Simulate(args) => args.quiet(),
+        Command::Info(_) | Command::Convert(_) => false,
+    };
+    let mut terminal = Terminal::new(quiet);
+    let done = match command {
+        Command::Locate(args) => locate::run(&args, &mut terminal),
+        Command::Detect(args) => detect::run(&args, &mut terminal),
+        Command::Info(args) => info::run(&args, &terminal),
+        Command::Convert(args) => convert::run(&args, &mut terminal),
+        Command::Simulate(args) => simulate::run(&args, &mut terminal),
+    };
+    let Err(failure) = done else { return ExitCode::SUCCESS };
+    if let Some(message) = failure.message() {
+        terminal.error(message);
+    }
+    failure.exit_code()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_command_line_is_in_order() {
+        use clap::CommandFactory;
+        Program::command().debug_assert();
+    }
+}

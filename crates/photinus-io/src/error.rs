@@ -104,7 +104,10 @@ impl fmt::Display for Place {
 
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}", self.file.display())?;
+        match self.file.as_os_str() == "-" {
+            true => write!(f, "standard input")?,
+            false => write!(f, "{}", self.file.display())?,
+        }
         if let Some(place) = &self.place {
             write!(f, ", {place}")?;
         }
@@ -122,10 +125,21 @@ impl std::error::Error for Error {
     }
 }
 
+/// What is wrong with JSON, without the place that the message ends in.
+pub(crate) fn json_reason(error: &serde_json::Error) -> String {
+    in_plain_words(error.to_string().split(" at line ").next().unwrap_or_default())
+}
+
 /// What a deserializer says, in the words of a file rather than of Rust.
 pub(crate) fn in_plain_words(reason: &str) -> String {
     let mut words = reason.trim().replace('\n', ", ").replace(" field `", " key `");
     for (rust, plain) in [
+        ("EOF while parsing", "it ends inside"),
+        ("non-finite float", "no finite number:"),
+        (" rejected by the configured policy", ""),
+        (", set DuplicateKeyPolicy in Options if acceptable", ""),
+        ("invalid floating point", "no number where one is expected"),
+        ("invalid u64", "no whole number, 0 or more, where one is expected"),
         ("expected f64", "expected a number"),
         ("expected u8", "expected a whole number of 0 to 255"),
         ("expected u32", "expected a whole number, 0 or more"),

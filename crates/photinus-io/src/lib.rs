@@ -5,7 +5,7 @@
 //!
 //! ```text
 //! image, video, dataset -> frames -> (photinus) -> results
-//! mask, airframe, blink: what the method is told beforehand
+//! camera, airframe, mask, blink, spot_curve: what the method is told beforehand
 //! ```
 
 pub mod airframe;
@@ -20,6 +20,7 @@ pub mod mask;
 pub mod results;
 #[cfg(test)]
 mod scratch;
+pub mod spot_curve;
 pub mod table;
 pub mod video;
 mod whole;

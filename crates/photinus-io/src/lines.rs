@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use crate::error::in_plain_words;
+use crate::error::json_reason;
 use crate::{Error, Place, Result};
 
 /// Longest line: thousands of spots.
@@ -69,14 +69,11 @@ impl<R: Read, T: DeserializeOwned> Iterator for JsonLines<R, T> {
 
 impl<R, T> JsonLines<R, T> {
     fn refuse(&self, error: &serde_json::Error) -> Error {
-        // Its place is one within the line.
-        let reason = error.to_string();
-        let reason = in_plain_words(reason.split(" at line ").next().unwrap_or_default());
         let advice = match error.classify() {
             serde_json::error::Category::Eof => "the line is cut: remove it, or run again",
             _ => "see docs/file-formats.md for an example",
         };
-        Error::format(&self.name, format!("column {}: {reason}", error.column()))
+        Error::format(&self.name, format!("column {}: {}", error.column(), json_reason(error)))
             .at(Place::Line(self.line))
             .advise(advice)
     }

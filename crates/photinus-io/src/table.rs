@@ -19,7 +19,7 @@ pub fn parse<T: DeserializeOwned>(text: &str, path: &Path) -> Result<T> {
         } else if reason.starts_with("missing key") {
             "add it"
         } else {
-            "see docs/file-formats.md for an example"
+            "correct it there; docs/file-formats.md has an example"
         };
         let error_at = Error::format(path, reason).advise(advice);
         match error.span() {

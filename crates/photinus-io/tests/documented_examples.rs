@@ -2,8 +2,10 @@
 
 use photinus_io::airframe::parse_airframe;
 use photinus_io::blink::BlinkCodes;
+use photinus_io::camera::parse_camera_toml;
 use photinus_io::dataset::{DatasetInfo, parse_frames_csv, parse_truth};
 use photinus_io::results::{CsvWriter, ResultsReader};
+use photinus_io::spot_curve::parse_spot_curve;
 
 /// The indented block that begins with `first`, without its indent.
 fn example(first: &str) -> String {
@@ -25,6 +27,12 @@ fn datasets() {
 }
 
 #[test]
+fn cameras() {
+    let camera = parse_camera_toml(&example("model ="), "example".as_ref()).unwrap().camera;
+    assert!((camera.field_limit_rad().to_degrees() - 100.0).abs() < 1e-9);
+}
+
+#[test]
 fn airframes() {
     // The list shows one LED, so it gets a second one.
     let second = "[[led]]\nposition_m = [-0.4, 0.0, 0.0]\naxis = [-1.0, 0.0, 0.0]\nlobe = \"omni\"\n";
@@ -34,6 +42,16 @@ fn airframes() {
     assert_eq!(parse_airframe(&ring, "example").unwrap().airframe.markers().len(), 6);
     let layout = example("# X Y Z") + "-0.173241 0.173241 0 0 0.0 3.14159265359 0\n";
     assert_eq!(parse_airframe(&layout, "example").unwrap().airframe.markers().len(), 2);
+}
+
+#[test]
+fn spot_curves() {
+    let file = parse_spot_curve(&example("exposure_us = 1000.0  "), "example").unwrap();
+    assert_eq!(
+        (file.exposure_us, file.threshold, file.curve.limit_m()),
+        (Some(1000.0), Some(200), Some(20.0))
+    );
+    assert!(file.curve.lower().is_some());
 }
 
 #[test]

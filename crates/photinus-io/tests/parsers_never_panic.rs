@@ -4,11 +4,13 @@
 
 use std::io::Cursor;
 
+use photinus::ranging::{Envelope, SpotCurve};
 use photinus_io::airframe::{layout_text, parse_airframe, toml_text};
 use photinus_io::blink::BlinkCodes;
 use photinus_io::dataset::{DatasetInfo, parse_frames_csv, parse_truth};
 use photinus_io::image::decode_image;
 use photinus_io::results::ResultsReader;
+use photinus_io::spot_curve::{self, SpotCurveFile, parse_spot_curve};
 use photinus_io::video::{Y4mFrames, Y4mWriter};
 use proptest::prelude::*;
 use proptest::sample::Index;
@@ -26,6 +28,9 @@ const RING: &str =
 const LAYOUT: &str =
     "# X Y Z Type Pitch Yaw signal_id\n0.2 0 0 0 0.1 0.5 0\n-0.2 0 0.1 1 0 3.1 1\n0 0.2 0 2 0 0 1\n";
 const BLINK: &str = "# words\n0,1,1,0\n1,1,0,1\n";
+const SPOT_CURVE: &str = "exposure_us = 1000.0\nthreshold = 200\nlimit_m = 20.0\n\
+    upper = { offset_px = 1.3398, scale_px_m2 = 31.4704, shift_m = -0.0154 }\n\
+    lower = { offset_px = 0.9, scale_px_m2 = 12.0, shift_m = 0.0 }\n";
 const RESULTS: &str = "{\"frame\":3,\"time_s\":null,\"source\":\"a\",\"spots\":[{\"u_px\":1.5,\"v_px\":2,\
     \"sigma_px\":[0.2,0.3],\"range_m\":[1,null]}],\"rejected\":[{\"u_px\":1,\"v_px\":1,\"area_px\":9,\
     \"reason\":\"sun\"}],\"neighbours\":[]}\n";
@@ -47,6 +52,9 @@ fn parse_all(bytes: &[u8]) {
     if let Ok(codes) = BlinkCodes::parse(&text, "t") {
         assert_eq!(BlinkCodes::parse(&codes.to_string(), "t").expect("what was written is read"), codes);
     }
+    if let Ok(file) = parse_spot_curve(&text, "t") {
+        assert_eq!(parse_spot_curve(&spot_curve::text(&file), "t").expect("what was written is read"), file);
+    }
     ResultsReader::new(bytes, "t").for_each(drop);
 }
 
@@ -66,7 +74,7 @@ fn y4m((width, height): (usize, usize), pixels: &[u8], frames: usize) -> Vec<u8>
 
 fn valid_files() -> Vec<Vec<u8>> {
     use image::ImageFormat::{Bmp, Png, Pnm, Tiff};
-    let texts = [DATASET, FRAMES, TRUTH, AIRFRAME, RING, LAYOUT, BLINK, RESULTS];
+    let texts = [DATASET, FRAMES, TRUTH, AIRFRAME, RING, LAYOUT, BLINK, SPOT_CURVE, RESULTS];
     let texts = texts.into_iter().map(|text| text.as_bytes().to_vec());
     let images = [Png, Bmp, Tiff, Pnm].into_iter().map(encoded);
     texts.chain(images).chain([y4m((8, 6), &[7; 48], 3)]).collect()
@@ -136,6 +144,22 @@ proptest! {
     }
 
     #[test]
+    fn spot_curves_round_trip_bit_for_bit(
+        [offset_px, scale_px_m2, below] in proptest::array::uniform3(0.001..100.0_f64),
+        shift_m in -0.1..0.1_f64,
+        with_lower in any::<bool>(),
+        limit_m in proptest::option::of(1e-3..1e6_f64),
+        exposure_us in proptest::option::of(1e-3..1e6_f64),
+        threshold in proptest::option::of(1..=255_u8),
+    ) {
+        let upper = Envelope { offset_px, scale_px_m2, shift_m };
+        let lower = Envelope { scale_px_m2: scale_px_m2 / (1.0 + below), ..upper };
+        let curve = SpotCurve::new(upper, with_lower.then_some(lower), limit_m).expect("a curve");
+        let file = SpotCurveFile { curve, exposure_us, threshold };
+        prop_assert_eq!(parse_spot_curve(&spot_curve::text(&file), "t").expect("what was written is read"), file);
+    }
+
+    #[test]
     fn airframes_round_trip_bit_for_bit(
         leds in proptest::collection::vec(
             (proptest::array::uniform3(-1.0..1.0_f64), proptest::array::uniform3(0.1..1.0_f64), any::<Option<u32>>()),
@@ -166,6 +190,7 @@ fn the_files_to_damage_are_valid() {
         parse_airframe(text, "t").unwrap();
     }
     BlinkCodes::parse(BLINK, "t").unwrap();
+    parse_spot_curve(SPOT_CURVE, "t").unwrap();
     assert!(ResultsReader::new(RESULTS.as_bytes(), "t").all(|record| record.is_ok()));
     for format in [image::ImageFormat::Png, image::ImageFormat::Bmp, image::ImageFormat::Tiff] {
         decode_image(&encoded(format), "t").unwrap();

@@ -16,3 +16,8 @@ mod lanes;
 pub mod locator;
 pub mod ranging;
 pub mod spots;
+
+/// The README's example is a test.
+#[cfg(doctest)]
+#[doc = include_str!("../../../README.md")]
+struct Readme;

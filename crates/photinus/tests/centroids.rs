@@ -4,6 +4,9 @@
 //! centre, that it does not depend on where in a pixel the light falls, and that the reported sigma is its scatter.
 //! Not checked: spots that are not Gaussian; see the tests on photos for those.
 
+#![allow(clippy::print_stdout, reason = "the measured numbers are worth reading")]
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+
 use photinus::camera::Pixel;
 use photinus::frame::FrameView;
 use photinus::spots::{Detector, Settings, Spot};

@@ -39,11 +39,42 @@ pub fn read_airframe(path: impl AsRef<Path>) -> Result<AirframeFile> {
 pub fn parse_airframe(text: &str, path: impl AsRef<Path>) -> Result<AirframeFile> {
     let path = path.as_ref();
     let first = text.lines().map(str::trim).find(|line| !line.is_empty() && !line.starts_with('#'));
-    let is_number = |word: &str| word.parse::<f64>().is_ok();
-    match first {
-        None => Err(Error::format(path, "it holds no LED").advise("see docs/file-formats.md for an example")),
-        Some(line) if line.split_whitespace().next().is_some_and(is_number) => layout::parse(text, path),
-        Some(_) => own::parse(text, path),
+    let Some(first) = first else { return Err(Error::format(path, "it holds no LED").advise(KNOWN)) };
+    if let Some(other) = other_kind(first, text) {
+        return Err(Error::format(path, format!("this looks like {other}, not an airframe")).advise(KNOWN));
+    }
+    match first.split_whitespace().next().is_some_and(is_number) {
+        true => layout::parse(text, path),
+        false => own::parse(text, path),
+    }
+}
+
+const KNOWN: &str = "an airframe is TOML with a ring or a list of LEDs, or an LED layout with X Y Z Type Pitch Yaw \
+                     signal_id per line";
+
+fn is_number(word: &str) -> bool {
+    word.parse::<f64>().is_ok()
+}
+
+/// What a text is that is no airframe, by its `first` line that says anything.
+fn other_kind(first: &str, text: &str) -> Option<&'static str> {
+    let words: Vec<&str> = first.split_whitespace().collect();
+    if words.iter().all(|word| word.split(',').all(|bit| matches!(bit, "" | "0" | "1")))
+        && first.contains(',')
+    {
+        return Some("a list of blink sequences");
+    }
+    if words.first().is_some_and(|word| is_number(word)) {
+        let count = words[0].parse().is_ok_and(|count: usize| count + 1 == words.len());
+        return (count && words.len() != 7).then_some("a camera in OCamCalib text");
+    }
+    let is_toml = first.starts_with('[') || first.contains('=');
+    let is_camera = |line: &str| line.split('=').next().is_some_and(|key| key.trim() == "model");
+    match is_toml {
+        true => text.lines().any(is_camera).then_some("a camera"),
+        false if first.starts_with('{') => Some("JSON"),
+        false if first.contains(':') => Some("YAML"),
+        false => Some("some other text"),
     }
 }
 
@@ -57,7 +88,7 @@ fn refuse(path: &Path, error: AirframeError, place: impl Fn(usize, Part) -> Plac
         E::Axis { led } => (Some((led, Part::Axis)), "give the direction in which the LED shines"),
         E::TooFar { led, .. } => (Some((led, Part::Position)), "give the position in metres"),
         E::Duplicate { second, .. } => (Some((second, Part::Whole)), "LEDs are counted from 0"),
-        _ => (None, "see docs/file-formats.md for an example"),
+        _ => (None, KNOWN),
     };
     let refused = Error::new(path, error).advise(advice);
     match at {

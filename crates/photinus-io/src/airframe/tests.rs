@@ -68,6 +68,21 @@ fn a_layout_points_down_with_positive_pitch_and_is_named_by_its_file() {
 }
 
 #[test]
+fn another_kind_of_file_is_named() {
+    for (text, kind) in [
+        ("# c\n5 -259 0 1e-3 -2e-6 6e-9\n", "a camera in OCamCalib text"),
+        ("width_px = 752\nmodel = \"ocam\"\n", "a camera"),
+        ("0,1,1,0\n", "a list of blink sequences"),
+        ("{\"spots\":[]}", "JSON"),
+        ("image_width: 752\n", "YAML"),
+        ("hello world\n", "some other text"),
+    ] {
+        let start = format!("quad: this looks like {kind}, not an airframe; an airframe is TOML with");
+        assert!(message(text).starts_with(&start), "{}", message(text));
+    }
+}
+
+#[test]
 fn errors_of_a_toml_name_the_key() {
     for (from, to, reason) in [
         (

@@ -57,10 +57,12 @@ impl Document {
                 path,
                 "camera_matrix",
                 format!("{} numbers where 9 are expected", matrix.len()),
+                "give the 3 x 3 matrix row by row",
             ));
         };
         if [skew, zero_a, zero_b, zero_c, one - 1.0].iter().any(|x| x.abs() > 1e-9) {
-            return Err(at_key(path, "camera_matrix", "fx 0 cx, 0 fy cy, 0 0 1 is expected, without skew"));
+            let reason = "fx 0 cx, 0 fy cy, 0 0 1 is expected, without skew";
+            return Err(at_key(path, "camera_matrix", reason, "calibrate without skew"));
         }
         let (focal_px, centre) = ([fx, fy], Pixel::new(cx, cy));
         let d = data(&self.distortion_coefficients).or(self.d.clone()).unwrap_or_default();
@@ -69,6 +71,7 @@ impl Document {
                 path,
                 "distortion_coefficients",
                 format!("{} numbers where {expected} are expected", d.len()),
+                "give as many as the distortion_model has, or correct the distortion_model",
             )
         };
         match self.distortion_model.as_str() {
@@ -86,7 +89,8 @@ impl Document {
             }
             other => {
                 let known = "plumb_bob, rational_polynomial, equidistant, kannala_brandt";
-                Err(at_key(path, "distortion_model", format!("`{other}` is none of {known}")))
+                let reason = format!("`{other}` is none of {known}");
+                Err(at_key(path, "distortion_model", reason, "calibrate with one of them"))
             }
         }
     }
@@ -154,7 +158,7 @@ mod tests {
                 "info.yaml, `distortion_coefficients`: 5 numbers where k1 k2 k3 k4",
             ),
             (SAVED.replace("574.05", ".inf"), "info.yaml, line 7: "),
-            (SAVED.replace("camera_matrix", "matrix"), "info.yaml, `camera_matrix`: there is no"),
+            (SAVED.replace("camera_matrix", "matrix"), "info.yaml: missing key `camera_matrix`; add it"),
             (SAVED.replace("-0.1, 0.02", "-3.1, 0.02"), "info.yaml: the angle off the axis stops growing"),
         ];
         for (text, message) in cases {

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::CameraFormat;
 use super::yaml;
-use crate::{Error, Place, Result};
+use crate::{Error, Result};
 
 const KNOWN: &str = "a camera is OCamCalib text, Photinus TOML, UVDAR YAML, Kalibr camchain YAML, ROS CameraInfo YAML or \
                      pyocamcalib JSON";
@@ -18,14 +18,13 @@ pub(super) fn text<'a>(bytes: &'a [u8], path: &Path) -> Result<&'a str> {
         (b"P5", "a PGM picture"),
         (b"\x1f\x8b", "a gzip archive"),
     ];
-    let wrong =
-        |what: &str| Error::format(path, format!("this is {what}, not a camera calibration")).advise(KNOWN);
+    let wrong = |what: &str| Error::format(path, format!("this is {what}, not a camera")).advise(KNOWN);
     if let Some((_, what)) = picture.iter().find(|(magic, _)| bytes.starts_with(magic)) {
         return Err(wrong(what));
     }
-    let text = std::str::from_utf8(bytes).map_err(|_| wrong("no text"))?;
+    let text = std::str::from_utf8(bytes).map_err(|_| wrong("binary data, or text other than UTF-8"))?;
     if text.contains('\0') {
-        return Err(wrong("no text"));
+        return Err(wrong("binary data"));
     }
     Ok(text.strip_prefix('\u{feff}').unwrap_or(text))
 }
@@ -69,15 +68,17 @@ fn numbers(first: &str, path: &Path) -> Result<CameraFormat> {
 fn toml(text: &str, path: &Path) -> Result<CameraFormat> {
     let key = |line: &str| line.split('=').next().unwrap_or_default().trim().to_owned();
     let has = |name: &str| text.lines().any(|line| key(line) == name);
-    let other =
-        |what: &str| Err(Error::format(path, format!("this looks like {what}, not a camera")).advise(KNOWN));
+    let other = |what: &str, advice: &str| {
+        Err(Error::format(path, format!("this looks like {what}, not a camera")).advise(advice))
+    };
     match () {
         () if has("model") => Ok(CameraFormat::Toml),
-        () if has("[[led]]") || has("ring") => other("an airframe"),
+        () if has("[[led]]") || has("ring") => other("an airframe", KNOWN),
+        () if text.contains("scale_px_m2") => other("a curve of spot sizes", KNOWN),
         () if has("camera") && has("airframe") => {
-            other("the dataset.toml of a recording; its `camera` names the file to give")
+            other("the dataset.toml of a recording", "name the file that its `camera` names")
         }
-        () => Err(Error::format(path, "there is no `model`").at(Place::Key("model".to_owned())).advise(
+        () => Err(Error::format(path, "missing key `model`").advise(
             "write model = \"ocam\", \"equidistant\", \"equisolid\", \"stereographic\", \"orthographic\", \
              \"kannala_brandt\" or \"pinhole\"",
         )),
@@ -137,8 +138,8 @@ mod tests {
         let cases: [(&[u8], &str); 11] = [
             (b"\x89PNG\r\n\x1a\n", "a PNG picture"),
             (b"\xff\xd8\xff\xe0", "a JPEG picture"),
-            (b"a\0b", "this is no text"),
-            (b"\xfe\xff", "this is no text"),
+            (b"a\0b", "this is binary data"),
+            (b"\xfe\xff", "this is binary data, or text other than UTF-8"),
             (b"# only\n\n", "nothing but comments"),
             (b"# X Y Z Type Pitch Yaw id\n0.17 0.17 0 0 0.0 0 0\n", "an LED layout"),
             (b"0,0,1,0\n1,1,0,0\n", "a list of blink sequences"),

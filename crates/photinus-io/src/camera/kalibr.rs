@@ -9,8 +9,8 @@ use serde::Deserialize;
 use super::camera_info::plumb_bob;
 use super::detect::is_kalibr_camera;
 use super::numbers::{Finite, exactly};
-use super::yaml::{at_key, keys, parse};
-use super::{CameraFile, CameraFormat, camera_error};
+use super::yaml::{at_key, keys, parse, required};
+use super::{CameraFile, CameraFormat, RENEW, camera_error};
 use crate::Result;
 
 #[derive(Deserialize)]
@@ -36,15 +36,10 @@ pub fn parse_kalibr(text: &str, path: &Path) -> Result<CameraFile> {
     let cameras: Vec<String> = keys(text, path)?.into_iter().filter(|key| is_kalibr_camera(key)).collect();
     let chain: Chain = match cameras.as_slice() {
         [] => parse(text, path)?,
-        [_] => parse::<BTreeMap<String, Chain>>(text, path)?
-            .into_values()
-            .next()
-            .ok_or_else(|| at_key(path, "cam0", "there is no camera"))?,
+        [only] => required(parse::<BTreeMap<String, Chain>>(text, path)?.remove(only), only, path)?,
         several => {
             let reason = format!("the file holds {} cameras", several.len());
-            return Err(
-                at_key(path, &several.join(", "), reason).advise("leave one of them in a file of its own")
-            );
+            return Err(at_key(path, &several.join(", "), reason, "leave one of them in a file of its own"));
         }
     };
     let model = chain.model(path)?.map_err(|error| camera_error(path, error))?;
@@ -57,13 +52,16 @@ impl Chain {
     fn model(&self, path: &Path) -> Result<std::result::Result<Model, CameraError>> {
         if self.camera_model != "pinhole" {
             let reason = format!("`{}`: of Kalibr's camera models only pinhole is read", self.camera_model);
-            return Err(
-                at_key(path, "camera_model", reason).advise("calibrate with pinhole-equi or pinhole-radtan")
-            );
+            return Err(at_key(
+                path,
+                "camera_model",
+                reason,
+                "calibrate with pinhole-equi or pinhole-radtan",
+            ));
         }
         let Some([fx, fy, cx, cy]) = exactly(&self.intrinsics) else {
             let reason = format!("{} numbers where fx fy cx cy are expected", self.intrinsics.len());
-            return Err(at_key(path, "intrinsics", reason));
+            return Err(at_key(path, "intrinsics", reason, RENEW));
         };
         let (focal_px, centre) = ([fx, fy], Pixel::new(cx, cy));
         let count = || {
@@ -71,6 +69,7 @@ impl Chain {
                 path,
                 "distortion_coeffs",
                 format!("{} numbers where 4 are expected", self.distortion_coeffs.len()),
+                "give all of them, zeros where the lens has none",
             )
         };
         match self.distortion_model.as_str() {
@@ -85,7 +84,7 @@ impl Chain {
             other => {
                 let reason =
                     format!("`{other}`: of Kalibr's distortions equidistant, radtan and none are read");
-                Err(at_key(path, "distortion_model", reason))
+                Err(at_key(path, "distortion_model", reason, "calibrate with pinhole-equi or pinhole-radtan"))
             }
         }
     }

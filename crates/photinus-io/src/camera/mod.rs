@@ -33,7 +33,7 @@ use std::path::Path;
 
 use photinus::camera::{Camera, CameraError, Model};
 
-use crate::{Error, Result};
+use crate::{Error, Result, whole};
 
 pub use camera_info::parse_camera_info;
 pub use inverse::InverseReport;
@@ -80,8 +80,7 @@ pub enum CameraFormat {
 /// An [`Error`] with the line or key when the file cannot be read, is of no known format, does not follow it, or does
 /// not make a camera.
 pub fn read_camera(path: &Path) -> Result<CameraFile> {
-    let bytes = std::fs::read(path).map_err(|error| Error::new(path, error))?;
-    parse_camera(&bytes, path)
+    parse_camera(&whole::read_bytes(path)?, path)
 }
 
 /// Reads a camera from the bytes of a file of any format; `path` is for messages.
@@ -127,15 +126,38 @@ impl CameraFile {
     }
 }
 
+/// What to do about a value that no calibration has.
+const RENEW: &str = "correct it there, or export the calibration again";
+
+/// What to do about a text that a parser refused.
+fn advice_for(reason: &str) -> &'static str {
+    if reason.starts_with("missing key") { "add it" } else { RENEW }
+}
+
 /// A camera error in a file, with what to do about it.
 fn camera_error(path: &Path, error: CameraError) -> Error {
+    use CameraError as E;
     let advice = match &error {
-        CameraError::NotMonotonic { angle_rad, .. } if *angle_rad > 0.0 => format!(
-            "if the lens was calibrated out to less than {:.1} deg, say so with field_limit_deg",
-            angle_rad.to_degrees()
-        ),
-        CameraError::Size { .. } => "check the order of width and height".to_owned(),
-        _ => String::new(),
+        // A whole number of degrees below the turn, where there is one.
+        E::NotMonotonic { angle_rad, .. } if angle_rad.to_degrees() > 1.0 => {
+            let limit_deg = angle_rad.to_degrees().next_down().floor();
+            return Error::new(path, error).advise(format!(
+                "if the lens was calibrated no farther, restrict the field with field_limit_deg = {limit_deg} or less (in \
+                 OCamCalib text behind a #); else correct the coefficients, or export the calibration again"
+            ));
+        }
+        E::NotMonotonic { .. } => "check the order and the signs of the coefficients",
+        E::Size { .. } => "give the size of the images that the camera was calibrated with",
+        E::FocalLength { .. } => "give focal lengths in pixels, as the calibration has them",
+        E::Coefficients { .. } => "give the direct polynomial in ascending powers, mostly 5 coefficients",
+        E::LooksBack { .. } => {
+            "check that the coefficients stand in ascending powers; where z points forward, change all their signs"
+        }
+        E::Singular { .. } => "for square pixels it is the identity: c d e = 1 0 0",
+        E::FieldLimit { .. } => {
+            "give the angle off the axis out to which the lens was calibrated, or leave it out"
+        }
+        _ => RENEW,
     };
     Error::new(path, error).advise(advice)
 }
@@ -200,6 +222,7 @@ mod tests {
     fn a_file_that_is_not_there_says_so() {
         let error = read_camera(Path::new("no/such/camera.txt")).unwrap_err().to_string();
         assert!(error.starts_with("no/such/camera.txt: "), "{error}");
+        assert!(error.ends_with("; check the path, which is taken from the current folder"), "{error}");
     }
 
     proptest! {
@@ -215,13 +238,15 @@ mod tests {
             let to = (from + cut).min(text.len());
             let changed: String = text[..from].iter().copied().chain(put.chars()).chain(text[to..].iter().copied()).collect();
             if let Err(error) = parse_camera(changed.as_bytes(), Path::new("x")) {
-                prop_assert!(error.to_string().starts_with('x'));
+                prop_assert!(error.to_string().starts_with('x') && !error.advice.is_empty(), "{}", error);
             }
         }
 
         #[test]
         fn no_bytes_panic(bytes in prop::collection::vec(any::<u8>(), 0..200)) {
-            let _ = parse_camera(&bytes, Path::new("x"));
+            if let Err(error) = parse_camera(&bytes, Path::new("x")) {
+                prop_assert!(!error.advice.is_empty(), "{}", error);
+            }
         }
     }
 }

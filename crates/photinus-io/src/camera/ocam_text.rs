@@ -6,8 +6,12 @@ use nalgebra::Matrix2;
 use photinus::camera::{CameraError, Model, OCam, Pixel};
 
 use super::inverse::Curve;
-use super::{CameraFile, CameraFormat, camera_error};
+use super::{CameraFile, CameraFormat, RENEW, camera_error};
 use crate::{Error, Place, Result};
+
+const BLOCKS: &str = "a calibration is, in this order: the direct and the inverse polynomial with their counts, the centre, \
+                      c d e, height and width";
+const COUNT: &str = "correct the count or the numbers; a comment or blank line ends a block";
 
 /// Reads OCamCalib text; `path` is for messages.
 ///
@@ -25,8 +29,8 @@ pub fn parse_ocam_text(text: &str, path: &Path) -> Result<CameraFile> {
     let affine = blocks.numbers::<3>("the affine parameters c, d, e")?;
     let size = blocks.numbers::<2>("the image size, height then width")?;
     if let Some(row) = blocks.rows.next() {
-        let reason = "more numbers after the five blocks of a calibration";
-        return Err(Error::format(path, reason).at(Place::Line(row.line)));
+        let reason = "more numbers after the five blocks of a calibration".to_owned();
+        return Err(blocks.wrong(row.line, reason, BLOCKS));
     }
     let [height_px, width_px] = [side(path, &size, 0)?, side(path, &size, 1)?];
 
@@ -124,7 +128,7 @@ impl<'a> Blocks<'a> {
                 "`{word}` where the number of coefficients of {what} is expected, 1 to {}",
                 OCam::MAX_COEFFICIENTS
             );
-            return Err(self.wrong(row.line, reason));
+            return Err(self.wrong(row.line, reason, "begin the block with how many numbers follow"));
         };
         self.values(row, what, count)
     }
@@ -133,7 +137,8 @@ impl<'a> Blocks<'a> {
     fn numbers<const N: usize>(&mut self, what: &str) -> Result<Block<[f64; N]>> {
         let row = self.row(what)?;
         let Block { line, values } = self.values(row, what, N)?;
-        let values = values.try_into().map_err(|_| self.wrong(line, format!("{what}: not {N} numbers")))?;
+        let values =
+            values.try_into().map_err(|_| self.wrong(line, format!("{what}: not {N} numbers"), BLOCKS))?;
         Ok(Block { line, values })
     }
 
@@ -150,29 +155,33 @@ impl<'a> Blocks<'a> {
             }
             let next_line = row.line + 1;
             let short = format!("{what}: {} numbers where {count} are expected", values.len());
-            row = self.rows.next_if(|next| next.line == next_line).ok_or_else(|| self.wrong(line, short))?;
+            row = self
+                .rows
+                .next_if(|next| next.line == next_line)
+                .ok_or_else(|| self.wrong(line, short, COUNT))?;
         }
         if values.len() > count {
-            return Err(
-                self.wrong(row.line, format!("{what}: {} numbers where {count} are expected", values.len()))
-            );
+            let reason = format!("{what}: {} numbers where {count} are expected", values.len());
+            return Err(self.wrong(row.line, reason, COUNT));
         }
         Ok(Block { line, values })
     }
 
     fn row(&mut self, what: &str) -> Result<Row<'a>> {
-        self.rows.next().ok_or_else(|| self.wrong(self.last_line, format!("the file ends before {what}")))
+        self.rows
+            .next()
+            .ok_or_else(|| self.wrong(self.last_line, format!("the file ends before {what}"), BLOCKS))
     }
 
     fn finite(&self, line: usize, word: &str, what: &str) -> Result<f64> {
-        word.parse()
-            .ok()
-            .filter(|value: &f64| value.is_finite())
-            .ok_or_else(|| self.wrong(line, format!("`{word}` where a finite number of {what} is expected")))
+        word.parse().ok().filter(|value: &f64| value.is_finite()).ok_or_else(|| {
+            let reason = format!("`{word}` where a finite number of {what} is expected");
+            self.wrong(line, reason, RENEW)
+        })
     }
 
-    fn wrong(&self, line: usize, reason: String) -> Error {
-        Error::format(self.path, reason).at(Place::Line(line))
+    fn wrong(&self, line: usize, reason: String, advice: &str) -> Error {
+        Error::format(self.path, reason).at(Place::Line(line)).advise(advice)
     }
 }
 
@@ -181,7 +190,8 @@ fn side(path: &Path, size: &Block<[f64; 2]>, index: usize) -> Result<usize> {
     let value = size.values[index];
     if value.fract().abs() > 0.0 || !(0.0..=1e6).contains(&value) {
         let reason = "the image size: whole numbers of pixels are expected, height then width";
-        return Err(Error::format(path, reason).at(Place::Line(size.line)));
+        let advice = "give the size of the images that the camera was calibrated with, such as 480 752";
+        return Err(Error::format(path, reason).at(Place::Line(size.line)).advise(advice));
     }
     Ok(value as usize)
 }
@@ -194,7 +204,10 @@ fn field_limit_deg(text: &str, path: &Path) -> Result<Option<f64>> {
         let word = rest.trim_start_matches([' ', '=', ':']).split_whitespace().next().unwrap_or_default();
         let limit = word.parse().ok().filter(|limit: &f64| limit.is_finite());
         let reason = format!("`{word}` where field_limit_deg is expected, a number of degrees");
-        return limit.map(Some).ok_or_else(|| Error::format(path, reason).at(Place::Line(index + 1)));
+        let advice = "write # field_limit_deg = 68.5, or leave it out";
+        return limit
+            .map(Some)
+            .ok_or_else(|| Error::format(path, reason).at(Place::Line(index + 1)).advise(advice));
     }
     Ok(None)
 }

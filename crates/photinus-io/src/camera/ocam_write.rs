@@ -13,6 +13,8 @@ use crate::{Error, Result};
 /// An inverse polynomial this good is not worth another degree.
 const GOOD_ENOUGH_PX: f64 = 0.01;
 
+const INSTEAD: &str = "write it as Photinus TOML: end the output in .toml";
+
 /// Writes an OCam camera as OCamCalib text; `path` is for messages.
 ///
 /// The direct polynomial keeps every digit. The inverse one is fitted over the field with the least degree
@@ -24,12 +26,14 @@ const GOOD_ENOUGH_PX: f64 = 0.01;
 /// fails.
 pub fn write_ocam_text(camera: &Camera, to: &mut impl Write, path: &Path) -> Result<InverseReport> {
     let Model::OCam(lens) = camera.model() else {
-        return Err(Error::format(path, "only a camera of model ocam can be written as OCamCalib text"));
+        return Err(Error::format(path, "only a camera of model ocam can be written as OCamCalib text")
+            .advise(INSTEAD));
     };
     let stretch = lens.stretch();
     let scale = stretch.m22;
     if scale <= 0.0 {
-        return Err(Error::format(path, "the stretch matrix turns the image over: c, d, e cannot hold it"));
+        return Err(Error::format(path, "the stretch matrix turns the image over: c, d, e cannot hold it")
+            .advise(INSTEAD));
     }
     let (inverse, report) = Curve::of(camera, lens).fit(GOOD_ENOUGH_PX / scale);
     let report = InverseReport { max_px: report.max_px * scale, rms_px: report.rms_px * scale, ..report };

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use super::numbers::{Finite, degrees, values};
 use super::{CameraFile, CameraFormat, camera_error};
-use crate::{Error, Place, Result};
+use crate::{Error, Place, Result, table};
 
 /// The file as it stands: the keys of all models, of which each model has its own.
 #[derive(Deserialize, Serialize)]
@@ -46,17 +46,13 @@ enum Name {
 /// An [`Error`] with the line or key when the text is no TOML, a key is missing, unknown or of another model, or the
 /// numbers do not make a camera.
 pub fn parse_camera_toml(text: &str, path: &Path) -> Result<CameraFile> {
-    let mut table: Table = toml::from_str(text).map_err(|error| {
-        let wrong = Error::format(path, error.message());
-        match error.span().and_then(|span| text.get(..span.start)) {
-            Some(before) => wrong.at(Place::Line(before.matches('\n').count() + 1)),
-            None => wrong,
-        }
-    })?;
+    let mut table: Table = table::parse(text, path)?;
     let model = table.take_model(path)?.map_err(|error| camera_error(path, error))?;
     if let Some(key) = table.left_over() {
         let reason = format!("a camera of model {} has no `{key}`", name_in_toml(table.model));
-        return Err(Error::format(path, reason).at(Place::Key(key.to_owned())));
+        return Err(Error::format(path, reason)
+            .at(Place::Key(key.to_owned()))
+            .advise("remove it, or correct the model"));
     }
     let limit = table.field_limit_deg.map(|limit| limit.0);
     let size = [table.width_px, table.height_px];
@@ -74,7 +70,7 @@ pub fn parse_camera_toml(text: &str, path: &Path) -> Result<CameraFile> {
 /// An [`Error`] when writing fails.
 pub fn write_camera_toml(camera: &Camera, to: &mut impl Write, path: &Path) -> Result<()> {
     let text = toml::to_string(&Table::of(camera)).map_err(|error| Error::format(path, error.to_string()))?;
-    to.write_all(text.as_bytes()).map_err(|error| Error::new(path, error))
+    to.write_all(text.as_bytes()).map_err(|error| Error::io(path, error))
 }
 
 impl Table {
@@ -175,8 +171,7 @@ impl Table {
 /// A key that the model needs.
 fn required<T>(value: Option<T>, key: &str, path: &Path) -> Result<T> {
     value.ok_or_else(|| {
-        Error::format(path, format!("there is no `{key}`, which this model needs"))
-            .at(Place::Key(key.to_owned()))
+        Error::format(path, format!("missing key `{key}`, which this model needs")).advise("add it")
     })
 }
 
@@ -212,8 +207,8 @@ mod tests {
             (FILE.replace("301", "1e400"), "cam.toml, line 5: "),
             (FILE.replace("301", "\"a\""), "cam.toml, line 5: invalid type"),
             (FILE.replace(", 301]", "]"), "cam.toml, line 5: invalid length"),
-            (FILE.replace("k = [", "kay = ["), "cam.toml, line 7: unknown field `kay`"),
-            (FILE.replace("k = [", "#k = ["), "cam.toml, `k`: there is no `k`"),
+            (FILE.replace("k = [", "kay = ["), "cam.toml, line 7: unknown key `kay`"),
+            (FILE.replace("k = [", "#k = ["), "cam.toml: missing key `k`, which this model needs; add it"),
             (
                 FILE.replace("k = [", "radial = [1, 2, 3, 4, 5, 6]\nk = ["),
                 "cam.toml, `radial`: a camera of model kannala",

@@ -7,7 +7,8 @@ use photinus::camera::{Model, OCam, Pixel};
 use serde::Deserialize;
 
 use super::numbers::{Finite, values};
-use super::{CameraFile, CameraFormat, camera_error};
+use super::{CameraFile, CameraFormat, advice_for, camera_error};
+use crate::error::json_reason;
 use crate::{Error, Place, Result};
 
 #[derive(Deserialize)]
@@ -32,8 +33,11 @@ struct Document {
 /// An [`Error`] with the line or key when the text is no JSON, a key is missing or of another shape, or the numbers do
 /// not make a camera.
 pub fn parse_pyocamcalib(text: &str, path: &Path) -> Result<CameraFile> {
-    let document: Document = serde_json::from_str(text)
-        .map_err(|error| Error::format(path, error.to_string()).at(Place::Line(error.line())))?;
+    let document: Document = serde_json::from_str(text).map_err(|error| {
+        let reason = json_reason(&error);
+        let advice = advice_for(&reason);
+        Error::format(path, reason).at(Place::Line(error.line())).advise(advice)
+    })?;
     let [height_px, width_px] = document.image_size.ok_or_else(|| {
         Error::format(path, "the file does not say how large the image is")
             .at(Place::Key("image_size".to_owned()))

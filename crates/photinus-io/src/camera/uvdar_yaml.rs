@@ -67,6 +67,7 @@ impl Document {
                 path,
                 "image_size",
                 "the size is given twice, also as image_width and image_height",
+                "keep one of them",
             )),
         }
     }
@@ -88,18 +89,20 @@ impl Document {
                 let reason = format!(
                     "`{unknown}` is none of ocamcalib, pinhole, equidistant, equisolid, stereographic, orthographic"
                 );
-                return Err(at_key(path, "calibration_model", reason));
+                return Err(at_key(path, "calibration_model", reason, "calibrate with one of them"));
             }
         };
         let [fx, fy, cx, cy] = required(self.intrinsics, "intrinsics", path)?.map(|n| n.0);
         let (focal_px, centre) = ([fx, fy], Pixel::new(cx, cy));
         let distortion = self.distortion.as_deref().unwrap_or_default();
         let count = |expected: &str| {
-            at_key(path, "distortion", format!("{} numbers where {expected}", distortion.len()))
+            let reason = format!("{} numbers where {expected}", distortion.len());
+            at_key(path, "distortion", reason, "give all of them, zeros where the lens has none")
         };
         if let Some(law) = law {
             if distortion.iter().any(|d| d.0.abs() > 0.0) {
-                return Err(at_key(path, "distortion", "this model has none: zeros or nothing are expected"));
+                let reason = "this model has none: zeros or nothing are expected";
+                return Err(at_key(path, "distortion", reason, "use another model, or remove it"));
             }
             return Ok(Ideal::new(law, focal_px, centre).map(Model::Ideal));
         }
@@ -155,7 +158,7 @@ mod tests {
     #[test]
     fn mistakes_are_named_with_line_or_key() {
         let cases = [
-            (OCAM.replace("center:", "middle:"), "cam.yaml, `center`: there is no `center`"),
+            (OCAM.replace("center:", "middle:"), "cam.yaml: missing key `center`; add it"),
             (OCAM.replace("-259.5395", ".nan"), "cam.yaml, line 2: "),
             (OCAM.replace("-259.5395", "1e400"), "cam.yaml, line 2: "),
             (OCAM.replace("[480, 752]", "[480, 752"), "cam.yaml, line "),
@@ -169,7 +172,10 @@ mod tests {
             ),
             (EQUIDISTANT.replace("equidistant", "equisolid"), "cam.yaml, `distortion`: this model has none"),
             (EQUIDISTANT.replace(", 0, 0]", "]"), "cam.yaml, `distortion`: 2 numbers where k1 k2 k3 k4"),
-            (EQUIDISTANT.replace("image_height", "image_size_y"), "cam.yaml, `image_height`: there is no"),
+            (
+                EQUIDISTANT.replace("image_height", "image_size_y"),
+                "cam.yaml: missing key `image_height`; add it",
+            ),
         ];
         for (text, message) in cases {
             let refusal = read(&text).unwrap_err().to_string();

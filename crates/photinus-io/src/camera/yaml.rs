@@ -5,6 +5,8 @@ use std::path::Path;
 
 use serde::de::{DeserializeOwned, IgnoredAny};
 
+use super::advice_for;
+use crate::error::in_plain_words;
 use crate::{Error, Place, Result};
 
 /// Reads a document; keys that `T` does not name are passed over, as these files carry many.
@@ -12,7 +14,9 @@ pub(super) fn parse<T: DeserializeOwned>(text: &str, path: &Path) -> Result<T> {
     serde_saphyr::from_str(text).map_err(|error| {
         let message = error.without_snippet().to_string();
         // the place says the line, with the file, as every error does
-        let wrong = Error::format(path, message.split(" at line ").next().unwrap_or_default());
+        let reason = in_plain_words(message.split(" at line ").next().unwrap_or_default());
+        let advice = advice_for(&reason);
+        let wrong = Error::format(path, reason).advise(advice);
         match error.location().and_then(|location| usize::try_from(location.line()).ok()) {
             Some(line) if line > 0 => wrong.at(Place::Line(line)),
             _ => wrong,
@@ -27,10 +31,10 @@ pub(super) fn keys(text: &str, path: &Path) -> Result<Vec<String>> {
 
 /// A value that the format requires.
 pub(super) fn required<T>(value: Option<T>, key: &str, path: &Path) -> Result<T> {
-    value.ok_or_else(|| Error::format(path, format!("there is no `{key}`")).at(Place::Key(key.to_owned())))
+    value.ok_or_else(|| Error::format(path, format!("missing key `{key}`")).advise("add it"))
 }
 
-/// An error in the value of a key.
-pub(super) fn at_key(path: &Path, key: &str, reason: impl Into<String>) -> Error {
-    Error::format(path, reason).at(Place::Key(key.to_owned()))
+/// An error in the value of a key, and what to do.
+pub(super) fn at_key(path: &Path, key: &str, reason: impl Into<String>, advice: &str) -> Error {
+    Error::format(path, reason).at(Place::Key(key.to_owned())).advise(advice)
 }

@@ -54,6 +54,13 @@ fn a_folder_written_is_read_back() {
         let message = writer.frame(&image.view(), time_s, None).unwrap_err().to_string();
         assert!(message.contains("frames.csv, frame 2: "), "{message}");
     }
+    assert!(
+        writer
+            .numbered_frame(1, &image.view(), 9.0, None)
+            .unwrap_err()
+            .to_string()
+            .contains("number 1 does not")
+    );
     let mut broken = truth;
     broken.neighbours[0].leds[0].u_px = f64::NAN;
     assert!(
@@ -64,6 +71,11 @@ fn a_folder_written_is_read_back() {
             .contains("truth.jsonl, frame 1: a number of the truth")
     );
     assert_eq!(Dataset::read(&folder).unwrap(), dataset, "what was refused is not written");
+
+    writer.numbered_frame(7, &image.view(), 9.0, None).unwrap();
+    assert_eq!(writer.frame(&image.view(), 10.0, None).unwrap(), 8);
+    let last = Dataset::read(&folder).unwrap().frames().last().unwrap().clone();
+    assert_eq!((last.frame, last.image.as_path()), (8, Path::new("images/000008.png")));
 
     let again = DatasetWriter::create(&folder, &info).unwrap_err().to_string();
     assert!(again.ends_with("; remove it, or write elsewhere"), "{again}");

@@ -40,10 +40,10 @@ impl DatasetWriter {
     }
 
     /// Adds a frame taken at `time_s`, with the direction of gravity in the camera frame where that is known, and
-    /// gives its number.
+    /// gives its number, the next one.
     ///
     /// # Errors
-    /// [`Error`] when a file cannot be written, or when the time is no time after that of the frame before.
+    /// As [`DatasetWriter::numbered_frame`].
     pub fn frame(
         &mut self,
         frame: &FrameView<'_>,
@@ -51,21 +51,40 @@ impl DatasetWriter {
         gravity: Option<Unit<Vector3<f64>>>,
     ) -> Result<u64> {
         let number = self.next;
+        self.numbered_frame(number, frame, time_s, gravity)?;
+        Ok(number)
+    }
+
+    /// Adds a frame that has a number already, of those of another recording.
+    ///
+    /// # Errors
+    /// [`Error`] when a file cannot be written, or when the number or the time does not come after that of the frame
+    /// before.
+    pub fn numbered_frame(
+        &mut self,
+        number: u64,
+        frame: &FrameView<'_>,
+        time_s: f64,
+        gravity: Option<Unit<Vector3<f64>>>,
+    ) -> Result<()> {
+        let refuse = |reason: String| {
+            Err(Error::format(self.folder.join(FRAMES_FILE), reason)
+                .at(Place::Frame(number))
+                .advise("write frames in the order in which they were taken"))
+        };
+        if number < self.next {
+            return refuse(format!("number {number} does not come after the frame before"));
+        }
         if !(time_s.is_finite() && time_s > self.last_time_s) {
-            return Err(Error::format(
-                self.folder.join(FRAMES_FILE),
-                format!("{time_s} s is no time after the frame before"),
-            )
-            .at(Place::Frame(number))
-            .advise("write frames in the order in which they were taken"));
+            return refuse(format!("{time_s} s is no time after the frame before"));
         }
         let name = format!("images/{number:06}.png");
         image::write_png(self.folder.join(&name), frame)?;
         let down = gravity.map_or(",,".to_owned(), |g| format!("{},{},{}", g.x, g.y, g.z));
         writeln!(self.frames, "{number},{time_s},{name},{down}")
             .map_err(|error| Error::io(self.folder.join(FRAMES_FILE), error))?;
-        (self.next, self.last_time_s) = (number + 1, time_s);
-        Ok(number)
+        (self.next, self.last_time_s) = (number.saturating_add(1), time_s);
+        Ok(())
     }
 
     /// Adds the truth of a frame.

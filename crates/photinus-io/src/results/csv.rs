@@ -55,14 +55,15 @@ impl<W: Write> CsvWriter<W> {
 fn cells(record: &FrameRecord, neighbour: &NeighbourRecord) -> [String; COLUMNS.len()] {
     let n = neighbour;
     let [bx, by, bz] = n.bearing.map(number);
-    let [x, y, z] = n.position_m.map(number);
-    let [[xx, xy, xz], [_, yy, yz], [_, _, zz]] = n.position_covariance_m2.map(|row| row.map(number));
+    let [x, y, z] = n.position_m.unwrap_or([f64::NAN; 3]).map(number);
+    let [[xx, xy, xz], [_, yy, yz], [_, _, zz]] =
+        n.position_covariance_m2.unwrap_or([[f64::NAN; 3]; 3]).map(|row| row.map(number));
     let [qx, qy, qz, qw] = n.orientation_xyzw.unwrap_or([f64::NAN; 4]).map(number);
     let d = &n.distance_m;
     [
         text(record.frame), known(record.time_s), record.source.clone(), text(n.track), text(n.id),
         n.airframe.clone(), n.spots.len().to_string(), bx, by, bz,
-        number(d.estimate), known(d.sigma), number(d.min), known(d.max), known(d.perpendicular), known(d.inline),
+        known(d.estimate), known(d.sigma), number(d.min), known(d.max), known(d.perpendicular), known(d.inline),
         x, y, z, xx, xy, xz, yy, yz, zz, qx, qy, qz, qw, n.modes.len().to_string(),
     ]
 }

@@ -4,6 +4,7 @@
 //! its place, see [`SpotRecord`].
 
 mod csv;
+mod found;
 mod json;
 mod record;
 mod spot;

@@ -58,10 +58,12 @@ pub struct NeighbourRecord {
     pub bearing: [f64; 3],
     /// How far it is.
     pub distance_m: Distance,
-    /// Its origin, m.
-    pub position_m: [f64; 3],
+    /// Its origin, m, where the distance has an estimate.
+    #[serde(default)]
+    pub position_m: Option<[f64; 3]>,
     /// Covariance of the position, m^2.
-    pub position_covariance_m2: [[f64; 3]; 3],
+    #[serde(default)]
+    pub position_covariance_m2: Option<[[f64; 3]; 3]>,
     /// Its attitude, camera_from_body as x, y, z, w.
     #[serde(default)]
     pub orientation_xyzw: Option<[f64; 4]>,
@@ -76,8 +78,8 @@ pub struct NeighbourRecord {
 /// From the camera's centre to a neighbour's origin, m.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Distance {
-    /// The likeliest.
-    pub estimate: f64,
+    /// The likeliest; `None` where only bounds are known.
+    pub estimate: Option<f64>,
     /// Its standard deviation.
     pub sigma: Option<f64>,
     /// It is never less, under the stated assumptions.

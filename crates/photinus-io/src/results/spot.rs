@@ -9,7 +9,7 @@ pub const DEFAULT_SIGMA_PX: f64 = 0.288_675_134_594_812_9;
 
 /// Something bright that may be a marker.
 ///
-/// Only `u_px` and `v_px` must stand in a file. Defaults: `area_px` 1, `peak` 255, `saturated_px` 0, `flux` peak x area,
+/// Only `u_px` and `v_px` must stand in a file. Defaults: `area_px` 1, `peak` 255, `saturated_px` 0, `flux` 0 (not known),
 /// `sigma_px` [`DEFAULT_SIGMA_PX`] (a number, or one per axis), `covariance_px2` diagonal from `sigma_px`,
 /// `middle_px` the nearest pixel, `background` 0, the others `null`. `covariance_px2` goes before `sigma_px`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -25,7 +25,7 @@ pub struct SpotRecord {
     pub peak: u8,
     /// Pixels of 255.
     pub saturated_px: u32,
-    /// Sum of its pixels above the background.
+    /// Sum of its pixels above the background, grey levels; 0 where it is not known.
     pub flux: f64,
     /// Root of the mean variance of the centre over the two axes, px.
     pub sigma_px: f64,
@@ -33,6 +33,8 @@ pub struct SpotRecord {
     pub covariance_px2: [[f64; 2]; 2],
     /// The paper's middle pixel: column and row.
     pub middle_px: [u32; 2],
+    /// The box of pixels that it spans: first column, first row, last column, last row.
+    pub extent_px: Option<[u32; 4]>,
     /// Grey value around it.
     pub background: f64,
     /// Unit vector towards it in the camera frame, where the camera is known.
@@ -62,6 +64,7 @@ struct Given {
     sigma_px: Option<Sigma>,
     covariance_px2: Option<[[f64; 2]; 2]>,
     middle_px: Option<[u32; 2]>,
+    extent_px: Option<[u32; 4]>,
     background: Option<f64>,
     bearing: Option<[f64; 3]>,
     bound_rad: Option<f64>,
@@ -104,19 +107,27 @@ impl TryFrom<Given> for SpotRecord {
         if !(uu > 0.0 && vv > 0.0 && uu * vv > uv * vu && (uv - vu).abs() <= 1e-9 * uv.abs()) {
             return Err(format!("covariance_px2 {covariance_px2:?} is no covariance"));
         }
-        let (area_px, peak) = (given.area_px.unwrap_or(1), given.peak.unwrap_or(255));
+        let is_box = |[left, top, right, bottom]: [u32; 4]| {
+            left <= right && top <= bottom && right.max(bottom) as usize <= FrameView::MAX_SIDE_PX
+        };
+        if given.extent_px.is_some_and(|extent| !is_box(extent)) {
+            return Err(
+                "extent_px is no box of an image: first column, first row, last column, last row".to_owned()
+            );
+        }
         // The sides are those of an image, checked above.
         let nearest = |px: f64| px.round() as u32;
         Ok(Self {
             u_px,
             v_px,
-            area_px,
-            peak,
+            area_px: given.area_px.unwrap_or(1),
+            peak: given.peak.unwrap_or(255),
             saturated_px: given.saturated_px.unwrap_or(0),
-            flux: given.flux.unwrap_or(f64::from(peak) * f64::from(area_px)),
+            flux: given.flux.unwrap_or(0.0),
             sigma_px,
             covariance_px2,
             middle_px: given.middle_px.unwrap_or([nearest(u_px), nearest(v_px)]),
+            extent_px: given.extent_px,
             background: given.background.unwrap_or(0.0),
             bearing: given.bearing,
             bound_rad: given.bound_rad,

@@ -1,3 +1,5 @@
+use proptest::prelude::*;
+
 use super::*;
 use crate::Result;
 
@@ -12,6 +14,7 @@ fn spot() -> SpotRecord {
         sigma_px: 0.2,
         covariance_px2: [[0.05, 0.01], [0.01, 0.03]],
         middle_px: [100, 51],
+        extent_px: Some([99, 50, 101, 51]),
         background: 3.5,
         bearing: Some([0.1, 0.2, -0.97]),
         bound_rad: Some(0.002),
@@ -27,15 +30,15 @@ fn neighbour() -> NeighbourRecord {
         spots: vec![0],
         bearing: [0.0, 0.0, 1.0],
         distance_m: Distance {
-            estimate: 7.25,
+            estimate: Some(7.25),
             sigma: Some(0.5),
             min: 5.0,
             max: None,
             perpendicular: Some(7.5),
             inline: Some(5.0),
         },
-        position_m: [0.0, 0.0, 7.25],
-        position_covariance_m2: [[0.25, 0.0, 0.125], [0.0, 0.5, 0.0], [0.125, 0.0, 1.0]],
+        position_m: Some([0.0, 0.0, 7.25]),
+        position_covariance_m2: Some([[0.25, 0.0, 0.125], [0.0, 0.5, 0.0], [0.125, 0.0, 1.0]]),
         orientation_xyzw: None,
         orientation_covariance_rad2: None,
         modes: vec![],
@@ -74,7 +77,7 @@ fn results_are_one_line_with_the_documented_names() {
     assert_eq!(keys(&value), "frame neighbours rejected source spots time_s");
     assert_eq!(
         keys(&value["spots"][0]),
-        "area_px background bearing bound_rad covariance_px2 flux middle_px peak range_m saturated_px sigma_px u_px v_px"
+        "area_px background bearing bound_rad covariance_px2 extent_px flux middle_px peak range_m saturated_px sigma_px u_px v_px"
     );
     assert_eq!(keys(&value["rejected"][0]), "area_px reason u_px v_px");
     assert_eq!(
@@ -94,6 +97,19 @@ fn results_are_read_back() {
     assert_eq!(*read[1].as_ref().unwrap(), record());
 }
 
+proptest! {
+    #[test]
+    fn numbers_are_read_back_bit_for_bit(numbers in proptest::array::uniform8(proptest::num::f64::NORMAL)) {
+        let [flux, background, x, y, z, time_s, estimate, perpendicular] = numbers;
+        let mut written = record();
+        (written.spots[0].flux, written.spots[0].background) = (flux, background);
+        (written.spots[0].bearing, written.time_s) = (Some([x, y, z]), Some(time_s));
+        written.neighbours[0].distance_m.estimate = Some(estimate);
+        written.neighbours[0].distance_m.perpendicular = Some(perpendicular);
+        prop_assert_eq!(read(&json(&written)).remove(0).unwrap(), written);
+    }
+}
+
 #[test]
 fn numbers_that_are_not_finite_become_null() {
     let mut record = record();
@@ -111,10 +127,10 @@ fn spots_of_others_need_only_their_place() {
     let frames: Vec<_> = read(text).into_iter().map(|frame| frame.unwrap()).collect();
     assert_eq!(frames.iter().map(|frame| frame.frame).collect::<Vec<_>>(), [Some(0), Some(1), Some(9)]);
     let spot = frames[0].spots[0];
-    assert_eq!((spot.area_px, spot.peak, spot.flux, spot.middle_px), (1, 255, 255.0, [10, 20]));
+    assert_eq!((spot.area_px, spot.peak, spot.flux, spot.middle_px), (1, 255, 0.0, [10, 20]));
     assert!((spot.covariance_px2[0][0] - 1.0 / 12.0).abs() < 1e-15);
     let spot = frames[2].spots[0];
-    assert_eq!((spot.flux, spot.covariance_px2), (300.0, [[0.3 * 0.3, 0.0], [0.0, 0.4 * 0.4]]));
+    assert_eq!((spot.area_px, spot.covariance_px2), (3, [[0.3 * 0.3, 0.0], [0.0, 0.4 * 0.4]]));
     assert!((spot.sigma_px - 0.125_f64.sqrt()).abs() < 1e-15);
     assert_eq!(frames[2].spots[1].covariance_px2, [[0.25, 0.0], [0.0, 0.25]]);
 }
@@ -129,6 +145,7 @@ fn spots_that_are_none_are_refused_with_their_line() {
         ("{\"u_px\":1,\"v_px\":2,\"sigma_px\":0}", "sigma_px is not above 0"),
         ("{\"u_px\":1,\"v_px\":2,\"sigma_px\":\"a\"}", "sigma_px must be a number or [u, v]"),
         ("{\"u_px\":1,\"v_px\":2,\"covariance_px2\":[[1,2],[2,1]]}", "is no covariance"),
+        ("{\"u_px\":1,\"v_px\":2,\"extent_px\":[3,2,1,2]}", "extent_px is no box"),
         ("{\"u_px\":1,\"v_px\":2,\"peak\":300}", "invalid value: integer `300`"),
     ] {
         let frames = read(&format!("{{\"spots\":[]}}\n{{\"spots\":[{spot}]}}\n{{\"spots\":[]}}\n"));
@@ -148,7 +165,7 @@ fn a_table_has_a_row_per_neighbour() {
     let mut writer = CsvWriter::new(&mut bytes, "t").unwrap();
     let mut two = record();
     two.neighbours.push(NeighbourRecord { orientation_xyzw: Some([0.0, 0.0, 0.0, 1.0]), ..neighbour() });
-    two.neighbours[1].distance_m.estimate = f64::NAN;
+    two.neighbours[1].distance_m.estimate = Some(f64::NAN);
     writer.write(&two).unwrap();
     writer.write(&FrameRecord { neighbours: vec![], ..record() }).unwrap();
     drop(writer);

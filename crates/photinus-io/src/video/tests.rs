@@ -119,7 +119,11 @@ fn raw_frames_are_cut_by_their_size() {
     let second = frames[1].as_ref().unwrap();
     assert_eq!((second.index, second.time_s, &second.image), (1, Some(0.02), &frame(1)));
     assert!(
-        frames[2].as_ref().unwrap_err().to_string().starts_with("-, frame 2: the stream ends after 2 of")
+        frames[2]
+            .as_ref()
+            .unwrap_err()
+            .to_string()
+            .starts_with("standard input, frame 2: the stream ends after 2 of")
     );
     for bad in [
         RawFormat { width: 0, ..format },

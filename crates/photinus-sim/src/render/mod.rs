@@ -6,6 +6,7 @@
 
 mod backdrop;
 mod lights;
+mod parallel;
 #[cfg(test)]
 mod tests;
 

@@ -229,12 +229,22 @@ fn a_frame_is_the_same_whoever_renders_it_and_when() {
         Scene::read(Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/swarm-12.toml"))).unwrap();
     let mut one = Simulator::new(&scene, 0).unwrap();
     let in_order: Vec<Rendered> = (0..4).map(|n| one.frame(n)).collect();
-    let backwards: Vec<Rendered> = std::thread::scope(|scope| {
-        let render = |n: u64| Simulator::new(&scene, 0).unwrap().frame(n);
-        let threads: Vec<_> = (0..4).map(|n| scope.spawn(move || render(n))).collect();
-        threads.into_iter().map(|thread| thread.join().unwrap()).collect()
-    });
-    assert_eq!(in_order, backwards);
+    assert_eq!(Simulator::new(&scene, 0).unwrap().frame(2), in_order[2], "alone");
+    for threads in [1, 3] {
+        let mut taken = Vec::new();
+        let take = |rendered| -> Result<(), ()> {
+            taken.push(rendered);
+            Ok(())
+        };
+        Simulator::new(&scene, 0).unwrap().render(0..4, threads, take).unwrap();
+        assert_eq!(taken, in_order, "{threads} threads");
+    }
+    let refused =
+        Simulator::new(&scene, 0).unwrap().render(0..400, 2, |rendered| match rendered.truth.frame {
+            3 => Err("enough"),
+            _ => Ok(()),
+        });
+    assert_eq!(refused, Err("enough"));
     let mut other = scene.clone();
     other.set_seed(2);
     assert_ne!(Simulator::new(&other, 0).unwrap().frame(0).image, in_order[0].image);

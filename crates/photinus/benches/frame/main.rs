@@ -3,6 +3,8 @@
 //! Times differ from machine to machine and from run to run; the ratios to the floor, a pass that only takes the maximum
 //! of the frame, are what to compare. Every contender runs in turn within each round, medians are over the rounds.
 
+#![expect(clippy::print_stdout, reason = "a benchmark prints its table")]
+
 mod contest;
 mod frames;
 

@@ -131,10 +131,7 @@ impl Camera {
 
     /// How far the direction turns per pixel at a place, along the image direction in which it turns most, rad/px.
     pub fn rad_per_px(&self, pixel: Pixel) -> Option<f64> {
-        let (_, jacobian) = self.bearing_with_jacobian(pixel)?;
-        let squares = jacobian.transpose() * jacobian;
-        let half_difference = libm::hypot(0.5 * (squares.m11 - squares.m22), squares.m12);
-        Some((0.5 * squares.trace() + half_difference).sqrt())
+        self.bearing_with_jacobian(pixel).map(|(_, jacobian)| largest_rad_per_px(&jacobian))
     }
 
     /// The covariance of the bearing seen at a place whose own covariance is `covariance_px2`, rad^2.
@@ -178,4 +175,11 @@ impl Camera {
             && pixel.u < self.width_px as f64 - 0.5
             && pixel.v < self.height_px as f64 - 0.5
     }
+}
+
+/// The largest singular value of a bearing's Jacobian: how far a direction turns per pixel, where it turns most.
+pub(crate) fn largest_rad_per_px(jacobian: &Matrix3x2<f64>) -> f64 {
+    let squares = jacobian.transpose() * jacobian;
+    let half_difference = libm::hypot(0.5 * (squares.m11 - squares.m22), squares.m12);
+    (0.5 * squares.trace() + half_difference).sqrt()
 }

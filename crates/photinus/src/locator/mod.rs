@@ -8,7 +8,7 @@
 //! ```
 //!
 //! Without identities the spots of a neighbour are interchangeable. What the airframe can look like is laid out once, in
-//! [`views`]; [`matching`] asks how well a handful of spots looks like one of those views, which tells both whether they
+//! `views`; `matching` asks how well a handful of spots looks like one of those views, which tells both whether they
 //! belong together and how far away they are. The estimate is a mean over all views that match; the bounds are strict and
 //! come from [`crate::ranging::DistanceBounds`] alone.
 

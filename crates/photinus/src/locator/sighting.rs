@@ -1,9 +1,7 @@
 //! A spot -> where it lies: bearing, covariance, bound, and the distances its size allows.
 
-use nalgebra::Matrix3x2;
-
 use super::Sighting;
-use crate::camera::Camera;
+use crate::camera::{Camera, largest_rad_per_px};
 use crate::ranging::SpotCurve;
 use crate::spots::Spot;
 
@@ -29,10 +27,4 @@ fn farthest_px(spot: &Spot) -> f64 {
     let across = reach(spot.extent.left, spot.extent.right, spot.centre.u);
     let down = reach(spot.extent.top, spot.extent.bottom, spot.centre.v);
     libm::hypot(across, down)
-}
-
-fn largest_rad_per_px(jacobian: &Matrix3x2<f64>) -> f64 {
-    let squares = jacobian.transpose() * jacobian;
-    let half_difference = libm::hypot(0.5 * (squares.m11 - squares.m22), squares.m12);
-    (0.5 * squares.trace() + half_difference).sqrt()
 }

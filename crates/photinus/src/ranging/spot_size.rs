@@ -98,6 +98,21 @@ impl SpotCurve {
         Self { upper, lower: None, limit_m: None }
     }
 
+    /// The envelope of the largest spots.
+    pub fn upper(&self) -> Envelope {
+        self.upper
+    }
+
+    /// The envelope of the smallest spots of LEDs that face the camera, where it is known.
+    pub fn lower(&self) -> Option<Envelope> {
+        self.lower
+    }
+
+    /// The distance past which no LED makes a spot, m, where it is known.
+    pub fn limit_m(&self) -> Option<f64> {
+        self.limit_m
+    }
+
     /// Largest area of a spot at a distance, px; `u32::MAX` where the curve has no limit.
     pub fn max_area_px(&self, distance_m: f64) -> u32 {
         self.upper.area_px(distance_m).round() as u32 // saturates

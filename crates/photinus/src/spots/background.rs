@@ -6,7 +6,8 @@
 //! With a contrast the level of a tile's surroundings is the median over 5 x 5 tiles (rows of columns) of each tile's
 //! darkest pixel. A marker raises the darkest pixel of no tile, so dense markers leave it alone; the sun covers less
 //! than half of 80 x 80 pixels, so it stays the bright thing there. What noise adds is measured from the spread that
-//! three quarters of all tiles exceed, which markers cannot reach either.
+//! three quarters of all tiles exceed, each without its brightest columns, so that even a marker in every tile does not
+//! count as noise.
 
 use super::settings::Brightness;
 use crate::frame::FrameView;
@@ -24,6 +25,7 @@ pub(super) struct Background {
     rows: usize,
     brightest: Vec<u8>,
     darkest: Vec<u8>,
+    tiles_by_spread: Vec<u32>,
     level: Vec<u8>,
     scratch: Vec<u8>,
     threshold: Vec<u16>,
@@ -39,10 +41,13 @@ impl Background {
             room.resize(tiles, 0);
         }
         self.threshold.resize(tiles, 0);
+        self.tiles_by_spread.clear();
+        self.tiles_by_spread.resize(256, 0);
         match brightness {
             Brightness::Threshold(level) => {
                 self.summarise::<false>(frame);
                 self.threshold.fill(u16::from(level));
+                self.level.fill(0);
             }
             Brightness::Contrast(step) => {
                 self.summarise::<true>(frame);
@@ -65,13 +70,18 @@ impl Background {
         self.rows
     }
 
+    /// The level around the tile of column `u` and row `v`; 0 where the threshold is a fixed one.
+    pub(super) fn level(&self, u: usize, v: usize) -> u8 {
+        self.level[v / TILE_PX * self.columns + u / TILE_PX]
+    }
+
     /// The lowest bright value of each tile in a row of tiles (past 255 nothing is), and the tile's brightest pixel.
     pub(super) fn row(&self, row: usize) -> (&[u16], &[u8]) {
         let tiles = row * self.columns..(row + 1) * self.columns;
         (&self.threshold[tiles.clone()], &self.brightest[tiles])
     }
 
-    /// The brightest pixel of every tile and, if asked for, the darkest.
+    /// The brightest pixel of every tile and, if asked for, the darkest and the spread of the whole tiles.
     fn summarise<const DARKEST: bool>(&mut self, frame: &FrameView<'_>) {
         let tile_rows = self.brightest.chunks_exact_mut(self.columns);
         for ((row, brightest), darkest) in
@@ -81,76 +91,108 @@ impl Background {
             let bottom = (top + TILE_PX).min(frame.height());
             let whole = frame.width() / TILE_PX;
             let band: [&[u8]; TILE_PX] = std::array::from_fn(|v| frame.row((top + v).min(bottom - 1)));
+            // A tile cut by the frame reaches back inside: a marker would fill a narrow one.
+            let inside = bottom.saturating_sub(TILE_PX);
+            let thin: [&[u8]; TILE_PX / ROWS_PER_DARKEST] =
+                std::array::from_fn(|v| frame.row((inside + v * ROWS_PER_DARKEST).min(bottom - 1)));
             for column in 0..whole {
+                let columns = column * TILE_PX..(column + 1) * TILE_PX;
                 let mut high = [0u8; TILE_PX];
-                let mut low = [u8::MAX; TILE_PX];
-                for (v, pixels) in band.iter().enumerate() {
-                    let pixels = &pixels[column * TILE_PX..][..TILE_PX];
-                    for (high, &pixel) in high.iter_mut().zip(pixels) {
+                for pixels in &band {
+                    for (high, &pixel) in high.iter_mut().zip(&pixels[columns.clone()]) {
                         *high = (*high).max(pixel);
-                    }
-                    if DARKEST && v % ROWS_PER_DARKEST == 0 {
-                        for (low, &pixel) in low.iter_mut().zip(pixels) {
-                            *low = (*low).min(pixel);
-                        }
                     }
                 }
                 brightest[column] = high.into_iter().fold(0, u8::max);
                 if DARKEST {
+                    let mut low = [u8::MAX; TILE_PX];
+                    for pixels in &thin {
+                        for (low, &pixel) in low.iter_mut().zip(&pixels[columns.clone()]) {
+                            *low = (*low).min(pixel);
+                        }
+                    }
                     darkest[column] = low.into_iter().fold(u8::MAX, u8::min);
+                    let spread = spread(high, darkest[column]);
+                    self.tiles_by_spread[usize::from(spread)] += 1;
                 }
             }
             if whole < self.columns {
-                let rest = || band.iter().flat_map(|pixels| &pixels[whole * TILE_PX..]).copied();
-                brightest[whole] = rest().fold(0, u8::max);
-                darkest[whole] = rest().fold(u8::MAX, u8::min);
+                let rest = |pixels: &[u8]| pixels[whole * TILE_PX..].iter().copied().fold(0, u8::max);
+                brightest[whole] = band.iter().map(|pixels| rest(pixels)).fold(0, u8::max);
+                let inside = frame.width().saturating_sub(TILE_PX);
+                let last = thin.iter().flat_map(|pixels| &pixels[inside..]);
+                darkest[whole] = last.copied().fold(u8::MAX, u8::min);
             }
         }
     }
 
     /// The contrast, or more where the frame's own noise would reach it.
     ///
-    /// The spread of 256 pixels of Gaussian noise is about 5.2 sigma, 2.4 of it below the mean.
+    /// The spread of a tile of Gaussian noise is about 3.6 sigma, 2.4 of it below the mean.
     fn step_above_noise(&self, step: u8) -> u8 {
-        let mut tiles_by_spread = [0u32; 256];
-        for (&high, &low) in self.brightest.iter().zip(&self.darkest) {
-            tiles_by_spread[usize::from(high.saturating_sub(low))] += 1;
-        }
-        let quarter = (self.brightest.len() / 4) as u32;
+        let quarter = self.tiles_by_spread.iter().sum::<u32>() / 4;
         let mut below = 0;
-        let spread = tiles_by_spread.iter().position(|&tiles| {
+        let spread = self.tiles_by_spread.iter().position(|&tiles| {
             below += tiles;
             below > quarter
         });
         let spread = spread.unwrap_or(0);
-        (usize::from(step) + spread / 2).max(spread * 8 / 5).min(255) as u8
+        (usize::from(step) + spread * 3 / 4).max(spread * 5 / 2).min(255) as u8
     }
 
     /// The median over five rows of the medians over five columns.
     fn level_of_surroundings(&mut self) {
         let (columns, rows) = (self.columns, self.rows);
         for row in 0..rows {
-            let at = |offset: usize| (row + offset).saturating_sub(2).min(rows - 1) * columns;
-            let near: [&[u8]; 5] = std::array::from_fn(|offset| &self.darkest[at(offset)..][..columns]);
+            let near = near(row, rows).map(|row| &self.darkest[row * columns..][..columns]);
             median_of_five(near, &mut self.scratch[row * columns..][..columns]);
         }
         for (medians, level) in self.scratch.chunks_exact(columns).zip(self.level.chunks_exact_mut(columns)) {
-            if columns < 5 {
-                for (column, level) in level.iter_mut().enumerate() {
-                    let at = |offset: usize| medians[(column + offset).saturating_sub(2).min(columns - 1)];
-                    *level = middle(at(0), at(1), at(2), at(3), at(4));
-                }
-                continue;
+            let inner = columns.saturating_sub(4);
+            if inner > 0 {
+                let near: [&[u8]; 5] = std::array::from_fn(|offset| &medians[offset..][..inner]);
+                median_of_five(near, &mut level[2..columns - 2]);
             }
-            let inner = columns - 4;
-            let near: [&[u8]; 5] = std::array::from_fn(|offset| &medians[offset..][..inner]);
-            median_of_five(near, &mut level[2..columns - 2]);
-            for column in [0, 1, columns - 2, columns - 1] {
-                let at = |offset: usize| medians[(column + offset).saturating_sub(2).min(columns - 1)];
-                level[column] = middle(at(0), at(1), at(2), at(3), at(4));
+            for column in (0..columns.min(2)).chain((inner + 2).min(columns)..columns) {
+                let [a, b, c, d, e] = near(column, columns).map(|column| medians[column]);
+                level[column] = middle(a, b, c, d, e);
             }
         }
+        self.lower_corners();
     }
+
+    /// A tile in a corner outvotes its surroundings, also when the sun fills it: its neighbours along the sides limit it.
+    fn lower_corners(&mut self) {
+        let (right, bottom) = (self.columns - 1, self.rows - 1);
+        let at = |column: usize, row: usize| row * self.columns + column;
+        for (column, row) in [(0, 0), (right, 0), (0, bottom), (right, bottom)] {
+            let beside = self.level[at(column.abs_diff(1).min(right), row)];
+            let above = self.level[at(column, row.abs_diff(1).min(bottom))];
+            let level = &mut self.level[at(column, row)];
+            *level = beside.max(above).min(*level);
+        }
+    }
+}
+
+/// Five neighbours of `at` among `count`, itself in the middle; the last repeat past the ends.
+fn near(at: usize, count: usize) -> [usize; 5] {
+    std::array::from_fn(|offset| (at + offset).saturating_sub(2).min(count - 1))
+}
+
+/// How far a tile's noise spreads; more where the darkest pixel is at the sensor's floor, which hides the lower half.
+#[inline]
+fn spread(columns: [u8; TILE_PX], darkest: u8) -> u8 {
+    let spread = brightest_without_markers(columns).saturating_sub(darkest);
+    if darkest > 0 { spread } else { spread.saturating_add(spread / 3) }
+}
+
+/// From the highest pixel of each column: the lowest of every fourth column, and of those four the second lowest. One marker
+/// up to 12 px wide, or narrow ones in every other column, leave it as it was.
+#[inline]
+fn brightest_without_markers(columns: [u8; TILE_PX]) -> u8 {
+    let eight: [u8; 8] = std::array::from_fn(|i| columns[i].min(columns[i + 8]));
+    let [a, b, c, d] = std::array::from_fn(|i| eight[i].min(eight[i + 4]));
+    a.max(b).min(c.max(d)).min(a.min(b).max(c.min(d)))
 }
 
 fn median_of_five([a, b, c, d, e]: [&[u8]; 5], out: &mut [u8]) {
@@ -209,6 +251,27 @@ mod tests {
             let mut background = Background::default();
             background.measure(&FrameView::packed(&pixels, 100, 60).unwrap(), Brightness::Contrast(20));
             assert!(background.threshold.iter().all(|&t| t == u16::from(level) + 20));
+        }
+    }
+
+    #[test]
+    fn a_marker_in_every_tile_is_no_noise() {
+        let pixels: Vec<u8> =
+            (0..160 * 160).map(|i| if i % 16 < 5 && (i / 160) % 16 < 5 { 255 } else { 10 }).collect();
+        let mut background = Background::default();
+        background.measure(&FrameView::packed(&pixels, 160, 160).unwrap(), Brightness::Contrast(20));
+        assert!(background.threshold.iter().all(|&threshold| threshold == 30));
+    }
+
+    #[test]
+    fn what_fills_a_corner_is_not_its_own_surroundings() {
+        for (width, height, side) in [(98, 66, 2), (96, 64, 20)] {
+            let pixels: Vec<u8> = (0..width * height)
+                .map(|i| if i % width >= width - side && i / width >= height - side { 255 } else { 10 })
+                .collect();
+            let mut background = Background::default();
+            background.measure(&FrameView::packed(&pixels, width, height).unwrap(), Brightness::Contrast(20));
+            assert!(background.threshold.iter().all(|&threshold| threshold == 30), "{side} px");
         }
     }
 

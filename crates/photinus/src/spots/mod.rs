@@ -3,13 +3,15 @@
 //! The stages, a module each, in the order of the flow:
 //!
 //! ```text
-//! background  the level of the surroundings, tile by tile      -> a threshold per tile
-//! runs        rows of pixels at or above their threshold       -> runs
-//! grouping    runs that touch, also by a corner                -> components
-//! splitting   one component with several summits               -> parts
-//! patch       the pixels around a part, less their background  -> signal
-//! centroid    where the light fell: window, or skirt if saturated
-//! rejection   what is no marker, and why
+//! background     the level of the surroundings, tile by tile      -> a threshold per tile
+//! runs           rows of pixels at or above their threshold       -> runs
+//! grouping       runs that touch, also by a corner                -> components
+//! splitting      one component with several summits               -> parts
+//! ledge          parts that go on where the threshold is higher   -> background
+//! rejection      what is no marker, and why
+//! neighbourhood  how far a part's light is its own                -> a window
+//! patch          the pixels around a part, less their background  -> signal
+//! centroid       where the light fell: window, or skirt if saturated
 //! ```
 //!
 //! Every pixel at or above its threshold belongs to exactly one part, and every part is either a [`Spot`] or a
@@ -19,7 +21,12 @@ mod background;
 mod centroid;
 mod detector;
 mod grouping;
+mod ledge;
+mod measuring;
+mod neighbourhood;
+mod part;
 mod patch;
+mod reflections;
 mod rejection;
 mod runs;
 mod settings;
@@ -109,6 +116,6 @@ pub struct Rejected {
 pub struct Detections {
     /// In the order of a scan by rows of their first pixel.
     pub spots: Vec<Spot>,
-    /// In the same order.
+    /// By the first row, then the first column, that they span.
     pub rejected: Vec<Rejected>,
 }

@@ -11,13 +11,15 @@ use crate::lanes::{self, LANES, Lanes};
 const RING_PX: i32 = 2;
 
 /// Fewer background pixels tell no level.
-const FEWEST_PX: u32 = 8;
+const FEWEST_PX: i32 = 8;
 
-/// The level around a spot.
+/// The background around a spot: a plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Surroundings {
-    /// Mean level, grey levels.
+    /// Level in the middle, grey levels.
     pub(super) level: f32,
+    /// How it rises along columns and rows, grey levels per px.
+    pub(super) slope: [f32; 2],
     /// Variance of a background pixel, grey levels^2.
     pub(super) variance: f32,
 }
@@ -34,8 +36,15 @@ pub(super) struct Patch {
 }
 
 impl Patch {
-    /// Reads the window of pixels within `reach` of (`u`, `v`).
-    pub(super) fn read(&mut self, frame: &FrameView<'_>, (u, v): (i32, i32), reach: i32, level: f32) {
+    /// Reads the window of pixels within `reach` of (`u`, `v`), less the background around it.
+    pub(super) fn read(
+        &mut self,
+        frame: &FrameView<'_>,
+        (u, v): (i32, i32),
+        reach: i32,
+        around: &Surroundings,
+    ) {
+        let middle_v = v;
         (self.left, self.top) = (u - reach, v - reach);
         self.rows = (2 * reach + 1) as usize;
         self.stride = self.rows.next_multiple_of(LANES);
@@ -48,8 +57,11 @@ impl Patch {
                 continue;
             }
             let pixels = &frame.row(v as usize)[first as usize..end as usize];
-            for (signal, &pixel) in signal[(first - self.left) as usize..].iter_mut().zip(pixels) {
-                *signal = f32::from(pixel) - level;
+            let [rise_u, rise_v] = around.slope;
+            let level = around.level + rise_v * (v - middle_v) as f32;
+            let columns = signal[(first - self.left) as usize..].iter_mut().zip(first - u..);
+            for ((signal, du), &pixel) in columns.zip(pixels) {
+                *signal = f32::from(pixel) - (level + rise_u * du as f32);
             }
         }
     }
@@ -100,37 +112,85 @@ pub(super) fn surroundings(
     reach: i32,
     bright: u8,
 ) -> Option<Surroundings> {
-    let calm = 3.0;
-    let all = ring_sums(frame, (u, v), reach, bright);
-    let ring = all.filter(|ring| ring.variance() <= calm * calm);
-    let ring = ring.or_else(|| ring_sums(frame, (u, v), reach, all?.mean().min(254.0) as u8 + 1))?;
-    Some(Surroundings { level: ring.mean(), variance: ring.variance() })
+    let calm = 3.0 * 3.0;
+    let all = ring_sums(frame, (u, v), reach, bright)?;
+    let plane = all.plane();
+    if plane.variance <= calm {
+        return Some(plane);
+    }
+    let darker = (all.level().min(254.0) as u8) + 1;
+    Some(ring_sums(frame, (u, v), reach, darker).unwrap_or(all).even())
 }
 
+/// Sums over the dark pixels of a ring, x and y from its middle, i their value.
 #[derive(Clone, Copy, Default)]
 struct Sums {
-    count: u32,
-    sum: u32,
-    squares: u32,
+    count: i32,
+    x: i32,
+    y: i32,
+    xx: i32,
+    xy: i32,
+    yy: i32,
+    i: i32,
+    xi: i32,
+    yi: i32,
+    ii: i32,
 }
 
 impl Sums {
-    fn mean(&self) -> f32 {
-        self.sum as f32 / self.count as f32
+    /// Adds pixels of row `y`, the first in column `x`.
+    fn add(&mut self, pixels: &[u8], x: i32, y: i32, below: u8) {
+        let (mut count, mut sum_x, mut sum_xx, mut sum_i, mut sum_xi, mut sum_ii) = (0, 0, 0, 0, 0, 0);
+        for (&pixel, x) in pixels.iter().zip(x..) {
+            let dark = i32::from(pixel < below);
+            let value = i32::from(pixel) * dark;
+            count += dark;
+            sum_x += x * dark;
+            sum_xx += x * x * dark;
+            sum_i += value;
+            sum_xi += x * value;
+            sum_ii += value * value;
+        }
+        self.count += count;
+        self.x += sum_x;
+        self.y += y * count;
+        self.xx += sum_xx;
+        self.xy += y * sum_x;
+        self.yy += y * y * count;
+        self.i += sum_i;
+        self.xi += sum_xi;
+        self.yi += y * sum_i;
+        self.ii += sum_ii;
     }
 
-    fn variance(&self) -> f32 {
-        let mean = f64::from(self.sum) / f64::from(self.count);
-        (f64::from(self.squares) / f64::from(self.count) - mean * mean).max(0.0) as f32
+    fn level(&self) -> f64 {
+        f64::from(self.i) / f64::from(self.count)
     }
 
-    fn add(&mut self, pixels: &[u8], below: u8) {
-        for &pixel in pixels {
-            let dark = u32::from(pixel < below);
-            let pixel = u32::from(pixel) * dark;
-            self.count += dark;
-            self.sum += pixel;
-            self.squares += pixel * pixel;
+    /// The same level everywhere.
+    fn even(&self) -> Surroundings {
+        let level = self.level();
+        let variance = (f64::from(self.ii) / f64::from(self.count) - level * level).max(0.0);
+        Surroundings { level: level as f32, slope: [0.0; 2], variance: variance as f32 }
+    }
+
+    /// The plane of least squares.
+    fn plane(&self) -> Surroundings {
+        let n = f64::from(self.count);
+        let [x, y, i] = [self.x, self.y, self.i].map(|sum| f64::from(sum) / n);
+        let about = |sum: i32, mean: f64| f64::from(sum) / n - mean;
+        let (xx, xy, yy) = (about(self.xx, x * x), about(self.xy, x * y), about(self.yy, y * y));
+        let (xi, yi, ii) = (about(self.xi, x * i), about(self.yi, y * i), about(self.ii, i * i));
+        let determinant = xx * yy - xy * xy;
+        // Pixels all in a line, or all on one side, tell of no plane in the middle.
+        if determinant <= 1e-3 * xx * yy || x * x > xx || y * y > yy {
+            return self.even();
+        }
+        let (rise_u, rise_v) = ((yy * xi - xy * yi) / determinant, (xx * yi - xy * xi) / determinant);
+        Surroundings {
+            level: (i - rise_u * x - rise_v * y).clamp(0.0, 255.0) as f32,
+            slope: [rise_u as f32, rise_v as f32],
+            variance: (ii - rise_u * xi - rise_v * yi).max(0.0) as f32,
         }
     }
 }
@@ -138,15 +198,18 @@ impl Sums {
 fn ring_sums(frame: &FrameView<'_>, (u, v): (i32, i32), reach: i32, below: u8) -> Option<Sums> {
     let (width, height) = (frame.width() as i32, frame.height() as i32);
     let outer = reach + RING_PX;
-    let columns = |from: i32, to: i32| from.clamp(0, width) as usize..(to + 1).clamp(0, width) as usize;
     let mut sums = Sums::default();
     for row in (v - outer).max(0)..=(v + outer).min(height - 1) {
         let pixels = frame.row(row as usize);
+        let mut add = |from: i32, to: i32| {
+            let (from, to) = (from.clamp(0, width), (to + 1).clamp(0, width));
+            sums.add(&pixels[from as usize..to as usize], from - u, row - v, below);
+        };
         if (row - v).abs() > reach {
-            sums.add(&pixels[columns(u - outer, u + outer)], below);
+            add(u - outer, u + outer);
         } else {
-            sums.add(&pixels[columns(u - outer, u - reach - 1)], below);
-            sums.add(&pixels[columns(u + reach + 1, u + outer)], below);
+            add(u - outer, u - reach - 1);
+            add(u + reach + 1, u + outer);
         }
     }
     (sums.count >= FEWEST_PX).then_some(sums)
@@ -163,7 +226,8 @@ mod tests {
         pixels[12 * 40 + 20] = 250;
         let frame = FrameView::packed(&pixels, 40, 40).unwrap();
         let found = surroundings(&frame, (20, 20), 6, 60).unwrap();
-        assert_eq!(found, Surroundings { level: 20.0, variance: 0.0 });
+        assert!((found.level - 20.0).abs() < 1e-6 && found.variance < 1e-6, "{found:?}");
+        assert!(found.slope.iter().all(|rise| rise.abs() < 1e-6), "{found:?}");
     }
 
     #[test]
@@ -171,10 +235,27 @@ mod tests {
         let pixels = vec![30u8; 20 * 20];
         let frame = FrameView::packed(&pixels, 20, 20).unwrap();
         let mut patch = Patch::default();
-        patch.read(&frame, (0, 0), 3, 10.0);
+        let around = Surroundings { level: 10.0, slope: [0.0; 2], variance: 0.0 };
+        patch.read(&frame, (0, 0), 3, &around);
         let total: f32 = patch.signal.iter().sum();
         assert_eq!((patch.left, patch.top, total), (-3, -3, 20.0 * 16.0));
         assert!(surroundings(&frame, (0, 0), 3, 60).is_some());
         assert_eq!(surroundings(&frame, (0, 0), 40, 60), None);
+    }
+
+    #[test]
+    fn a_slope_is_a_slope_also_beside_the_border() {
+        let value = |u: usize, v: usize| (30 + 2 * u + v) as u8;
+        let pixels: Vec<u8> = (0..40 * 40).map(|i| value(i % 40, i / 40)).collect();
+        let frame = FrameView::packed(&pixels, 40, 40).unwrap();
+        for (u, v) in [(20, 20), (5, 20), (20, 35)] {
+            let found = surroundings(&frame, (u, v), 5, 255).unwrap();
+            assert!((found.level - f32::from(value(u as usize, v as usize))).abs() < 1e-3, "{found:?}");
+            assert!((found.slope[0] - 2.0).abs() < 1e-4 && (found.slope[1] - 1.0).abs() < 1e-4, "{found:?}");
+            assert!(found.variance < 1e-3);
+            let mut patch = Patch::default();
+            patch.read(&frame, (u, v), 5, &found);
+            assert!(patch.signal.iter().all(|signal| signal.abs() < 1e-2));
+        }
     }
 }

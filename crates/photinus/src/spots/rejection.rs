@@ -10,6 +10,9 @@ use super::settings::Shape;
 
 /// A saturated core of this many pixels, 8 px wide, in something too large for a marker makes it the sun.
 const SUN_CORE_PX: u32 = 50;
+/// Of a disc that the frame cuts only a side tells how wide it is, and a low one: such a share of the widest marker is too
+/// much with a saturated core. A 20 px LED with its soft edge is 24 px.
+const CUT_SUN_SHARE: f64 = 0.8;
 /// A streak is at least this long, px: shorter ones are markers cut by the pixel grid, or two of them.
 const SHORTEST_STREAK_PX: f64 = 8.0;
 /// The sun's glare reaches this far past the edge of what is bright, as a share of its radius.
@@ -64,6 +67,10 @@ pub(super) struct Outline {
     pub(super) peak: u8,
     pub(super) saturated_px: u32,
     pub(super) masked_px: u32,
+    /// It touches the border of the frame: the rest of it may lie outside.
+    pub(super) cut: bool,
+    /// It goes on past the end of its tile: no summit of its own.
+    pub(super) goes_on: bool,
     /// Sums over the pixels of du, dv, du^2, du dv, dv^2, from the first pixel.
     pub(super) moments: [f64; 5],
 }
@@ -79,7 +86,14 @@ impl Outline {
             return Some(if sun { Reason::Sun } else { Reason::Reflection });
         }
         let (long, short) = self.axes_px();
-        (long >= SHORTEST_STREAK_PX && long > shape.elongation * short).then_some(Reason::Streak)
+        if long >= SHORTEST_STREAK_PX && long > shape.elongation * short {
+            return Some(Reason::Streak);
+        }
+        let side = f64::from(self.extent.width().max(self.extent.height()));
+        if self.cut && self.saturated_px >= SUN_CORE_PX && side > CUT_SUN_SHARE * shape.widest_px {
+            return Some(Reason::Sun);
+        }
+        self.goes_on.then_some(Reason::Background)
     }
 
     /// Radius of the disc of the same area, px.

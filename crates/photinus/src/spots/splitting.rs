@@ -24,6 +24,7 @@ const NONE: u16 = u16::MAX;
 #[derive(Debug, Default)]
 pub(super) struct Splitter {
     basin_at: Vec<u16>,
+    value_at: Vec<u8>,
     pixels: Vec<(u8, u32)>,
     basins: Vec<Basin>,
     parts: Vec<(u16, Run)>,
@@ -68,30 +69,36 @@ impl Splitter {
     fn flood(&mut self, grid: &Grid, noise: Noise) {
         self.basin_at.clear();
         self.basin_at.resize(grid.len(), NONE);
+        self.value_at.clear();
+        self.value_at.resize(grid.len(), 0);
         self.basins.clear();
         let darkest = self.pixels.last().map_or(0, |&(value, _)| value);
         for i in 0..self.pixels.len() {
             let (value, at) = self.pixels[i];
             let at = at as usize;
-            // Neighbours are met in a fixed order; the first with the highest summit takes the pixel.
-            let mut home = NONE;
+            // Neighbours are met in a fixed order; of equally bright ones the first takes the pixel.
+            let (mut home, mut brightest, mut highest) = (NONE, 0, NONE);
             for offset in grid.neighbours() {
-                let near = self.basin_at[at.wrapping_add_signed(offset)];
+                let neighbour = at.wrapping_add_signed(offset);
+                let near = self.basin_at[neighbour];
                 if near == NONE {
                     continue;
                 }
+                if self.value_at[neighbour] > brightest {
+                    (home, brightest) = (near, self.value_at[neighbour]);
+                }
                 let near = self.root(near);
-                if home == NONE {
-                    home = near;
-                } else if near != home {
-                    home = self.meet(home, near, value, darkest, noise);
+                if highest == NONE {
+                    highest = near;
+                } else if near != highest {
+                    highest = self.meet(highest, near, value, darkest, noise);
                 }
             }
             if home == NONE {
                 home = self.basins.len() as u16;
                 self.basins.push(Basin { summit: value, parent: home, part: NONE });
             }
-            self.basin_at[at] = home;
+            (self.basin_at[at], self.value_at[at]) = (home, value);
         }
     }
 
@@ -105,7 +112,7 @@ impl Splitter {
         let summit = f64::from(self.basins[usize::from(low)].summit);
         let sigma = (noise.read_dn * noise.read_dn + noise.shot * summit).sqrt();
         let share = PROMINENCE_SHARE * (summit - f64::from(darkest));
-        if summit - f64::from(saddle) < share.max(PROMINENCE_SIGMAS * sigma) {
+        if summit - f64::from(saddle) <= share.max(PROMINENCE_SIGMAS * sigma) {
             self.basins[usize::from(low)].parent = high;
         }
         high
@@ -249,6 +256,27 @@ mod tests {
         assert_eq!(parts(&[&[100, 98, 97, 100]]), 1);
         assert_eq!(parts(&[&[255, 40, 255], &[255, 255, 255]]), 1);
         assert_eq!(parts(&[&[255, 255, 255, 255, 255]]), 1);
+    }
+
+    #[test]
+    fn a_flat_plateau_is_one_part_without_any_noise() {
+        let pixels = [255, 0, 255, 255, 255, 255];
+        let frame = FrameView::packed(&pixels, 3, 2).unwrap();
+        let runs = [(0, 0, 1), (0, 2, 3), (1, 0, 3)].map(|(v, start, end)| Run { v, start, end });
+        let silent = Noise { read_dn: 0.0, shot: 0.0 };
+        assert!(Splitter::default().split(&frame, &runs, silent).is_none());
+    }
+
+    #[test]
+    fn the_fainter_of_two_keeps_its_own_side() {
+        let (pixels, runs) =
+            runs_of(&[&[40, 90, 60, 40, 60, 40], &[90, 250, 110, 60, 140, 60], &[40, 90, 60, 40, 60, 40]]);
+        let frame = FrameView::packed(&pixels, 6, 3).unwrap();
+        let mut splitter = Splitter::default();
+        let parts = splitter.split(&frame, &runs, Noise::default()).unwrap();
+        let areas = [0, 1]
+            .map(|part| parts.iter().filter(|(p, _)| *p == part).map(|(_, run)| run.len()).sum::<u32>());
+        assert!(areas[1] >= 8, "{areas:?}");
     }
 
     #[test]

@@ -1,0 +1,164 @@
+//! `photinus convert`: the same in another format, and what is lost on the way.
+
+mod dataset;
+mod frames;
+mod text;
+
+use std::path::{Path, PathBuf};
+
+use clap::ValueEnum;
+
+use crate::failure::Failure;
+use crate::input::InputArgs;
+use crate::kind::{Kind, kind_of};
+use crate::output::refuse_to_replace;
+use crate::terminal::Terminal;
+
+const EXAMPLES: &str = "\
+Examples:
+  photinus convert calib_results.txt camera.toml        OCamCalib text to Photinus TOML
+  photinus convert kalibr.yaml camera.toml              any camera format that Photinus reads
+  photinus convert camera.toml calib_results.txt        with an inverse polynomial that fits
+  photinus convert quad.txt quad.toml                   an LED layout to an airframe, and back
+  photinus convert results.jsonl results.csv            a row per neighbour
+  photinus convert video.y4m recording --camera camera.txt --airframe quad.toml --exposure-us 1000
+  photinus convert *.png video.y4m --rate 60
+  photinus convert recording copy --camera recalibrated.txt
+
+What the new format cannot hold is told.";
+
+/// Write a file in another format
+#[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
+pub(crate) struct Args {
+    /// What to convert: a camera, an airframe, results, or frames (a dataset, a video, images)
+    #[arg(value_name = "IN", required = true)]
+    inputs: Vec<PathBuf>,
+    /// Where to write; its extension tells the format, none means a dataset folder
+    #[arg(value_name = "OUT", required = true)]
+    out: PathBuf,
+    /// The format, where the extension does not tell it
+    #[arg(long, value_name = "FORMAT")]
+    to: Option<Format>,
+    #[command(flatten)]
+    frames: frames::FrameArgs,
+}
+
+/// The formats that are written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Format {
+    /// A camera as OCamCalib text
+    Ocam,
+    /// A camera or an airframe as Photinus TOML
+    Toml,
+    /// An airframe as LED layout text
+    Layout,
+    /// Results as a table
+    Csv,
+    /// Frames as a video
+    Y4m,
+    /// Frames as a dataset folder
+    Dataset,
+}
+
+/// Runs the command.
+pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> Result<(), Failure> {
+    let [first, others @ ..] = args.inputs.as_slice() else {
+        return Err(Failure::Input("nothing to convert: name an input and an output".to_owned()));
+    };
+    let is_stream = first.as_os_str() == "-";
+    let kind = if is_stream { Kind::Video } else { kind_of(first).map_err(Failure::input)? };
+    let format = format(args, kind)?;
+    if args.out.as_os_str() == "-" {
+        return Err(Failure::Input("standard output: convert writes files; name one".to_owned()));
+    }
+    refuse_to_replace(&args.out, &args.inputs)?;
+    let is_frames = matches!(format, Format::Y4m | Format::Dataset);
+    if let (false, [other, ..]) = (is_frames, others) {
+        return Err(Failure::Input(format!(
+            "{}: only frames are converted several at a time",
+            other.display()
+        )));
+    }
+    match (kind, format) {
+        (Kind::Camera, Format::Ocam) => text::camera_to_ocam(first, &args.out, terminal),
+        (Kind::Camera, Format::Toml) => text::camera_to_toml(first, &args.out, terminal),
+        (Kind::Airframe, Format::Layout) => text::airframe_to_layout(first, &args.out, terminal),
+        (Kind::Airframe, Format::Toml) => text::airframe_to_toml(first, &args.out, terminal),
+        (Kind::Results, Format::Csv) => text::results_to_csv(first, &args.out, terminal),
+        (Kind::Image | Kind::Video | Kind::Dataset, Format::Y4m | Format::Dataset) => {
+            let input = InputArgs::of(&args.inputs).open()?;
+            frames::convert(input, &args.out, format, &args.frames, terminal)
+        }
+        _ => Err(Failure::Input(format!(
+            "{}: this is {}, which cannot become {}; choose {}",
+            first.display(),
+            what(kind),
+            name(format),
+            choices(kind)
+        ))),
+    }
+}
+
+/// What was asked for, or what the extension tells.
+fn format(args: &Args, kind: Kind) -> Result<Format, Failure> {
+    if let Some(format) = args.to {
+        return Ok(format);
+    }
+    let extension = args.out.extension().and_then(|extension| extension.to_str()).map(str::to_lowercase);
+    match extension.as_deref() {
+        Some("txt") if kind == Kind::Airframe => Ok(Format::Layout),
+        Some("txt") => Ok(Format::Ocam),
+        Some("toml") => Ok(Format::Toml),
+        Some("csv") => Ok(Format::Csv),
+        Some("y4m") => Ok(Format::Y4m),
+        None => Ok(Format::Dataset),
+        Some(other) => Err(Failure::Input(format!(
+            "{}: `.{other}` tells no format that is written; end it in .txt, .toml, .csv or .y4m, or give --to",
+            args.out.display()
+        ))),
+    }
+}
+
+fn name(format: Format) -> &'static str {
+    match format {
+        Format::Ocam => "OCamCalib text",
+        Format::Toml => "Photinus TOML",
+        Format::Layout => "an LED layout",
+        Format::Csv => "CSV",
+        Format::Y4m => "a Y4M video",
+        Format::Dataset => "a dataset folder",
+    }
+}
+
+fn what(kind: Kind) -> &'static str {
+    match kind {
+        Kind::Airframe => "an airframe",
+        Kind::Blink => "a list of blink sequences",
+        Kind::Camera => "a camera, or no file that Photinus knows",
+        Kind::Dataset => "a folder of frames",
+        Kind::DatasetTable => "the table of a dataset",
+        Kind::Image => "an image",
+        Kind::Results => "results",
+        Kind::SpotCurve => "a curve of spot sizes",
+        Kind::Video => "a video",
+    }
+}
+
+fn choices(kind: Kind) -> &'static str {
+    match kind {
+        Kind::Airframe => "--to toml or --to layout",
+        Kind::Camera => "--to toml or --to ocam",
+        Kind::Results => "--to csv",
+        Kind::Dataset | Kind::Image | Kind::Video => "--to y4m or --to dataset",
+        Kind::DatasetTable => "its folder as the input",
+        Kind::Blink | Kind::SpotCurve => "another input: there is only one format of it",
+    }
+}
+
+/// Writes a text whole.
+fn write(out: &Path, text: &[u8]) -> Result<(), Failure> {
+    use std::io::Write;
+    let mut file = crate::output::create(out)?;
+    file.write_all(text).map_err(|error| Failure::running(photinus_io::Error::io(out, error)))
+}

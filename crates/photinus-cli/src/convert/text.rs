@@ -1,0 +1,101 @@
+//! Cameras, airframes and results.
+
+use std::path::Path;
+
+use photinus_io::airframe::{layout_text, toml_text};
+use photinus_io::camera::{write_camera_toml, write_ocam_text};
+use photinus_io::results::{CsvWriter, read_results};
+
+use super::write;
+use crate::beforehand;
+use crate::failure::Failure;
+use crate::output::create;
+use crate::terminal::Terminal;
+
+/// An inverse polynomial farther than this from the direct one is worth a warning, px.
+const POOR_INVERSE_PX: f64 = 0.1;
+
+pub(super) fn camera_to_ocam(path: &Path, out: &Path, terminal: &Terminal) -> Result<(), Failure> {
+    let file = beforehand::camera(path, terminal).map_err(Failure::input)?;
+    let mut text = Vec::new();
+    let inverse = write_ocam_text(&file.camera, &mut text, out).map_err(Failure::input)?;
+    write(out, &text)?;
+    let told = format!(
+        "{}: the inverse polynomial is a new one of degree {}, within {:.2e} px of the direct one",
+        out.display(),
+        inverse.degree,
+        inverse.max_px
+    );
+    if inverse.max_px > POOR_INVERSE_PX {
+        terminal.warning(format_args!("{told}; use the direct one where you can"));
+    } else {
+        terminal.note(told);
+    }
+    Ok(())
+}
+
+pub(super) fn camera_to_toml(path: &Path, out: &Path, terminal: &Terminal) -> Result<(), Failure> {
+    let file = beforehand::camera(path, terminal).map_err(Failure::input)?;
+    let mut text = Vec::new();
+    write_camera_toml(&file.camera, &mut text, out).map_err(Failure::running)?;
+    write(out, &text)?;
+    if file.inverse.is_some() {
+        terminal.note(format_args!(
+            "{}: the file's inverse polynomial is not kept; Photinus inverts the direct one itself",
+            out.display()
+        ));
+    }
+    Ok(())
+}
+
+pub(super) fn airframe_to_layout(path: &Path, out: &Path, terminal: &Terminal) -> Result<(), Failure> {
+    let airframe = beforehand::airframe(path, terminal).map_err(Failure::input)?;
+    write(out, layout_text(&airframe).as_bytes())?;
+    if out.file_stem().is_none_or(|stem| stem.to_string_lossy() != airframe.name()) {
+        terminal.note(format_args!(
+            "{}: the name `{}` is not kept; a layout is named by its file",
+            out.display(),
+            airframe.name()
+        ));
+    }
+    let without = airframe.leds().iter().filter(|led| led.signal.is_none()).count();
+    if without > 0 {
+        terminal.note(format_args!(
+            "{}: {without} of {} LEDs have no signal; a layout cannot say so, they get 0",
+            out.display(),
+            airframe.leds().len()
+        ));
+    }
+    Ok(())
+}
+
+pub(super) fn airframe_to_toml(path: &Path, out: &Path, terminal: &Terminal) -> Result<(), Failure> {
+    let airframe = beforehand::airframe(path, terminal).map_err(Failure::input)?;
+    write(out, toml_text(&airframe).as_bytes())
+}
+
+pub(super) fn results_to_csv(path: &Path, out: &Path, terminal: &Terminal) -> Result<(), Failure> {
+    let records = read_results(path).map_err(Failure::input)?;
+    let mut table = CsvWriter::new(create(out)?, out).map_err(Failure::running)?;
+    let (mut good, mut failed, mut spots, mut rejected, mut empty) = (0_u64, 0_u64, 0, 0, 0);
+    for record in records {
+        match record {
+            Ok(record) => {
+                good += 1;
+                spots += record.spots.len();
+                rejected += record.rejected.len();
+                empty += u64::from(record.neighbours.is_empty());
+                table.write(&record).map_err(Failure::running)?;
+            }
+            Err(error) => {
+                failed += 1;
+                terminal.error(error);
+            }
+        }
+    }
+    terminal.note(format_args!(
+        "{}: a row is a neighbour; {spots} spots, {rejected} rejected ones and {empty} frames without neighbours are not kept",
+        out.display()
+    ));
+    if failed > 0 { Err(Failure::Frames { all: good == 0 }) } else { Ok(()) }
+}

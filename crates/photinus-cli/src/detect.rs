@@ -1,0 +1,90 @@
+//! `photinus detect`: frames -> spots. No camera is needed.
+
+use photinus::spots::Detector;
+use photinus_io::results::{RejectedRecord, SpotRecord};
+use photinus_io::{Error, Place};
+
+use crate::failure::Failure;
+use crate::input::{Entry, InputArgs};
+use crate::output::OutputArgs;
+use crate::run;
+use crate::spot_options::{SpotArgs, mask_of};
+use crate::terminal::Terminal;
+
+const EXAMPLES: &str = "\
+Examples:
+  photinus detect photo.png                         print the spots of a photo
+  photinus detect *.png --overlay seen              draw them into seen/
+  photinus detect video.y4m --out spots.jsonl       write them, a line per frame
+  photinus detect recording --threshold 200 -q --out - | head -1
+  ffmpeg -i video.mp4 -pix_fmt gray -f yuv4mpegpipe -strict -1 - | photinus detect -
+  photinus detect frames.raw --raw 752x480@60";
+
+/// Find the spots of frames; no camera is needed
+#[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
+pub(crate) struct Args {
+    #[command(flatten)]
+    input: InputArgs,
+    #[command(flatten)]
+    spots: SpotArgs,
+    #[command(flatten)]
+    output: OutputArgs,
+}
+
+impl Args {
+    /// Whether only errors and results are to be printed.
+    pub(crate) fn quiet(&self) -> bool {
+        self.output.quiet
+    }
+}
+
+/// Runs the command.
+pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> Result<(), Failure> {
+    let input = args.input.open()?;
+    let mask = args.spots.mask(input.dataset.as_ref(), terminal)?;
+    let mut detector =
+        Detector::new(args.spots.settings()).map_err(|error| Failure::Input(error.to_string()))?;
+    let mut outputs = args.output.open(None, &input.files, None)?;
+    let for_people = args.output.is_for_people(None);
+
+    run::run(
+        input,
+        &mut outputs,
+        terminal,
+        |entry, clock| {
+            let Some(image) = &entry.image else { return Ok(()) };
+            let frame = image.view();
+            if let Some(mask) = &mask {
+                mask.check_size(frame.width(), frame.height())?;
+            }
+            let found = detector
+                .detect(&frame, mask_of(mask.as_ref()))
+                .map_err(|error| in_frame(Error::new(&entry.record.source, error), entry))?;
+            clock.lap("spots");
+            entry.record.spots = found.spots.iter().map(SpotRecord::from).collect();
+            entry.record.rejected = found.rejected.iter().map(RejectedRecord::from).collect();
+            Ok(())
+        },
+        |entry, terminal| if for_people { print_spots(entry, terminal) } else { Ok(()) },
+    )
+}
+
+/// Says which frame an error is about, where the file does not say it.
+pub(crate) fn in_frame(error: Error, entry: &Entry) -> Error {
+    match entry.record.frame {
+        Some(frame) => error.at(Place::Frame(frame)),
+        None => error,
+    }
+}
+
+fn print_spots(entry: &Entry, terminal: &Terminal) -> Result<(), Failure> {
+    let frame = entry.record.frame.unwrap_or_default();
+    for (number, spot) in entry.record.spots.iter().enumerate() {
+        terminal.result(format_args!(
+            "frame {frame:>5}  spot {number:>2}  at {:8.2} {:8.2} px  sigma {:.2} px  {:>4} px bright, peak {:>3}",
+            spot.u_px, spot.v_px, spot.sigma_px, spot.area_px, spot.peak
+        ))?;
+    }
+    Ok(())
+}

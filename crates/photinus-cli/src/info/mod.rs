@@ -1,0 +1,110 @@
+//! `photinus info`: what a file holds, told by its content, and whether it is in order.
+
+mod airframe;
+mod camera;
+mod frames;
+mod records;
+
+use std::path::{Path, PathBuf};
+
+use photinus_io::Result;
+
+use crate::aligned::{Aligned, Side};
+use crate::failure::Failure;
+use crate::kind::{Kind, kind_of};
+use crate::terminal::Terminal;
+
+const EXAMPLES: &str = "\
+Examples:
+  photinus info camera.txt             field of view, resolution, checks, oddities
+  photinus info airframe.toml          markers, and how many show from which side
+  photinus info recording results.jsonl mask.png
+
+Knows cameras (OCamCalib text, Photinus TOML, UVDAR YAML, Kalibr, ROS CameraInfo, pyocamcalib), airframes, datasets,
+images, masks, Y4M videos, results, blink sequences and spot curves. Exits with 2 when a file is not in order.";
+
+/// Tell what files hold and whether they are in order
+#[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
+pub(crate) struct Args {
+    /// Files or dataset folders
+    #[arg(value_name = "FILE", required = true)]
+    files: Vec<PathBuf>,
+}
+
+/// What is told about a file.
+pub(crate) struct Report {
+    /// What it is.
+    what: String,
+    facts: Aligned,
+    /// Tables, below the facts.
+    tables: Vec<Aligned>,
+    /// What a user should know or do, a sentence each.
+    notes: Vec<String>,
+}
+
+impl Report {
+    fn new(what: impl Into<String>) -> Self {
+        Self {
+            what: what.into(),
+            facts: Aligned::new(2, &[Side::Left]),
+            tables: Vec::new(),
+            notes: Vec::new(),
+        }
+    }
+
+    fn fact(&mut self, name: &str, value: impl Into<String>) {
+        self.facts.row([name.to_owned(), value.into()]);
+    }
+}
+
+/// Runs the command. A file that is not in order does not keep the others from being told.
+pub(crate) fn run(args: &Args, terminal: &Terminal) -> std::result::Result<(), Failure> {
+    let mut failed = 0;
+    for (number, path) in args.files.iter().enumerate() {
+        match report(path) {
+            Ok(report) => {
+                if number > failed {
+                    terminal.result("")?;
+                }
+                print(path, &report, terminal)?;
+            }
+            Err(error) => {
+                failed += 1;
+                terminal.error(error);
+            }
+        }
+    }
+    if failed > 0 { Err(Failure::Frames { all: true }) } else { Ok(()) }
+}
+
+fn report(path: &Path) -> Result<Report> {
+    match kind_of(path)? {
+        Kind::Airframe => airframe::report(path),
+        Kind::Blink => records::blink(path),
+        Kind::Camera => camera::report(path),
+        Kind::Dataset => frames::dataset(path),
+        Kind::DatasetTable => frames::dataset(path.parent().unwrap_or(Path::new("."))),
+        Kind::Image => frames::image(path),
+        Kind::Results => records::results(path),
+        Kind::SpotCurve => records::spot_curve(path),
+        Kind::Video => frames::video(path),
+    }
+}
+
+fn print(path: &Path, report: &Report, terminal: &Terminal) -> std::result::Result<(), Failure> {
+    terminal.result(format_args!("{}: {}", path.display(), report.what))?;
+    terminal.result(&report.facts)?;
+    for table in &report.tables {
+        terminal.result(format_args!("\n{table}"))?;
+    }
+    for note in &report.notes {
+        terminal.result(format_args!("  ! {note}"))?;
+    }
+    Ok(())
+}
+
+/// A count with its word.
+fn counted(count: usize, word: &str) -> String {
+    if count == 1 { format!("1 {word}") } else { format!("{count} {word}s") }
+}

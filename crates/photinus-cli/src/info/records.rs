@@ -1,0 +1,117 @@
+//! Results, blink sequences and spot curves.
+
+use std::path::Path;
+
+use photinus_io::Result;
+use photinus_io::blink::read_blink_codes;
+use photinus_io::results::read_results;
+use photinus_io::spot_curve::{SpotCurveFile, read_spot_curve};
+
+use super::{Report, counted};
+use crate::aligned::{Aligned, Side};
+use crate::summary::Summary;
+
+/// After so many bad lines the others are only counted.
+const REPORTED_LINES: u64 = 5;
+
+pub(super) fn results(path: &Path) -> Result<Report> {
+    let mut report = Report::new("results, or spots in place of frames");
+    let mut summary = Summary::default();
+    let mut times_s: Option<(f64, f64)> = None;
+    for record in read_results(path)? {
+        match record {
+            Ok(record) => {
+                summary.count(&record);
+                if let Some(time_s) = record.time_s {
+                    let (first_s, last_s) = times_s.unwrap_or((time_s, time_s));
+                    times_s = Some((first_s.min(time_s), last_s.max(time_s)));
+                }
+            }
+            Err(error) => {
+                summary.failed += 1;
+                if summary.failed <= REPORTED_LINES {
+                    report.notes.push(error.to_string());
+                }
+            }
+        }
+    }
+    if let Some((first_s, last_s)) = times_s {
+        summary.span(first_s, last_s);
+    }
+    report.facts = summary.counts(2);
+    Ok(report)
+}
+
+pub(super) fn blink(path: &Path) -> Result<Report> {
+    let codes = read_blink_codes(path)?;
+    let words = codes.words();
+    let mut report = Report::new("blink sequences");
+    report.fact("words", format!("{} of {}", words.len(), counted(codes.length(), "bit")));
+    let range = |of: fn(&[bool]) -> usize| {
+        let values = words.iter().map(|word| of(word));
+        (values.clone().min().unwrap_or(0), values.max().unwrap_or(0))
+    };
+    let told =
+        |(low, high): (usize, usize)| if low == high { low.to_string() } else { format!("{low} to {high}") };
+    report.fact("bits on", told(range(|word| word.iter().filter(|&&on| on).count())));
+    report.fact("longest dark run", format!("{} frames", told(range(|word| longest_run(word, false)))));
+    report.fact("longest lit run", format!("{} frames", told(range(|word| longest_run(word, true)))));
+    if range(|word| word.iter().filter(|&&on| on).count()).0 == 0 {
+        report.notes.push("a word that is never on shows no marker".to_owned());
+    }
+    if let Some((a, b)) = same_when_turned(words) {
+        report.notes.push(format!(
+            "words {a} and {b} are the same but for their beginning: they cannot be told apart"
+        ));
+    }
+    Ok(report)
+}
+
+/// The longest run of a value in a word that repeats.
+fn longest_run(word: &[bool], value: bool) -> usize {
+    let (mut longest, mut run) = (0, 0);
+    for &bit in word.iter().chain(word) {
+        run = if bit == value { run + 1 } else { 0 };
+        longest = longest.max(run);
+    }
+    longest.min(word.len())
+}
+
+/// Two words that are each other, begun at another bit.
+fn same_when_turned(words: &[Vec<bool>]) -> Option<(usize, usize)> {
+    let turned =
+        |word: &[bool], by: usize| word[by..].iter().chain(&word[..by]).copied().collect::<Vec<bool>>();
+    let same = |a: usize, b: usize| (0..words[b].len()).any(|by| turned(&words[b], by) == words[a]);
+    (0..words.len()).flat_map(|b| (0..b).map(move |a| (a, b))).find(|&(a, b)| same(a, b))
+}
+
+pub(super) fn spot_curve(path: &Path) -> Result<Report> {
+    let SpotCurveFile { curve, exposure_us, threshold } = read_spot_curve(path)?;
+    let mut report = Report::new("a curve of spot sizes");
+    let known = |value: Option<String>| value.unwrap_or_else(|| "not stated".to_owned());
+    report.fact("exposure", known(exposure_us.map(|us| format!("{us} us"))));
+    report.fact("threshold", known(threshold.map(|level| level.to_string())));
+    let mut table = Aligned::new(2, &[Side::Right; 3]);
+    table.row(["distance m", "smallest px", "largest px"]);
+    for distance_m in [0.5, 1.0, 2.0, 4.0, 8.0, 16.0] {
+        let (smallest, largest) = (curve.min_area_px(distance_m), curve.max_area_px(distance_m));
+        table.row([distance_m.to_string(), smallest.to_string(), largest.to_string()]);
+    }
+    report.tables.push(table);
+    Ok(report)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn runs_go_on_over_the_end_and_turned_words_are_found() {
+        let word = |text: &str| text.chars().map(|bit| bit == '1').collect::<Vec<bool>>();
+        assert_eq!(longest_run(&word("0110"), false), 2);
+        assert_eq!(longest_run(&word("000"), false), 3);
+        assert_eq!(longest_run(&word("000"), true), 0);
+        assert_eq!(same_when_turned(&[word("0011"), word("0101"), word("1001")]), Some((0, 2)));
+        assert_eq!(same_when_turned(&[word("0011"), word("0101")]), None);
+    }
+}

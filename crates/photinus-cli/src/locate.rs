@@ -1,0 +1,245 @@
+//! `photinus locate`: frames -> neighbours with distances and bounds.
+
+use std::path::{Path, PathBuf};
+
+use nalgebra::{Unit, Vector3};
+use photinus::airframe::Airframe;
+use photinus::camera::{Bearing, Camera};
+use photinus::locator::{Locator, Settings, Stage};
+use photinus::ranging::SpotCurve;
+use photinus::spots::Spot;
+use photinus_io::dataset::Dataset;
+use photinus_io::results::NeighbourRecord;
+use photinus_io::{Error, Result};
+
+use crate::beforehand::{self, Conditions};
+use crate::clock::Clock;
+use crate::detect::in_frame;
+use crate::failure::Failure;
+use crate::input::{Entry, Input, InputArgs};
+use crate::output::OutputArgs;
+use crate::run;
+use crate::spot_options::{SpotArgs, mask_of};
+use crate::terminal::Terminal;
+
+const EXAMPLES: &str = "\
+Examples:
+  photinus locate recording --out results.jsonl     a dataset folder says itself what camera and airframe are
+  photinus locate *.png --camera camera.txt --airframe quad.toml --overlay seen
+  photinus locate video.y4m --camera camera.txt --airframe quad.toml --gravity 0,1,0 --csv results.csv
+  photinus locate --spots spots.jsonl --camera camera.txt --airframe quad.toml --out -
+  ffmpeg -i video.mp4 -pix_fmt gray -f yuv4mpegpipe -strict -1 - |
+    photinus locate - --camera camera.txt --airframe quad.toml
+
+Without --out and --csv a line per neighbour is printed: distance with its standard deviation, bounds that truth never
+leaves, and where it is seen from the camera.
+
+Exit codes: 0 done, 1 some frames failed or writing did, 2 bad usage or input, or no frame could be used.";
+
+/// Locate the neighbours in frames: how far, between which bounds, where
+#[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
+pub(crate) struct Args {
+    #[command(flatten)]
+    input: InputArgs,
+    /// Spots of another detector in place of frames: JSON lines, see docs/file-formats.md
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["contrast", "threshold", "mask"])]
+    spots: Option<PathBuf>,
+    /// The camera's calibration, in any format that `photinus info` knows [default: that of the dataset]
+    #[arg(long, value_name = "FILE")]
+    camera: Option<PathBuf>,
+    /// The neighbours' airframe: where its LEDs sit [default: that of the dataset]
+    #[arg(long, value_name = "FILE")]
+    airframe: Option<PathBuf>,
+    /// How large a spot can be at a distance: a TOML file, or `paper` [default: that of the dataset, if any]
+    #[arg(long, value_name = "FILE|paper")]
+    spot_curve: Option<PathBuf>,
+    /// Direction of gravity (down) in the camera frame: x right, y down, z forward [default: that of each frame, if any]
+    #[arg(long, value_name = "X,Y,Z", value_parser = gravity, allow_hyphen_values = true)]
+    gravity: Option<Unit<Vector3<f64>>>,
+    /// Largest tilt of a neighbour that the bounds allow for, where gravity is known
+    #[arg(long, value_name = "DEG", default_value_t = 15.0, value_parser = tilt)]
+    max_tilt: f64,
+    #[command(flatten)]
+    spot_options: SpotArgs,
+    #[command(flatten)]
+    output: OutputArgs,
+    /// Write a table with a row per neighbour; - is standard output
+    #[arg(long, value_name = "FILE")]
+    csv: Option<PathBuf>,
+}
+
+impl Args {
+    /// Whether only errors and results are to be printed.
+    pub(crate) fn quiet(&self) -> bool {
+        self.output.quiet
+    }
+
+    fn open_input(&self) -> std::result::Result<Input, Failure> {
+        match &self.spots {
+            Some(path) => self.input.open_spots(path),
+            None => self.input.open(),
+        }
+    }
+
+    fn camera(&self, dataset: Option<&Dataset>, terminal: &Terminal) -> std::result::Result<Camera, Failure> {
+        let path = needed(self.camera.as_deref(), "camera", dataset.map(|d| d.path(&d.info().camera)))?;
+        Ok(beforehand::camera(&path, terminal).map_err(Failure::input)?.camera)
+    }
+
+    fn airframe(
+        &self,
+        dataset: Option<&Dataset>,
+        terminal: &Terminal,
+    ) -> std::result::Result<Airframe, Failure> {
+        let path = needed(self.airframe.as_deref(), "airframe", dataset.map(|d| d.path(&d.info().airframe)))?;
+        beforehand::airframe(&path, terminal).map_err(Failure::input)
+    }
+
+    fn spot_curve(
+        &self,
+        dataset: Option<&Dataset>,
+        terminal: &Terminal,
+    ) -> std::result::Result<Option<SpotCurve>, Failure> {
+        let of_dataset = || dataset.and_then(|d| d.info().spot_curve.as_ref().map(|named| d.path(named)));
+        let Some(path) = self.spot_curve.clone().or_else(of_dataset) else { return Ok(None) };
+        let file = beforehand::spot_curve(&path).map_err(Failure::input)?;
+        let brightness = self.spot_options.settings().brightness;
+        let now = Conditions {
+            brightness: self.spots.is_none().then_some(brightness),
+            exposure_us: dataset.map(|dataset| dataset.info().exposure_us),
+        };
+        for difference in beforehand::differences(&file, &now) {
+            terminal.warning(format_args!("{}: {difference}", path.display()));
+        }
+        Ok(Some(file.curve))
+    }
+}
+
+/// Runs the command.
+pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> std::result::Result<(), Failure> {
+    let input = args.open_input()?;
+    let dataset = input.dataset.as_ref();
+    let camera = args.camera(dataset, terminal)?;
+    let airframe = args.airframe(dataset, terminal)?;
+    let curve = args.spot_curve(dataset, terminal)?;
+    let mask = args.spot_options.mask(dataset, terminal)?;
+    if let Some(mask) = &mask {
+        mask.check_size(camera.width(), camera.height()).map_err(Failure::input)?;
+    }
+    let mut outputs = args.output.open(args.csv.as_deref(), &input.files, Some(&camera))?;
+    let settings = Settings { spots: args.spot_options.settings(), max_tilt_rad: args.max_tilt.to_radians() };
+    let refuse = |error: photinus::locator::LocatorError| Failure::Input(error.to_string());
+    let mut locator = Locator::new(camera, &airframe, curve, settings).map_err(refuse)?;
+    locator.set_mask(mask_of(mask.as_ref()).cloned()).map_err(refuse)?;
+
+    let for_people = args.output.is_for_people(args.csv.as_deref());
+    let fill = |entry: &mut Entry, clock: &mut Clock| {
+        entry.gravity = args.gravity.or(entry.gravity);
+        fill(entry, &mut locator, airframe.name(), clock)
+    };
+    let show = |entry: &Entry, terminal: &Terminal| {
+        if for_people { print_neighbours(entry, terminal) } else { Ok(()) }
+    };
+    run::run(input, &mut outputs, terminal, fill, show)
+}
+
+/// Completes the record of a frame.
+fn fill(entry: &mut Entry, locator: &mut Locator, airframe: &str, clock: &mut Clock) -> Result<()> {
+    let gravity = entry.gravity.as_ref();
+    let finished = &mut |stage| clock.lap(name(stage));
+    let located = match &entry.image {
+        Some(image) => locator.locate(&image.view(), gravity, finished).map_err(|error| {
+            let advice = "give the calibration of this camera at this resolution; frames are not scaled";
+            in_frame(Error::format(&entry.record.source, error.to_string()).advise(advice), entry)
+        })?,
+        None => {
+            let spots: Vec<Spot> = entry.record.spots.iter().map(Spot::from).collect();
+            locator.locate_spots(&spots, gravity, finished)
+        }
+    };
+    entry.record.put_located(located, airframe);
+    Ok(())
+}
+
+/// The file that was named, or that of the dataset.
+fn needed(
+    named: Option<&Path>,
+    what: &str,
+    of_dataset: Option<PathBuf>,
+) -> std::result::Result<PathBuf, Failure> {
+    named.map(Path::to_owned).or(of_dataset).ok_or_else(|| {
+        Failure::Input(format!("no {what}: give --{what} FILE, or a dataset folder, which names its own"))
+    })
+}
+
+fn name(stage: Stage) -> &'static str {
+    match stage {
+        Stage::Spots => "spots",
+        Stage::Bearings => "bearings",
+        Stage::Grouping => "grouping",
+        Stage::Ranging => "ranging",
+    }
+}
+
+fn print_neighbours(entry: &Entry, terminal: &Terminal) -> std::result::Result<(), Failure> {
+    let frame = entry.record.frame.unwrap_or_default();
+    entry.record.neighbours.iter().try_for_each(|neighbour| {
+        terminal.result(format_args!("frame {frame:>5}  {}", neighbour_line(neighbour)))
+    })
+}
+
+/// Distance, bounds and direction of a neighbour, to be read.
+fn neighbour_line(neighbour: &NeighbourRecord) -> String {
+    let distance = &neighbour.distance_m;
+    let sigma = distance.sigma.map_or(String::new(), |sigma| format!("± {sigma:.2}"));
+    let estimate = distance.estimate.map_or_else(|| "?".to_owned(), |m| format!("{m:.2}"));
+    let bounds = match distance.max {
+        Some(max) => format!("{:.2} to {max:.2} m", distance.min),
+        None => format!("{:.2} m or more", distance.min),
+    };
+    let [x, y, z] = neighbour.bearing;
+    let (azimuth, elevation) =
+        (libm::atan2(x, z).to_degrees(), libm::atan2(-y, libm::hypot(x, z)).to_degrees());
+    let side = |degrees: f64, positive: &str, negative: &str| {
+        format!("{:5.1}° {}", degrees.abs(), if degrees < 0.0 { negative } else { positive })
+    };
+    format!(
+        "{}  {estimate:>6} {sigma:<6} m  {bounds:<17}  {:<12} {:<11}  {} {}",
+        neighbour.airframe,
+        side(azimuth, "right", "left"),
+        side(elevation, "up", "down"),
+        neighbour.spots.len(),
+        if neighbour.spots.len() == 1 { "spot" } else { "spots" }
+    )
+}
+
+fn gravity(text: &str) -> std::result::Result<Unit<Vector3<f64>>, String> {
+    let wrong = || "give three numbers, such as 0,1,0 for a level camera".to_owned();
+    let numbers: Vec<f64> = text
+        .split(',')
+        .map(|word| word.trim().parse().map_err(|_| wrong()))
+        .collect::<std::result::Result<_, _>>()?;
+    let [x, y, z] = numbers.as_slice() else { return Err(wrong()) };
+    let down =
+        Bearing::new(Vector3::new(*x, *y, *z)).ok_or_else(|| "these numbers have no direction".to_owned())?;
+    Ok(Unit::new_unchecked(*down.vector()))
+}
+
+fn tilt(text: &str) -> std::result::Result<f64, String> {
+    let degrees: Option<f64> = text.parse().ok().filter(|degrees| (0.0..=180.0).contains(degrees));
+    degrees.ok_or_else(|| "give degrees, 0 to 180".to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn gravity_is_a_direction_of_any_length() {
+        assert_eq!(gravity("0, 9.81,0"), Ok(Vector3::y_axis()));
+        for wrong in ["", "0,1", "0,0,0", "0,1,nan", "0,1,inf", "a,b,c", "0,1,0,0"] {
+            assert!(gravity(wrong).is_err(), "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,189 @@
+//! A picture to draw on: lines, discs, polygons and words, all antialiased; no meaning.
+
+use photinus::frame::FrameView;
+use tiny_skia::{
+    ColorU8 as Colour, FillRule, LineCap, LineJoin, Paint, Path, PathBuilder, Pixmap, Point,
+    PremultipliedColorU8, Rect, Stroke, Transform,
+};
+
+use super::text::Font;
+
+/// How a line is drawn.
+#[derive(Clone, Copy)]
+pub(super) struct Pen {
+    pub(super) colour: Colour,
+    pub(super) width: f32,
+    /// Drawn wider behind it, so that it stands out on any ground.
+    pub(super) halo: Option<Colour>,
+}
+
+impl Pen {
+    /// A plain line.
+    pub(super) fn new(colour: Colour, width: f32) -> Self {
+        Self { colour, width, halo: None }
+    }
+
+    /// With a halo.
+    pub(super) fn on(self, halo: Colour) -> Self {
+        Self { halo: Some(halo), ..self }
+    }
+}
+
+/// Where words stand against their point.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Align {
+    Left,
+    Middle,
+}
+
+/// Words and how they are drawn.
+#[derive(Clone, Copy)]
+pub(super) struct Words<'a> {
+    pub(super) text: &'a str,
+    /// Of an em, px.
+    pub(super) size: f32,
+    pub(super) colour: Colour,
+    pub(super) halo: Option<Colour>,
+}
+
+/// A picture in the making.
+pub(super) struct Canvas<'f> {
+    pixmap: Pixmap,
+    font: &'f Font,
+}
+
+impl<'f> Canvas<'f> {
+    /// A picture of one colour; `None` when there is no memory for one so large.
+    pub(super) fn new(width: u32, height: u32, ground: Colour, font: &'f Font) -> Option<Self> {
+        let mut pixmap = Pixmap::new(width, height)?;
+        pixmap.fill(tiny_skia::Color::from_rgba8(
+            ground.red(),
+            ground.green(),
+            ground.blue(),
+            ground.alpha(),
+        ));
+        Some(Self { pixmap, font })
+    }
+
+    /// The bytes of a PNG file.
+    pub(super) fn png(&self) -> Result<Vec<u8>, String> {
+        self.pixmap.encode_png().map_err(|error| error.to_string())
+    }
+
+    /// A grey frame, every pixel `scale` x `scale` large, its levels replaced through `levels`.
+    pub(super) fn frame(
+        &mut self,
+        frame: &FrameView<'_>,
+        (left, top): (u32, u32),
+        scale: u32,
+        levels: &[u8; 256],
+    ) {
+        let (width, height) = (self.pixmap.width() as usize, self.pixmap.height() as usize);
+        let (left, top, scale) = (left as usize, top as usize, scale.max(1) as usize);
+        let rows = (frame.height() * scale).min(height.saturating_sub(top));
+        let columns = (frame.width() * scale).min(width.saturating_sub(left));
+        let pixels = self.pixmap.pixels_mut();
+        for y in 0..rows {
+            let row = frame.row(y / scale);
+            let begin = (top + y) * width + left;
+            for (x, pixel) in pixels[begin..begin + columns].iter_mut().enumerate() {
+                let level = levels[usize::from(row[x / scale])];
+                if let Some(grey) = PremultipliedColorU8::from_rgba(level, level, level, u8::MAX) {
+                    *pixel = grey;
+                }
+            }
+        }
+    }
+
+    /// A filled rectangle.
+    pub(super) fn rectangle(&mut self, rect: Rect, colour: Colour) {
+        self.pixmap.fill_rect(rect, &paint(colour), Transform::identity(), None);
+    }
+
+    /// A line through points.
+    pub(super) fn line(&mut self, points: &[Point], pen: Pen) {
+        if let Some(path) = path_through(points, false) {
+            self.stroke(&path, pen);
+        }
+    }
+
+    /// The outline of a polygon.
+    pub(super) fn outline(&mut self, points: &[Point], pen: Pen) {
+        if let Some(path) = path_through(points, true) {
+            self.stroke(&path, pen);
+        }
+    }
+
+    /// A filled polygon.
+    pub(super) fn polygon(&mut self, points: &[Point], colour: Colour) {
+        if let Some(path) = path_through(points, true) {
+            self.fill(&path, colour);
+        }
+    }
+
+    /// A circle.
+    pub(super) fn circle(&mut self, centre: Point, radius: f32, pen: Pen) {
+        if let Some(path) = PathBuilder::from_circle(centre.x, centre.y, radius) {
+            self.stroke(&path, pen);
+        }
+    }
+
+    /// A filled circle.
+    pub(super) fn disc(&mut self, centre: Point, radius: f32, colour: Colour) {
+        if let Some(path) = PathBuilder::from_circle(centre.x, centre.y, radius) {
+            self.fill(&path, colour);
+        }
+    }
+
+    /// How wide words are, px.
+    pub(super) fn width_of(&self, words: Words<'_>) -> f32 {
+        self.font.width(words.text, words.size)
+    }
+
+    /// Words on a baseline through `at`.
+    pub(super) fn words(&mut self, words: Words<'_>, at: Point, align: Align) {
+        let width = self.width_of(words);
+        let x = match align {
+            Align::Left => at.x,
+            Align::Middle => at.x - width / 2.0,
+        };
+        let Some(path) = self.font.outline(words.text, x, at.y, words.size) else { return };
+        if let Some(halo) = words.halo {
+            self.stroke(&path, Pen::new(halo, 0.26 * words.size));
+        }
+        self.fill(&path, words.colour);
+    }
+
+    fn fill(&mut self, path: &Path, colour: Colour) {
+        self.pixmap.fill_path(path, &paint(colour), FillRule::Winding, Transform::identity(), None);
+    }
+
+    fn stroke(&mut self, path: &Path, pen: Pen) {
+        let mut draw = |colour, width| {
+            let stroke =
+                Stroke { width, line_cap: LineCap::Butt, line_join: LineJoin::Round, ..Stroke::default() };
+            self.pixmap.stroke_path(path, &paint(colour), &stroke, Transform::identity(), None);
+        };
+        if let Some(halo) = pen.halo {
+            draw(halo, 2.4 * pen.width);
+        }
+        draw(pen.colour, pen.width);
+    }
+}
+
+fn paint(colour: Colour) -> Paint<'static> {
+    let mut paint = Paint::default();
+    paint.set_color_rgba8(colour.red(), colour.green(), colour.blue(), colour.alpha());
+    paint
+}
+
+fn path_through(points: &[Point], closed: bool) -> Option<Path> {
+    let (first, rest) = points.split_first()?;
+    let mut path = PathBuilder::new();
+    path.move_to(first.x, first.y);
+    rest.iter().for_each(|point| path.line_to(point.x, point.y));
+    if closed {
+        path.close();
+    }
+    path.finish()
+}

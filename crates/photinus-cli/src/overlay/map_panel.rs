@@ -1,0 +1,253 @@
+//! The view from above: range rings, what the camera sees, and where every neighbour can be.
+
+use nalgebra::Vector2;
+use photinus_io::results::{FrameRecord, NeighbourRecord};
+use tiny_skia::{Point, Rect};
+
+use super::canvas::{Align, Canvas, Pen, Words};
+use super::colours;
+use super::frame_panel::name;
+use super::ground::Ground;
+use super::labels::Labels;
+
+/// The ranges that the plot may show, m: few, so that it seldom changes from frame to frame.
+const RANGES_M: [f64; 11] = [2.0, 4.0, 6.0, 10.0, 16.0, 25.0, 40.0, 60.0, 100.0, 200.0, 400.0];
+/// What it shows when there is nobody, m.
+const EMPTY_RANGE_M: f64 = 10.0;
+
+/// A plot with the camera's place in the picture and its scale.
+pub(super) struct MapPanel<'a> {
+    area: Rect,
+    ground: Ground,
+    field: &'a [bool],
+    unit: f32,
+    camera: Point,
+    range_m: f64,
+    px_per_m: f64,
+}
+
+impl<'a> MapPanel<'a> {
+    /// A plot in `area` wide enough for the neighbours of a frame. `field`: see [`Ground::field`].
+    pub(super) fn new(
+        area: Rect,
+        ground: Ground,
+        field: &'a [bool],
+        record: &FrameRecord,
+        unit: f32,
+    ) -> Self {
+        let range_m = range_for(record);
+        // How far the field reaches behind the camera, as a share of the range.
+        let cos = |degree: usize| libm::cos((degree as f64).to_radians());
+        let seen = (0..field.len()).filter(|&degree| field[degree]);
+        let behind = (-seen.map(cos).fold(1.0, f64::min)).clamp(0.0, 1.0);
+        // Words stand past the rim: the ranges at the sides, the title above.
+        let (margin, title) = (24.0 * unit, 30.0 * unit);
+        let width = f64::from(area.width() - 2.0 * margin);
+        let height = f64::from(area.height() - 2.0 * margin - title);
+        // Below the camera there must be room for the numbers of the rings.
+        let below_px = f64::from(24.0 * unit);
+        let radius_px = (width / 2.0).min(height / (1.0 + behind)).min(height - below_px).max(1.0);
+        let depth_px = radius_px * (1.0 + behind).max(1.0 + below_px / radius_px);
+        let top = f64::from(area.top() + margin + title) + (height - depth_px).max(0.0) / 2.0;
+        let camera = Point::from_xy(area.left() + area.width() / 2.0, (top + radius_px) as f32);
+        Self { area, ground, field, unit, camera, range_m, px_per_m: radius_px / range_m }
+    }
+
+    /// Draws everything.
+    pub(super) fn draw(&self, canvas: &mut Canvas<'_>, record: &FrameRecord) {
+        self.title(canvas);
+        self.field(canvas);
+        self.rings(canvas);
+        let mut labels = Labels::new(self.area);
+        labels.take(self.camera, 12.0 * self.unit);
+        for (number, neighbour) in record.neighbours.iter().enumerate() {
+            self.neighbour(canvas, &mut labels, neighbour, number);
+        }
+        for (number, neighbour) in record.neighbours.iter().enumerate() {
+            self.label(canvas, &mut labels, neighbour, number);
+        }
+        self.own_camera(canvas);
+    }
+
+    fn title(&self, canvas: &mut Canvas<'_>) {
+        let frame =
+            if self.ground.is_level { "level, by gravity" } else { "camera frame, x right, z forward" };
+        let text = format!("From above ({frame}), {} m", self.range_m);
+        let words = Words { text: &text, size: 14.0 * self.unit, colour: colours::INK, halo: None };
+        let at = Point::from_xy(self.camera.x, self.on_rim(0.0).y - 16.0 * self.unit);
+        canvas.words(words, at, Align::Middle);
+    }
+
+    fn field(&self, canvas: &mut Canvas<'_>) {
+        for degree in 0..self.field.len() {
+            if self.field[degree] && self.field[(degree + 1) % self.field.len()] {
+                // A little wider than a degree: no seam shows between neighbours.
+                let rim = [degree as f64 - 0.1, degree as f64 + 1.1].map(|degree| self.on_rim(degree));
+                canvas.polygon(&[self.camera, rim[0], rim[1]], colours::FIELD);
+            }
+        }
+    }
+
+    fn rings(&self, canvas: &mut Canvas<'_>) {
+        let step_m = ring_step(self.range_m);
+        let count = (self.range_m / step_m).round() as u32;
+        for ring in 1..=count {
+            let radius_m = step_m * f64::from(ring);
+            let arc: Vec<Point> =
+                (-90..=90).map(|degree| self.at(on_circle(f64::from(degree)) * radius_m)).collect();
+            canvas.line(&arc, Pen::new(colours::RING, self.unit));
+            if self.field.iter().skip(91).take(179).any(|&seen| seen) {
+                let behind: Vec<Point> =
+                    (90..=270).map(|degree| self.at(on_circle(f64::from(degree)) * radius_m)).collect();
+                canvas.line(&behind, Pen::new(colours::pale(colours::RING, 0.6), self.unit));
+            }
+            let text = if ring == count { format!("{radius_m} m") } else { format!("{radius_m}") };
+            let words = Words {
+                text: &text,
+                size: 12.0 * self.unit,
+                colour: colours::FAINT_INK,
+                halo: Some(colours::PAPER),
+            };
+            for side in [-1.0, 1.0] {
+                let at = self.at(Vector2::new(side * radius_m, 0.0));
+                canvas.words(words, Point::from_xy(at.x, at.y + 15.0 * self.unit), Align::Middle);
+            }
+        }
+    }
+
+    fn neighbour(
+        &self,
+        canvas: &mut Canvas<'_>,
+        labels: &mut Labels,
+        neighbour: &NeighbourRecord,
+        number: usize,
+    ) {
+        let colour = colours::neighbour(number);
+        let way = self.ground.of(&neighbour.bearing.into());
+        let (distance, slant) = (&neighbour.distance_m, way.norm());
+        if !(1e-3..=1.0 + 1e-9).contains(&slant) {
+            // Straight above or below (or no direction at all, in results of others): a point.
+            return canvas.disc(self.camera, 6.0 * self.unit, colour);
+        }
+        let across = Vector2::new(way.y, -way.x) / slant;
+        let rim_m = self.range_m / slant;
+        let far_m = distance.max.unwrap_or(f64::INFINITY);
+        let near_m = distance.min.min(rim_m);
+        for step in 0..=40 {
+            let at_m = near_m + (far_m.min(rim_m) - near_m) * f64::from(step) / 40.0;
+            labels.take(self.at(way * at_m), 5.0 * self.unit);
+        }
+        let bounds = [self.at(way * near_m), self.at(way * far_m.min(rim_m))];
+        canvas.line(&bounds, Pen::new(colours::pale(colour, 0.45), 9.0 * self.unit));
+        let cap = |canvas: &mut Canvas<'_>, at_m: f64, half_px: f32, width: f32| {
+            let half = across * (f64::from(half_px) / self.px_per_m);
+            canvas.line(&[self.at(way * at_m - half), self.at(way * at_m + half)], Pen::new(colour, width));
+        };
+        cap(canvas, near_m, 8.0 * self.unit, 1.6 * self.unit);
+        if far_m <= rim_m {
+            cap(canvas, far_m, 8.0 * self.unit, 1.6 * self.unit);
+        } else {
+            self.arrow(canvas, way / slant, across, number);
+        }
+        let Some(estimate_m) = distance.estimate else { return };
+        if let Some(sigma_m) = distance.sigma {
+            let ends = [estimate_m - sigma_m, estimate_m + sigma_m].map(|m| m.clamp(0.0, rim_m));
+            canvas.line(&ends.map(|m| self.at(way * m)), Pen::new(colour, 2.6 * self.unit));
+            ends.iter().for_each(|&end_m| cap(canvas, end_m, 4.5 * self.unit, 2.6 * self.unit));
+        }
+        if estimate_m <= rim_m {
+            canvas.disc(self.at(way * estimate_m), 6.5 * self.unit, colours::PAPER);
+            canvas.disc(self.at(way * estimate_m), 5.0 * self.unit, colour);
+        }
+    }
+
+    /// It goes on past the rim.
+    fn arrow(&self, canvas: &mut Canvas<'_>, ahead: Vector2<f64>, across: Vector2<f64>, number: usize) {
+        let px = |px: f32| f64::from(px * self.unit) / self.px_per_m;
+        let tip = ahead * (self.range_m + px(8.0));
+        let base = ahead * (self.range_m - px(4.0));
+        let corners = [tip, base + across * px(9.0), base - across * px(9.0)];
+        canvas.polygon(&corners.map(|corner| self.at(corner)), colours::neighbour(number));
+    }
+
+    fn label(
+        &self,
+        canvas: &mut Canvas<'_>,
+        labels: &mut Labels,
+        neighbour: &NeighbourRecord,
+        number: usize,
+    ) {
+        let distance = &neighbour.distance_m;
+        let way = self.ground.of(&neighbour.bearing.into());
+        let rim_m = self.range_m / way.norm().max(1e-3);
+        let at = self.at(way * distance.estimate.unwrap_or(distance.min).min(rim_m));
+        let text = match distance.estimate {
+            Some(estimate_m) => format!("{}  {estimate_m:.1} m", name(number)),
+            None => name(number),
+        };
+        let size = 13.0 * self.unit;
+        let words = Words { text: &text, size, colour: colours::INK, halo: Some(colours::PAPER) };
+        labels.take(at, 6.0 * self.unit);
+        if let Some(corner) =
+            labels.place(at, (10.0 * self.unit, 10.0 * self.unit), (canvas.width_of(words), size))
+        {
+            canvas.words(words, Point::from_xy(corner.x, corner.y + 0.86 * size), Align::Left);
+        }
+    }
+
+    fn own_camera(&self, canvas: &mut Canvas<'_>) {
+        let px = |px: f32| f64::from(px * self.unit) / self.px_per_m;
+        let corners =
+            [Vector2::new(0.0, px(9.0)), Vector2::new(px(7.0), -px(6.0)), Vector2::new(-px(7.0), -px(6.0))];
+        canvas.polygon(&corners.map(|corner| self.at(corner)), colours::INK);
+    }
+
+    fn on_rim(&self, degree: f64) -> Point {
+        self.at(on_circle(degree) * self.range_m)
+    }
+
+    /// A place on the plane, m right and forward, in the picture.
+    fn at(&self, place_m: Vector2<f64>) -> Point {
+        let [x, y]: [f64; 2] = (place_m * self.px_per_m).into();
+        Point::from_xy(self.camera.x + x as f32, self.camera.y - y as f32)
+    }
+}
+
+/// Right and forward of an azimuth.
+fn on_circle(degree: f64) -> Vector2<f64> {
+    let (sin, cos) = libm::sincos(degree.to_radians());
+    Vector2::new(sin, cos)
+}
+
+/// The least range that shows every estimate with its sigma, and every far bound that is not out of all proportion.
+fn range_for(record: &FrameRecord) -> f64 {
+    let need = |neighbour: &NeighbourRecord| {
+        let distance = &neighbour.distance_m;
+        let likely_m = distance.estimate.unwrap_or(2.0 * distance.min) + 2.0 * distance.sigma.unwrap_or(0.0);
+        let bound_m = distance.max.unwrap_or(1.15 * likely_m).min(1.5 * likely_m);
+        likely_m.max(bound_m)
+    };
+    let farthest_m = record.neighbours.iter().map(need).fold(0.0, f64::max);
+    let needed_m = if record.neighbours.is_empty() { EMPTY_RANGE_M } else { farthest_m };
+    RANGES_M.into_iter().find(|&range_m| range_m >= needed_m).unwrap_or(RANGES_M[RANGES_M.len() - 1])
+}
+
+/// A step of 1, 2 or 5 times a power of ten that divides the range into four or five, or a quarter of it.
+fn ring_step(range_m: f64) -> f64 {
+    let divides =
+        |step_m: &f64| (3.9..=5.1).contains(&(range_m / step_m)) && (range_m / step_m).fract() < 1e-9;
+    [0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0].into_iter().find(divides).unwrap_or(range_m / 4.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rings_divide_every_range() {
+        for range_m in RANGES_M {
+            let rings = range_m / ring_step(range_m);
+            assert!((4.0..=5.0).contains(&rings) && rings.fract() < 1e-9, "{range_m}: {rings}");
+        }
+    }
+}

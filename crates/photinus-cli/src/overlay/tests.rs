@@ -1,0 +1,165 @@
+use nalgebra::Vector3;
+use photinus::camera::{Bearing, Ideal, IdealLaw, Model, Pixel};
+use photinus_io::image::{GreyImage, read_image};
+use photinus_io::results::{Distance, NeighbourRecord, RejectedRecord, SpotRecord};
+
+use super::*;
+
+/// The camera of the paper: 3.767 mrad per pixel.
+fn camera() -> Camera {
+    let lens = Ideal::new(IdealLaw::Equidistant, [1.0 / 3.767e-3; 2], Pixel::new(375.5, 239.5)).unwrap();
+    Camera::new(Model::Ideal(lens), 752, 480, None).unwrap()
+}
+
+fn spot(u_px: f64, v_px: f64) -> SpotRecord {
+    SpotRecord {
+        u_px,
+        v_px,
+        area_px: 4,
+        peak: 255,
+        saturated_px: 0,
+        flux: 700.0,
+        sigma_px: 0.1,
+        covariance_px2: [[0.01, 0.0], [0.0, 0.01]],
+        middle_px: [u_px as u32, v_px as u32],
+        extent_px: None,
+        background: 4.0,
+        bearing: None,
+        bound_rad: None,
+        range_m: None,
+    }
+}
+
+fn neighbour(spots: Vec<usize>, bearing: Vector3<f64>, distance_m: Distance) -> NeighbourRecord {
+    NeighbourRecord {
+        track: None,
+        id: None,
+        airframe: "hexarotor-0.4".to_owned(),
+        spots,
+        bearing: (*Bearing::new(bearing).unwrap().vector()).into(),
+        distance_m,
+        position_m: None,
+        position_covariance_m2: None,
+        orientation_xyzw: None,
+        orientation_covariance_rad2: None,
+        modes: Vec::new(),
+    }
+}
+
+/// Three neighbours of every kind: bounded, unbounded, without an estimate; two rejected spots, one lonely.
+fn record() -> FrameRecord {
+    let distance =
+        |estimate, sigma, min, max| Distance { estimate, sigma, min, max, perpendicular: None, inline: None };
+    FrameRecord {
+        frame: Some(17),
+        time_s: Some(0.283),
+        source: "images/000017.png".to_owned(),
+        spots: vec![
+            spot(280.0, 231.0),
+            spot(297.0, 236.0),
+            spot(306.0, 238.0),
+            spot(520.0, 180.0),
+            spot(529.0, 182.0),
+            spot(690.0, 250.0),
+            spot(120.0, 420.0),
+        ],
+        rejected: vec![
+            RejectedRecord { u_px: 600.0, v_px: 60.0, area_px: 1300, reason: "sun".to_owned() },
+            RejectedRecord { u_px: 640.0, v_px: 75.0, area_px: 3, reason: "glare".to_owned() },
+        ],
+        neighbours: vec![
+            neighbour(
+                vec![2, 0, 1],
+                Vector3::new(-0.31, -0.02, 0.95),
+                distance(Some(5.24), Some(0.4), 3.9, Some(7.6)),
+            ),
+            neighbour(vec![3, 4], Vector3::new(0.5, -0.2, 0.8), distance(Some(8.1), Some(1.3), 5.2, None)),
+            neighbour(vec![5], Vector3::new(0.95, 0.0, 0.4), distance(None, None, 2.0, None)),
+        ],
+    }
+}
+
+fn night() -> GreyImage {
+    let level = |i: usize| 4 + ((i * 7919) % 5) as u8;
+    let mut pixels: Vec<u8> = (0..752 * 480).map(level).collect();
+    for spot in &record().spots {
+        for (du, dv) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
+            pixels[(spot.v_px as usize + dv) * 752 + spot.u_px as usize + du] = 230;
+        }
+    }
+    GreyImage::new(pixels, 752, 480).unwrap()
+}
+
+/// A folder of the system's temporary folder, gone with the value.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(test: &str) -> Self {
+        Self(std::env::temp_dir().join(format!("photinus-overlay-{}-{test}", std::process::id())))
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        if std::env::var_os("PHOTINUS_KEEP").is_none() {
+            let _ = std::fs::remove_dir_all(&self.0);
+        }
+    }
+}
+
+fn picture(
+    folder: &Folder,
+    record: &FrameRecord,
+    frame: Option<FrameView<'_>>,
+    camera: Option<Camera>,
+) -> GreyImage {
+    let overlay = Overlay::create(&folder.0, camera).unwrap();
+    overlay.draw(record, frame, None).unwrap();
+    read_image(folder.0.join("overlay-000017.png")).unwrap().image
+}
+
+#[test]
+fn the_same_record_gives_the_same_picture_and_another_one_another() {
+    let (folder, night, mut record) = (Folder::new("same"), night(), record());
+    let first = picture(&folder, &record, Some(night.view()), Some(camera()));
+    assert_eq!(first, picture(&folder, &record, Some(night.view()), Some(camera())));
+    assert!(first.width() > 2 * 752 && first.height() > 2 * 480, "frame and map");
+    record.neighbours[0].distance_m.estimate = Some(5.4);
+    assert!(first != picture(&folder, &record, Some(night.view()), Some(camera())));
+}
+
+#[test]
+fn a_spot_stays_visible_inside_its_circle() {
+    let (folder, night, record) = (Folder::new("visible"), night(), record());
+    let layout = Layout::new((752, 480), false);
+    let picture = picture(&folder, &record, Some(night.view()), None);
+    let level = |u_px: usize, v_px: usize| {
+        let (x, y) = (layout.frame.left as usize + 2 * u_px, layout.frame.top as usize + 2 * v_px);
+        picture.pixels()[y * picture.width() + x]
+    };
+    for spot in &record.spots {
+        assert!(level(spot.u_px as usize, spot.v_px as usize) > 200);
+        assert!(
+            (20..90).contains(&level(spot.u_px as usize + 2, spot.v_px as usize)),
+            "lifted sky around it"
+        );
+    }
+}
+
+#[test]
+fn numbers_that_are_none_do_no_harm() {
+    let (folder, mut record) = (Folder::new("odd"), record());
+    let odd = [f64::NAN, f64::INFINITY, -1e300, 1e300, 0.0];
+    for (a, b) in odd.into_iter().zip([1e300, f64::NAN, 0.0, f64::INFINITY, -1e300]) {
+        record.spots[0].u_px = a;
+        record.rejected[0].v_px = b;
+        record.neighbours[0].bearing = [a, b, 1.0];
+        record.neighbours[1].distance_m.min = a;
+        record.neighbours[1].distance_m.max = Some(b);
+        record.neighbours[2].distance_m.estimate = Some(a);
+        record.neighbours[2].distance_m.sigma = Some(b);
+        record.neighbours[2].spots = vec![0, 999];
+        record.rejected[1].area_px = u32::MAX;
+        picture(&folder, &record, None, Some(camera()));
+    }
+}

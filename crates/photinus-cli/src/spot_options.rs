@@ -1,0 +1,57 @@
+//! What the user may choose about spots, the same for every command that finds them.
+
+use std::path::PathBuf;
+
+use photinus::frame::Mask;
+use photinus::spots::{Brightness, Settings};
+use photinus_io::dataset::Dataset;
+use photinus_io::mask::{MaskFile, read_mask};
+
+use crate::failure::Failure;
+use crate::terminal::Terminal;
+
+/// What is bright, and where not to look.
+#[derive(Debug, clap::Args)]
+pub(crate) struct SpotArgs {
+    /// A pixel is bright N grey levels above the background around it [default: 20]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..), conflicts_with = "threshold")]
+    contrast: Option<u8>,
+    /// A pixel is bright from the grey level N on: the paper's rule, with 200
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..))]
+    threshold: Option<u8>,
+    /// An image of the frames' size that is 0 where not to look [default: that of the dataset, if any]
+    #[arg(long, value_name = "FILE")]
+    mask: Option<PathBuf>,
+}
+
+impl SpotArgs {
+    /// The settings of the detector.
+    pub(crate) fn settings(&self) -> Settings {
+        let brightness = match (self.threshold, self.contrast) {
+            (Some(level), _) => Brightness::Threshold(level),
+            (None, Some(step)) => Brightness::Contrast(step),
+            (None, None) => Brightness::default(),
+        };
+        Settings { brightness, ..Settings::default() }
+    }
+
+    /// The mask that was named, or that of the dataset.
+    pub(crate) fn mask(
+        &self,
+        dataset: Option<&Dataset>,
+        terminal: &Terminal,
+    ) -> Result<Option<MaskFile>, Failure> {
+        let of_dataset = || dataset.and_then(|dataset| Some(dataset.path(dataset.info().mask.as_ref()?)));
+        let Some(path) = self.mask.clone().or_else(of_dataset) else { return Ok(None) };
+        let file = read_mask(&path).map_err(Failure::input)?;
+        for note in &file.notes {
+            terminal.warning(format_args!("{}: {note}", path.display()));
+        }
+        Ok(Some(file))
+    }
+}
+
+/// The mask of a file, where there is one.
+pub(crate) fn mask_of(file: Option<&MaskFile>) -> Option<&Mask> {
+    file.map(|file| &file.mask)
+}

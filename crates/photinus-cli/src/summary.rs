@@ -1,0 +1,116 @@
+//! What a run found, in a few lines.
+
+use std::collections::BTreeMap;
+
+use photinus_io::results::FrameRecord;
+
+use crate::aligned::{Aligned, Side};
+use crate::clock::Clock;
+
+/// What was counted over the frames of a run.
+#[derive(Debug, Default)]
+pub(crate) struct Summary {
+    /// Frames that could not be read or worked on.
+    pub(crate) failed: u64,
+    frames: u64,
+    spots: usize,
+    rejected: BTreeMap<String, usize>,
+    neighbours: usize,
+    frames_with_neighbours: u64,
+    distances_m: Vec<f64>,
+    span_s: Option<(f64, f64)>,
+}
+
+impl Summary {
+    /// Counts a frame.
+    pub(crate) fn count(&mut self, record: &FrameRecord) {
+        self.frames += 1;
+        self.spots += record.spots.len();
+        for rejected in &record.rejected {
+            *self.rejected.entry(rejected.reason.clone()).or_default() += 1;
+        }
+        self.neighbours += record.neighbours.len();
+        self.frames_with_neighbours += u64::from(!record.neighbours.is_empty());
+        self.distances_m
+            .extend(record.neighbours.iter().filter_map(|neighbour| neighbour.distance_m.estimate));
+    }
+
+    /// When the first and the last frame were taken, s.
+    pub(crate) fn span(&mut self, first_s: f64, last_s: f64) {
+        self.span_s = Some((first_s, last_s));
+    }
+
+    /// Frames that came through.
+    pub(crate) fn frames(&self) -> u64 {
+        self.frames
+    }
+
+    /// What was counted, without times.
+    pub(crate) fn counts(&self, indent: usize) -> Aligned {
+        let mut table = Aligned::new(indent, &[]);
+        let frames = match self.failed {
+            0 => self.frames.to_string(),
+            failed => format!("{} done, {failed} failed", self.frames),
+        };
+        table.row(["frames".to_owned(), frames]);
+        if self.frames == 0 {
+            return table;
+        }
+        if let Some((first_s, last_s)) = self.span_s {
+            table.row(["time".to_owned(), format!("{first_s:.3} to {last_s:.3} s")]);
+        }
+        table.row(["spots".to_owned(), format!("{}{}", self.spots, self.per_frame())]);
+        table.row(["rejected".to_owned(), self.reasons()]);
+        if self.neighbours > 0 {
+            let seen = format!("{} in {} of the frames", self.neighbours, self.frames_with_neighbours);
+            table.row(["neighbours".to_owned(), seen]);
+        }
+        if let Some(text) = self.distances() {
+            table.row(["distance".to_owned(), text]);
+        }
+        table
+    }
+
+    /// What was counted, and the time per frame of each stage.
+    pub(crate) fn text(&self, clock: &Clock) -> String {
+        let mut times = Aligned::new(0, &[Side::Left, Side::Right, Side::Right]);
+        times.row(["ms per frame", "median", "longest"]);
+        for stage in clock.stages() {
+            let number = |ms: f64| format!("{ms:.2}");
+            times.row([format!("  {}", stage.name), number(stage.median_ms()), number(stage.longest_ms())]);
+        }
+        match self.frames {
+            0 => self.counts(0).to_string(),
+            _ => format!("{}\n{times}", self.counts(0)),
+        }
+    }
+
+    fn per_frame(&self) -> String {
+        match self.frames {
+            0 | 1 => String::new(),
+            frames => format!(", {:.1} per frame", self.spots as f64 / frames as f64),
+        }
+    }
+
+    fn reasons(&self) -> String {
+        let all: usize = self.rejected.values().sum();
+        let reasons: Vec<String> =
+            self.rejected.iter().map(|(reason, count)| format!("{count} {reason}")).collect();
+        match reasons.as_slice() {
+            [] => "none".to_owned(),
+            [one] => one.clone(),
+            several => format!("{all}: {}", several.join(", ")),
+        }
+    }
+
+    fn distances(&self) -> Option<String> {
+        let mut sorted = self.distances_m.clone();
+        sorted.sort_unstable_by(f64::total_cmp);
+        let (first, last) = (sorted.first()?, sorted.last()?);
+        let median = sorted[sorted.len() / 2];
+        Some(match sorted.len() {
+            1 => format!("{first:.2} m"),
+            _ => format!("median {median:.2} m, from {first:.2} to {last:.2} m"),
+        })
+    }
+}

@@ -1,0 +1,13 @@
+//! The built program from outside: what it prints, writes and exits with.
+
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "a test that cannot go on has failed; what it ran is shown then"
+)]
+
+mod bad_input;
+mod commands;
+mod real_photos;
+mod simulate;
+mod stage;

@@ -1,0 +1,117 @@
+//! A folder for one test, with the files of a small scene in it, and the program run there.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+use photinus_io::image::{GreyImage, write_png};
+
+/// Columns and rows of the scene's camera.
+pub(crate) const SIZE: (usize, usize) = (96, 64);
+
+/// A camera with 2 deg per pixel in the middle.
+pub(crate) const CAMERA: &str = "model = \"equidistant\"\nwidth_px = 96\nheight_px = 64\ncentre_px = [47.5, 31.5]\n\
+                                 focal_px = [60.0, 60.0]\n";
+pub(crate) const AIRFRAME: &str =
+    "name = \"hexa\"\nring = { arms = 6, radius_m = 0.4, leds_per_arm = 1, splay_deg = 0.0 }\n";
+/// OCamCalib text.
+pub(crate) const OCAM: &str = "5 -60 0 1.6e-3 0 0\n\n2 94 60\n\n31.5 47.5\n\n1 0 0\n\n64 96\n";
+
+/// A folder in the system's temporary folder, gone with the value.
+pub(crate) struct Stage(PathBuf);
+
+/// What the program did.
+#[derive(Debug)]
+pub(crate) struct Done {
+    pub(crate) code: i32,
+    pub(crate) out: String,
+    pub(crate) err: String,
+}
+
+impl Stage {
+    /// A folder with camera.toml, hexa.toml and frame.png: two markers of one neighbour, 2.4 m away.
+    pub(crate) fn new(test: &str) -> Self {
+        let folder = std::env::temp_dir().join(format!("photinus-cli-{}-{test}", std::process::id()));
+        std::fs::create_dir_all(&folder).unwrap();
+        let stage = Self(folder);
+        stage.file("camera.toml", CAMERA);
+        stage.file("hexa.toml", AIRFRAME);
+        write_png(stage.path("frame.png"), &frame().view()).unwrap();
+        stage
+    }
+
+    pub(crate) fn path(&self, name: &str) -> PathBuf {
+        self.0.join(name)
+    }
+
+    pub(crate) fn file(&self, name: &str, content: impl AsRef<[u8]>) {
+        std::fs::write(self.path(name), content).unwrap();
+    }
+
+    pub(crate) fn read(&self, name: &str) -> String {
+        std::fs::read_to_string(self.path(name)).unwrap()
+    }
+
+    /// Runs `photinus` with these words, separated by spaces, in the folder.
+    pub(crate) fn run(&self, words: &str) -> Done {
+        self.run_with(words, &[])
+    }
+
+    /// The same with bytes on standard input.
+    pub(crate) fn run_with(&self, words: &str, input: &[u8]) -> Done {
+        self.file(".stdin", input);
+        let stdin = std::fs::File::open(self.path(".stdin")).unwrap();
+        let done = Command::new(env!("CARGO_BIN_EXE_photinus"))
+            .args(words.split_whitespace())
+            .current_dir(&self.0)
+            .stdin(Stdio::from(stdin))
+            .output()
+            .unwrap();
+        let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
+        let done = Done { code: done.status.code().unwrap(), out: text(done.stdout), err: text(done.stderr) };
+        println!("$ photinus {words}\n{}{}[exit {}]", done.out, done.err, done.code);
+        assert!(!done.err.contains("panicked"), "{}", done.err);
+        done
+    }
+}
+
+impl Drop for Stage {
+    fn drop(&mut self) {
+        // A folder left behind in the system's temporary folder harms nobody.
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
+
+/// A dark frame with two markers, 10 px apart.
+pub(crate) fn frame() -> GreyImage {
+    let (width, height) = SIZE;
+    let mut pixels = vec![3_u8; width * height];
+    for (u, v) in [(40, 30), (50, 30)] {
+        for (du, dv, level) in [(0, 0, 220), (1, 0, 90), (0, 1, 80), (1, 1, 40)] {
+            pixels[(v + dv) * width + u + du] = level;
+        }
+    }
+    GreyImage::new(pixels, width, height).unwrap()
+}
+
+/// A Y4M stream of so many frames.
+pub(crate) fn video(frames: usize) -> Vec<u8> {
+    let mut bytes = format!("YUV4MPEG2 W{} H{} F20:1 Ip A1:1 Cmono\n", SIZE.0, SIZE.1).into_bytes();
+    for _ in 0..frames {
+        bytes.extend(b"FRAME\n");
+        bytes.extend(frame().pixels());
+    }
+    bytes
+}
+
+/// The folder of real files, when this machine has it.
+pub(crate) fn real_data() -> Option<PathBuf> {
+    let folder = std::env::var_os("PHOTINUS_DATA").map_or_else(
+        || Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data")).to_owned(),
+        PathBuf::from,
+    );
+    if folder.is_dir() {
+        return Some(folder);
+    }
+    println!("skipped: no real data in {}", folder.display());
+    None
+}

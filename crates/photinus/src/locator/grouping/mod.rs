@@ -1,0 +1,199 @@
+//! Which spots are one neighbour.
+//!
+//! In: the sightings of a frame. Out: groups of them, each a neighbour, by the least total cost; what a group costs,
+//! [`Matcher`] says. Three steps, the later ones for fewer and fewer spots:
+//!
+//! 1. [`tree`]: the tree of nearest neighbours; every neighbour that keeps its distance in the image is a branch;
+//! 2. its cheapest cut into branches, from the top down, without looking into a branch that cannot be beaten;
+//! 3. [`partition`]: where groups overlap in the image (side by side, one behind the other) the cheapest of all partitions
+//!    of a few spots, exactly.
+
+mod partition;
+mod tree;
+
+use nalgebra::{Unit, Vector3};
+
+use super::Sighting;
+use super::matching::{Matcher, NEIGHBOUR_NATS};
+use partition::{MOST_PARTITIONED, Partition};
+use tree::Tree;
+
+/// Most rounds of partitioning in one frame: the time of a frame is bounded.
+const MOST_ROUNDS: usize = 12;
+/// Larger groups are not taken apart spot by spot.
+const LARGEST_ORDERED: usize = 6;
+/// A group that costs more than this, nats, may not be one: half-way from a good match to two neighbours.
+const DOUBTFUL_NATS: f64 = 1.5 * NEIGHBOUR_NATS;
+
+/// The groups of one frame, and the room to find them in.
+#[derive(Debug, Default)]
+pub(super) struct Groups {
+    list: GroupList,
+    spare: GroupList,
+    tree: Tree,
+    partition: Partition,
+    circles: Vec<Circle>,
+    near: Vec<usize>,
+}
+
+/// Groups of spots, one after the other.
+#[derive(Debug, Default)]
+struct GroupList {
+    members: Vec<usize>,
+    ends: Vec<usize>,
+    /// What each group costs.
+    nats: Vec<f64>,
+}
+
+/// Where a group is in the image.
+#[derive(Clone, Copy, Debug)]
+struct Circle {
+    middle: Vector3<f64>,
+    radius_rad: f64,
+    /// How far other spots of the same neighbour may be.
+    reach_rad: f64,
+    /// Whether the group is explained so poorly that its spots may belong elsewhere.
+    doubtful: bool,
+}
+
+impl GroupList {
+    fn clear(&mut self) {
+        self.members.clear();
+        self.ends.clear();
+        self.nats.clear();
+    }
+
+    fn len(&self) -> usize {
+        self.ends.len()
+    }
+
+    fn group(&self, group: usize) -> &[usize] {
+        let start = if group == 0 { 0 } else { self.ends[group - 1] };
+        &self.members[start..self.ends[group]]
+    }
+
+    fn push(&mut self, members: impl IntoIterator<Item = usize>, nats: f64) {
+        self.members.extend(members);
+        self.ends.push(self.members.len());
+        self.nats.push(nats);
+    }
+}
+
+impl Groups {
+    /// Finds the groups of `sightings`.
+    pub(super) fn sort_out(
+        &mut self,
+        sightings: &[Sighting],
+        gravity: Option<&Unit<Vector3<f64>>>,
+        matcher: &mut Matcher,
+    ) {
+        self.list.clear();
+        if sightings.is_empty() {
+            return;
+        }
+        self.tree.grow(sightings);
+        self.tree.cost(|group| matcher.nats(sightings, group, gravity));
+        self.tree.cut(|group, nats| self.list.push(group.iter().copied(), nats));
+        self.part_overlapping(sightings, gravity, matcher);
+        self.put_in_order();
+    }
+
+    /// The groups, each ascending, in the order of their first member.
+    pub(super) fn iter(&self) -> impl Iterator<Item = &[usize]> {
+        (0..self.list.len()).map(|group| self.list.group(group))
+    }
+
+    /// Takes groups that overlap in the image apart and puts them together anew, at the least cost.
+    fn part_overlapping(
+        &mut self,
+        sightings: &[Sighting],
+        gravity: Option<&Unit<Vector3<f64>>>,
+        matcher: &mut Matcher,
+    ) {
+        if matcher.most_visible() > LARGEST_ORDERED {
+            return;
+        }
+        let (mut rounds, mut first) = (0, 0);
+        self.measure_circles(sightings, matcher);
+        while first < self.list.len() && rounds < MOST_ROUNDS {
+            self.gather_around(first);
+            let mut parted = false;
+            if self.partition.groups() > 1 {
+                rounds += 1;
+                parted = self.partition.improve(|group| matcher.nats(sightings, group, gravity));
+            }
+            if parted {
+                self.replace_partitioned();
+                self.measure_circles(sightings, matcher);
+                first = 0;
+            } else {
+                first += 1;
+            }
+        }
+    }
+
+    fn measure_circles(&mut self, sightings: &[Sighting], matcher: &Matcher) {
+        self.circles.clear();
+        for group in 0..self.list.len() {
+            let members = self.list.group(group);
+            let direction = |&spot: &usize| sightings[spot].bearing.vector();
+            let middle = members.iter().map(direction).sum::<Vector3<f64>>().normalize();
+            let off = |spot: &usize| (direction(spot) - middle).norm();
+            let radius_rad = members.iter().map(off).fold(0.0, f64::max);
+            let doubtful = members.len() == 1 || self.list.nats[group] > DOUBTFUL_NATS;
+            let widest = |&spot: &usize| matcher.widest_rad(&sightings[spot]);
+            let reach_rad =
+                if doubtful { members.iter().map(widest).fold(f64::INFINITY, f64::min) } else { 0.0 };
+            self.circles.push(Circle { middle, radius_rad, reach_rad, doubtful });
+        }
+    }
+
+    /// The group `first` and those that may have to do with it, the nearest first, as far as they can be partitioned.
+    fn gather_around(&mut self, first: usize) {
+        let own = self.circles[first];
+        let gap = |group: usize| (self.circles[group].middle - own.middle).norm();
+        let is_near = |&other: &usize| {
+            let touch = 1.5 * (own.radius_rad + self.circles[other].radius_rad);
+            let reach = if own.doubtful { touch.max(own.reach_rad) } else { touch };
+            other == first || gap(other) < reach
+        };
+        self.near.clear();
+        self.near.extend((0..self.list.len()).filter(is_near));
+        self.near.sort_unstable_by(|&a, &b| gap(a).total_cmp(&gap(b)).then(a.cmp(&b)));
+        self.partition.clear();
+        for &group in &self.near {
+            let members = self.list.group(group);
+            if self.partition.spots() + members.len() <= MOST_PARTITIONED {
+                self.partition.add(group, members);
+            }
+        }
+    }
+
+    fn replace_partitioned(&mut self) {
+        self.spare.clear();
+        for group in 0..self.list.len() {
+            if !self.partition.took(group) {
+                self.spare.push(self.list.group(group).iter().copied(), self.list.nats[group]);
+            }
+        }
+        self.partition.each_part(|members, nats| self.spare.push(members, nats));
+        std::mem::swap(&mut self.list, &mut self.spare);
+    }
+
+    /// Members ascending, groups in the order of their first member.
+    fn put_in_order(&mut self) {
+        let mut start = 0;
+        for &end in &self.list.ends {
+            self.list.members[start..end].sort_unstable();
+            start = end;
+        }
+        self.near.clear();
+        self.near.extend(0..self.list.len());
+        self.near.sort_unstable_by_key(|&group| self.list.group(group)[0]);
+        self.spare.clear();
+        for &group in &self.near {
+            self.spare.push(self.list.group(group).iter().copied(), self.list.nats[group]);
+        }
+        std::mem::swap(&mut self.list, &mut self.spare);
+    }
+}

@@ -1,0 +1,146 @@
+//! The tree of nearest neighbours (single linkage), and its cheapest cut.
+
+use crate::locator::Sighting;
+use crate::locator::matching::{IMPOSSIBLE, NEIGHBOUR_NATS};
+
+/// A tree over the sightings of a frame: spots are its leaves, every branch joins the two that are nearest.
+#[derive(Debug, Default)]
+pub(super) struct Tree {
+    nearest: Vec<(f64, usize)>,
+    links: Vec<(f64, usize, usize)>,
+    branches: Vec<Branch>,
+    roots: Vec<usize>,
+    /// The spots, so that those of a branch are together.
+    order: Vec<usize>,
+    open: Vec<usize>,
+}
+
+/// A spot, or two branches.
+#[derive(Clone, Copy, Debug)]
+struct Branch {
+    children: Option<(usize, usize)>,
+    start: usize,
+    spots: usize,
+    /// What it costs as one neighbour.
+    whole_nats: f64,
+    /// The least that it costs, whole or cut.
+    nats: f64,
+    looked_at: bool,
+}
+
+const LEAF: Branch =
+    Branch { children: None, start: 0, spots: 1, whole_nats: IMPOSSIBLE, nats: IMPOSSIBLE, looked_at: false };
+
+impl Tree {
+    /// Grows the tree of `sightings`, at least one.
+    pub(super) fn grow(&mut self, sightings: &[Sighting]) {
+        self.link_nearest(sightings);
+        self.join(sightings.len());
+        self.order_spots(sightings.len());
+    }
+
+    /// Asks what branches cost as one neighbour, from the top down. A branch that costs less than two neighbours must is
+    /// not looked into.
+    pub(super) fn cost(&mut self, mut whole_nats: impl FnMut(&[usize]) -> f64) {
+        self.open.clear();
+        self.open.push(self.branches.len() - 1);
+        while let Some(at) = self.open.pop() {
+            let branch = &mut self.branches[at];
+            branch.looked_at = true;
+            branch.whole_nats = whole_nats(&self.order[branch.start..branch.start + branch.spots]);
+            branch.nats = branch.whole_nats;
+            if let Some((a, b)) = branch.children
+                && branch.whole_nats > 2.0 * NEIGHBOUR_NATS
+            {
+                self.open.extend([a, b]);
+            }
+        }
+        for at in 0..self.branches.len() {
+            let Branch { children: Some((a, b)), looked_at: true, whole_nats, .. } = self.branches[at] else {
+                continue;
+            };
+            if self.branches[a].looked_at {
+                self.branches[at].nats = whole_nats.min(self.branches[a].nats + self.branches[b].nats);
+            }
+        }
+    }
+
+    /// Hands on the branches of the cheapest cut, each with what it costs.
+    pub(super) fn cut(&mut self, mut with: impl FnMut(&[usize], f64)) {
+        self.open.clear();
+        self.open.push(self.branches.len() - 1);
+        while let Some(at) = self.open.pop() {
+            let Branch { children, start, spots, whole_nats, nats, .. } = self.branches[at];
+            match children {
+                Some((a, b)) if nats < whole_nats => self.open.extend([b, a]),
+                _ => with(&self.order[start..start + spots], nats),
+            }
+        }
+    }
+
+    /// The shortest tree that joins all bearings (Prim), its links from the shortest to the longest.
+    fn link_nearest(&mut self, sightings: &[Sighting]) {
+        let gap = |a: usize, b: usize| {
+            (sightings[a].bearing.vector() - sightings[b].bearing.vector()).norm_squared()
+        };
+        self.nearest.clear();
+        self.nearest.extend((0..sightings.len()).map(|spot| (gap(0, spot), 0)));
+        self.links.clear();
+        let mut joined = 0;
+        for _ in 1..sightings.len() {
+            self.nearest[joined].0 = f64::NAN;
+            let outside = self.nearest.iter().enumerate().filter(|(_, (gap, _))| !gap.is_nan());
+            let closest = outside.min_by(|(_, a), (_, b)| a.0.total_cmp(&b.0));
+            let Some((spot, &(length, from))) = closest else { break };
+            self.links.push((length, from, spot));
+            joined = spot;
+            for (other, nearest) in self.nearest.iter_mut().enumerate() {
+                let length = gap(joined, other);
+                if length < nearest.0 {
+                    *nearest = (length, joined);
+                }
+            }
+        }
+        self.links.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)).then(a.2.cmp(&b.2)));
+    }
+
+    fn join(&mut self, spots: usize) {
+        self.branches.clear();
+        self.branches.resize(spots, LEAF);
+        self.roots.clear();
+        self.roots.extend(0..spots);
+        for &(_, a, b) in &self.links {
+            let (a, b) = (root(&mut self.roots, a), root(&mut self.roots, b));
+            let joined = self.branches.len();
+            let spots = self.branches[a].spots + self.branches[b].spots;
+            self.branches.push(Branch { children: Some((a, b)), spots, ..LEAF });
+            self.roots.push(joined);
+            self.roots[a] = joined;
+            self.roots[b] = joined;
+        }
+    }
+
+    /// From the top down every branch gets a stretch of the order of spots.
+    fn order_spots(&mut self, spots: usize) {
+        self.order.clear();
+        self.order.resize(spots, 0);
+        for branch in (0..self.branches.len()).rev() {
+            let Branch { children, start, .. } = self.branches[branch];
+            match children {
+                Some((a, b)) => {
+                    self.branches[a].start = start;
+                    self.branches[b].start = start + self.branches[a].spots;
+                }
+                None => self.order[start] = branch,
+            }
+        }
+    }
+}
+
+fn root(roots: &mut [usize], mut branch: usize) -> usize {
+    while roots[branch] != branch {
+        roots[branch] = roots[roots[branch]];
+        branch = roots[branch];
+    }
+    branch
+}

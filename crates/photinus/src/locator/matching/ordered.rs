@@ -1,0 +1,132 @@
+//! A handful of spots against the arrangements of a handful of markers, spot by spot.
+
+use nalgebra::{Vector2, Vector3};
+
+use super::image::{Image, turned};
+use crate::lanes::{self, Lanes};
+use crate::locator::Sighting;
+use crate::locator::views::{Arrangement, MOST_ORDERED, Quad};
+
+/// How far the grid of views leaves a true shape from the nearest one, as a share of its size.
+const GRID_ERROR: f64 = 0.04;
+/// Spread of the logarithms of flux that units, lobes and neighbours' own bodies add.
+const LOG_FLUX_SIGMA: f64 = 0.6;
+/// The same when a spot is saturated: its flux is a lower limit.
+const LOG_FLUX_SIGMA_SATURATED: f64 = 1.2;
+
+/// A group to be put in order.
+pub(super) struct Ordered {
+    count: usize,
+    shape: [Vector2<f64>; MOST_ORDERED],
+    log_flux: [f64; MOST_ORDERED],
+    log_flux_sigma: f64,
+    shape_sigma: f64,
+}
+
+impl Ordered {
+    pub(super) fn of(image: &Image<'_>, sightings: &[Sighting], group: &[usize]) -> Self {
+        let mut ordered = Self {
+            count: group.len(),
+            shape: [Vector2::zeros(); MOST_ORDERED],
+            log_flux: [0.0; MOST_ORDERED],
+            log_flux_sigma: LOG_FLUX_SIGMA,
+            shape_sigma: libm::hypot(GRID_ERROR, image.sigma / image.size),
+        };
+        let mut sum = 0.0;
+        for (index, (&member, place)) in group.iter().zip(image.places).enumerate() {
+            let spot = &sightings[member].spot;
+            ordered.shape[index] = place / image.size;
+            ordered.log_flux[index] = libm::log(spot.flux.max(1e-3));
+            sum += ordered.log_flux[index];
+            if spot.saturated_px > 0 {
+                ordered.log_flux_sigma = LOG_FLUX_SIGMA_SATURATED;
+            }
+            if spot.flux <= 0.0 {
+                // A detector that measures no light says nothing by it.
+                ordered.log_flux_sigma = f64::INFINITY;
+            }
+        }
+        for log_flux in &mut ordered.log_flux[..group.len()] {
+            *log_flux -= sum / group.len() as f64;
+        }
+        ordered
+    }
+
+    /// What each arrangement costs: its misfit in shape and in light, its attitude, and what it costs in itself. Returns
+    /// the least of them.
+    pub(super) fn costs(
+        &self,
+        quads: &[Quad],
+        image: &Image<'_>,
+        tilt_sigma_rad: f64,
+        costs: &mut Vec<Lanes>,
+    ) -> Best {
+        let splat = |number: f64| Lanes::splat(number as f32);
+        let x: [Lanes; MOST_ORDERED] = std::array::from_fn(|spot| splat(self.shape[spot].x));
+        let y: [Lanes; MOST_ORDERED] = std::array::from_fn(|spot| splat(self.shape[spot].y));
+        let log_flux: [Lanes; MOST_ORDERED] = std::array::from_fn(|spot| splat(self.log_flux[spot]));
+        let per_shape = splat(0.5 / (self.shape_sigma * self.shape_sigma));
+        let per_light = splat(0.5 / (self.log_flux_sigma * self.log_flux_sigma));
+        let tilt = 1.0 / (tilt_sigma_rad * tilt_sigma_rad);
+        let (per_turn, per_elevation) = image.elevation_rad.map_or((0.0, 0.0), |_| (tilt, 0.5 * tilt));
+        let (per_turn, per_elevation) = (splat(per_turn), splat(per_elevation));
+        let elevation_rad = splat(image.elevation_rad.unwrap_or(0.0));
+        costs.clear();
+        costs.extend(quads.iter().map(|quad| {
+            // Places as complex numbers: the best turn and scale is the sum of conj(w) z, its size tells how much they agree.
+            let [mut dot, mut cross, mut light] = [Lanes::ZERO; 3];
+            for spot in 0..self.count {
+                dot += quad.x[spot] * x[spot] + quad.y[spot] * y[spot];
+                cross += quad.x[spot] * y[spot] - quad.y[spot] * x[spot];
+                let off = log_flux[spot] - quad.log_intensity[spot];
+                light += off * off;
+            }
+            let agreement = dot * dot + cross * cross;
+            let cos_turn = dot / (agreement + Lanes::splat(1e-12)).sqrt();
+            let off = quad.elevation_rad - elevation_rad;
+            lanes::positive(Lanes::ONE - agreement) * per_shape
+                + light * per_light
+                + (Lanes::ONE - cos_turn) * quad.firmness * per_turn
+                + off * off * per_elevation
+                + quad.nats
+        }));
+        let least = costs.iter().fold(Lanes::splat(f32::INFINITY), |least, &four| least.fast_min(four));
+        let nats = least.to_array().into_iter().fold(f32::INFINITY, f32::min);
+        let of_best = costs.iter().flat_map(|four| four.to_array()).position(|cost| cost <= nats);
+        Best { nats, arrangement: of_best.unwrap_or(0) }
+    }
+
+    /// The place of the airframe if the spots are these markers, each as much larger in the image as it is nearer.
+    pub(super) fn place(&self, arrangement: &Arrangement, image: &Image<'_>) -> Vector3<f64> {
+        let Arrangement { shape, size_m, middle_m, ahead_m, .. } = arrangement;
+        let per_spot = 1.0 / self.count as f64;
+        // How much nearer each marker is matters in the second order only: a distance as from afar will do for that.
+        let far_m = size_m / image.size + ahead_m.iter().take(self.count).sum::<f64>() * per_spot;
+        // Nearer than a few radii perspective is no correction any more, and the match none that counts.
+        let larger: [f64; MOST_ORDERED] = ahead_m.map(|ahead_m| far_m / (far_m - ahead_m).max(0.3 * far_m));
+        let place_m: [Vector2<f64>; MOST_ORDERED] =
+            std::array::from_fn(|spot| shape[spot] * (size_m * larger[spot]));
+        let middle = place_m.iter().take(self.count).sum::<Vector2<f64>>() * per_spot;
+        let (mut dot, mut cross, mut square) = (0.0, 0.0, 0.0);
+        for (place, z) in place_m.iter().zip(&self.shape).take(self.count) {
+            let w = place - middle;
+            dot += w.x * z.x + w.y * z.y;
+            cross += w.x * z.y - w.y * z.x;
+            square += w.norm_squared();
+        }
+        // A match that is hardly one still gives a place, at most a thousand times as far as it looks.
+        let agreement = f64::sqrt(dot * dot + cross * cross).max(1e-3 * square.sqrt());
+        let turn = Vector2::new(dot, cross) / agreement;
+        let depth_m = square / (agreement * image.size);
+        let mean_larger = larger.iter().take(self.count).sum::<f64>() * per_spot;
+        let beside_m =
+            (image.middle * depth_m - turned(middle, turn)) / mean_larger - turned(*middle_m, turn);
+        Vector3::new(beside_m.x, beside_m.y, depth_m)
+    }
+}
+
+/// The arrangement that costs least.
+pub(super) struct Best {
+    pub(super) nats: f32,
+    pub(super) arrangement: usize,
+}

@@ -1,0 +1,141 @@
+//! A warm detector and a warm locator allocate nothing: every request to the allocator is counted.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
+
+use nalgebra::Vector3;
+use photinus::airframe::{Airframe, Ring};
+use photinus::camera::{Camera, Ideal, IdealLaw, Model, Pixel};
+use photinus::frame::{FrameView, Mask};
+use photinus::locator::{self, Locator};
+use photinus::spots::{Brightness, Detector, Settings};
+use rand_distr::{Distribution, Uniform};
+use rand_pcg::Pcg64;
+
+const WIDTH: usize = 376;
+const HEIGHT: usize = 240;
+
+struct Counting;
+
+thread_local! {
+    /// Requests of this thread: the test harness has others.
+    static REQUESTS: Cell<u64> = const { Cell::new(0) };
+}
+
+fn count() {
+    REQUESTS.with(|requests| requests.set(requests.get() + 1));
+}
+
+#[expect(
+    unsafe_code,
+    reason = "an allocator is unsafe by its trait; every call goes on to the system's unchanged"
+)]
+// SAFETY: the arguments are passed on as they came, so the caller's promises are those that `System` needs.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        count();
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn alloc_zeroed(&self, layout: Layout) -> *mut u8 {
+        count();
+        unsafe { System.alloc_zeroed(layout) }
+    }
+
+    unsafe fn realloc(&self, memory: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+        count();
+        unsafe { System.realloc(memory, layout, size) }
+    }
+
+    unsafe fn dealloc(&self, memory: *mut u8, layout: Layout) {
+        unsafe { System.dealloc(memory, layout) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+fn requests_during(work: impl FnOnce()) -> u64 {
+    let before = REQUESTS.get();
+    work();
+    REQUESTS.get() - before
+}
+
+/// Markers of many sizes, pairs that must be split, and pieces of a large bright surface.
+fn frame(markers: usize, rng: &mut Pcg64) -> Vec<u8> {
+    let (across, down) = (Uniform::new(0, WIDTH).unwrap(), Uniform::new(0, HEIGHT).unwrap());
+    let (radius, level) = (Uniform::new(0, 9).unwrap(), Uniform::new(4, 9).unwrap());
+    let mut pixels: Vec<u8> = (0..WIDTH * HEIGHT).map(|_| level.sample(rng)).collect();
+    for _ in 0..markers {
+        let (u0, v0, r) = (across.sample(rng), down.sample(rng), radius.sample(rng) as isize);
+        for (du, dv) in (-r..=r).flat_map(|dv| (-r..=r).map(move |du| (du, dv))) {
+            if let (Some(u), Some(v)) = (u0.checked_add_signed(du), v0.checked_add_signed(dv))
+                && u < WIDTH
+                && v < HEIGHT
+            {
+                let light = 330 - 25 * (du * du + dv * dv);
+                let pixel = &mut pixels[v * WIDTH + u];
+                *pixel = (*pixel).max(light.clamp(0, 255) as u8);
+            }
+        }
+    }
+    pixels
+}
+
+/// No frame has more runs, parts or summits than these two.
+fn busiest() -> [Vec<u8>; 2] {
+    let dots = |i: usize| (i % WIDTH).is_multiple_of(2) && (i / WIDTH).is_multiple_of(2);
+    let board = |i: usize| (i % WIDTH + i / WIDTH).is_multiple_of(2);
+    [
+        (0..WIDTH * HEIGHT).map(|i| if dots(i) { 255 } else { 0 }).collect(),
+        (0..WIDTH * HEIGHT).map(|i| if board(i) { 255 } else { 0 }).collect(),
+    ]
+}
+
+#[test]
+fn the_counter_counts() {
+    assert_eq!(requests_during(|| drop(std::hint::black_box(vec![1u8; 100]))), 1);
+}
+
+#[test]
+fn a_warm_detector_allocates_nothing() {
+    let mut rng = Pcg64::new(31, 7);
+    let warm_up: Vec<Vec<u8>> = busiest().into_iter().chain((0..12).map(|_| frame(300, &mut rng))).collect();
+    let frames: Vec<Vec<u8>> = (0..60).map(|i| frame(4 * i, &mut rng)).collect();
+    let mask_pixels: Vec<u8> = (0..WIDTH * HEIGHT).map(|i| u8::from(i % WIDTH > 30)).collect();
+    let mask = Mask::from_frame(&FrameView::packed(&mask_pixels, WIDTH, HEIGHT).unwrap());
+    for brightness in [Brightness::Threshold(200), Brightness::Contrast(20)] {
+        let mut detector = Detector::new(Settings { brightness, ..Settings::default() }).unwrap();
+        let mut spots = 0;
+        let mut detect = |pixels: &[u8]| {
+            let frame = FrameView::packed(pixels, WIDTH, HEIGHT).unwrap();
+            spots += detector.detect(&frame, Some(&mask)).unwrap().spots.len();
+        };
+        warm_up.iter().for_each(|pixels| detect(pixels));
+        assert_eq!(requests_during(|| frames.iter().for_each(|pixels| detect(pixels))), 0, "{brightness:?}");
+        assert!(spots > 1000, "{spots} spots");
+    }
+}
+
+#[test]
+fn a_warm_locator_allocates_nothing() {
+    let mut rng = Pcg64::new(32, 7);
+    let warm_up: Vec<Vec<u8>> = (0..6).map(|_| frame(300, &mut rng)).collect();
+    let frames: Vec<Vec<u8>> = (0..30).map(|i| frame(4 * i, &mut rng)).collect();
+    let lens = Ideal::new(IdealLaw::Equidistant, [130.0; 2], Pixel::new(187.5, 119.5)).unwrap();
+    let camera = Camera::new(Model::Ideal(lens), WIDTH, HEIGHT, None).unwrap();
+    let ring = Ring { arms: 6, radius_m: 0.4, leds_per_arm: 1, splay_rad: 0.0 };
+    let airframe = Airframe::from_ring("hexarotor", ring).unwrap();
+    let mut locator = Locator::new(camera, &airframe, None, locator::Settings::default()).unwrap();
+    let mut neighbours = 0;
+    let mut locate = |pixels: &[u8]| {
+        let frame = FrameView::packed(pixels, WIDTH, HEIGHT).unwrap();
+        let gravity = Vector3::y_axis();
+        neighbours += locator.locate(&frame, Some(&gravity), &mut |_| ()).unwrap().neighbours.len();
+    };
+    warm_up.iter().for_each(|pixels| locate(pixels));
+    assert_eq!(requests_during(|| frames.iter().for_each(|pixels| locate(pixels))), 0);
+    assert!(neighbours > 300, "{neighbours}");
+}

@@ -1,0 +1,16 @@
+//! What the detector promises, on rendered frames of known content.
+//!
+//! Checked: what is found, what is rejected and for which reason, and where centres lie when something disturbs them. Not
+//! checked here: the accuracy of undisturbed centres and their sigma (`centroids.rs`), real photos (`photos.rs` of
+//! photinus-io), allocations (`allocations.rs`).
+
+#![allow(clippy::print_stdout, reason = "the measured numbers are worth reading")]
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+
+mod background;
+mod crowded;
+mod determinism;
+mod large;
+mod properties;
+mod scene;
+mod tiny;

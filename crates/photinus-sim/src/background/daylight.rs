@@ -36,6 +36,9 @@ impl Daylight {
     /// Angular radius of the sun, rad.
     pub const SUN_RADIUS_RAD: f64 = 4.65e-3;
 
+    /// Sine of the elevation over which ground turns into sky: trees and haze, and the background's grid of 16 px.
+    const SOFT_HORIZON: f64 = 0.06;
+
     /// Light of a sky with the sun in a direction of the world frame; none at all with the sun below the horizon.
     pub fn new(sky: Sky, sun: Unit<Vector3<f64>>) -> Self {
         Self { sky, sun }
@@ -63,7 +66,8 @@ impl Daylight {
             }
             Sky::Overcast => zenith * (1.0 + 2.0 * up) / 3.0,
         };
-        if direction.z >= 0.0 { sky } else { self.ground() }
+        let above = (0.5 + 0.5 * direction.z / Self::SOFT_HORIZON).clamp(0.0, 1.0);
+        self.ground() + (sky - self.ground()) * above
     }
 
     /// Radiance of the ground, W/m^2/sr: it reflects sun and sky evenly.
@@ -96,8 +100,9 @@ mod tests {
     #[test]
     fn skies_have_the_shape_of_their_laws() {
         let overcast = Daylight::new(Sky::Overcast, sun(30.0));
-        let horizon = overcast.radiance(&Vector3::y());
-        assert!((overcast.radiance(&Vector3::z()) / horizon - 3.0).abs() < 1e-12, "CIE: 3 to 1");
+        let (sin, cos) = (0.1, 0.99_f64.sqrt());
+        let low = overcast.radiance(&Vector3::new(0.0, cos, sin));
+        assert!((overcast.radiance(&Vector3::z()) / low - 3.0 / 1.2).abs() < 1e-12, "CIE: 1 + 2 sin");
         let clear = Daylight::new(Sky::Clear, sun(30.0));
         let across = Vector3::new(-0.5, 0.0, 3.0_f64.sqrt() / 2.0);
         assert!(clear.radiance(&sun(30.0)) > 1.9 * clear.radiance(&across), "Rayleigh: 2 to 1 at 90 deg");

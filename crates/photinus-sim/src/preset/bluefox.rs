@@ -4,7 +4,7 @@ use core::f64::consts::PI;
 
 use super::{Fitted, Preset};
 use crate::optics::{Gaussian, Lens, PointSpread};
-use crate::sensor::{Overflow, Sensor, Shutter};
+use crate::sensor::{Overflow, Response, Sensor, Shutter};
 use crate::source::Emitter;
 
 /// What `fit_preset` found for the paper's figures 10 and 11.
@@ -37,11 +37,13 @@ pub fn bluefox(fitted: &Fitted) -> Preset {
         },
         sensor: Sensor {
             quantum_efficiency: 0.34,
+            response: Response::Linear,
             electrons_per_dn,
             full_well_e: fitted.well * 255.0 * electrons_per_dn,
             overflow: Overflow { spill: fitted.spill },
             read_noise_e: 30.0,
             dark_offset_dn: 0.0,
+            corner_offset_dn: 0.0,
             dark_current_e_per_s: 1000.0,
             hot_pixel_share: 1e-5,
             hot_pixel_e_per_s: 1e5,

@@ -4,8 +4,10 @@
 //! `cargo run --release -p photinus-sim --example fit_preset`, whose result stands here as constants.
 
 mod bluefox;
+mod small_fisheye;
 
 pub use bluefox::{BLUEFOX_FIT, bluefox};
+pub use small_fisheye::{SMALL_FISHEYE_FIT, SmallFisheyeFit, small_fisheye};
 
 use crate::optics::Lens;
 use crate::sensor::Sensor;
@@ -22,7 +24,7 @@ pub struct Preset {
     pub sensor: Sensor,
 }
 
-/// What no data sheet says.
+/// What no data sheet says of the paper's camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fitted {
     /// Sigma of the point spread's core, px.

@@ -22,6 +22,8 @@ struct Node {
     place: Pixel,
     /// Solid angle of a pixel times relative illumination, sr; 0 outside the field.
     etendue_sr: f64,
+    /// Square of the distance from the middle, 1 in the corners.
+    corner: f64,
 }
 
 impl Backdrop {
@@ -30,13 +32,16 @@ impl Backdrop {
         let mut nodes = Vec::with_capacity(grid.nodes());
         grid.fill(|u, v| {
             let place = Pixel::new(u.min(camera.width() - 1) as f64, v.min(camera.height() - 1) as f64);
+            let middle = [camera.width(), camera.height()].map(|length| 0.5 * (length as f64 - 1.0));
+            let from_middle = libm::hypot(place.u - middle[0], place.v - middle[1]);
+            let corner = (from_middle / libm::hypot(middle[0], middle[1]).max(1.0)).powi(2);
             nodes.push(match camera.bearing_with_jacobian(place) {
                 Some((bearing, jacobian)) => {
                     let solid_angle_sr = jacobian.column(0).cross(&jacobian.column(1)).norm();
                     let etendue_sr = solid_angle_sr * lens.illumination(bearing.off_axis_rad());
-                    Node { direction: *bearing.vector(), place, etendue_sr }
+                    Node { direction: *bearing.vector(), place, etendue_sr, corner }
                 }
-                None => Node { direction: Vector3::z(), place, etendue_sr: 0.0 },
+                None => Node { direction: Vector3::z(), place, etendue_sr: 0.0, corner },
             });
             0.0
         });
@@ -64,6 +69,7 @@ impl Simulator<'_> {
         let pixels = (self.charge.width() * self.charge.height()) as f64;
         let even_e =
             preset.lens.veiling_glare * all_e / pixels + preset.sensor.dark_current_e_per_s * exposure_s;
+        let corner_e = preset.sensor.corner_offset_dn * preset.sensor.electrons_per_dn;
         let electrons = |radiance: f64| {
             let power_w = radiance * preset.lens.pupil_m2 * preset.lens.transmission;
             preset.sensor.photo_electrons(power_w, exposure_s, preset.emitter.photon_j())
@@ -74,8 +80,9 @@ impl Simulator<'_> {
             let radiance = scene.daylight.map_or(0.0, |daylight| {
                 seen_radiance(&daylight, scene.water, &(world_from_camera.rotation * node.direction))
             });
+            let corner_e = corner_e * node.corner;
             let aureole_e = sun.as_ref().map_or(0.0, |sun| sun.aureole_e(&node.place));
-            (even_e + electrons(radiance) * node.etendue_sr + aureole_e) as f32
+            (even_e + electrons(radiance) * node.etendue_sr + aureole_e + corner_e) as f32
         });
         if let Some(sun) = sun {
             self.fill_disc(&sun);

@@ -17,7 +17,7 @@ use super::{BlinkPlan, MountedCamera, Scene, Target};
 use crate::background::{Daylight, Place, Sky, Water, sun_direction};
 use crate::motion::{Flight, Motion, Path as FlightPath, Recorded, Spin, Wander};
 use crate::occlusion::Solid;
-use crate::preset::{BLUEFOX_FIT, bluefox};
+use crate::preset::{BLUEFOX_FIT, SMALL_FISHEYE_FIT, bluefox, small_fisheye};
 use crate::sensor::hash;
 
 /// Longest scene, s, and most frames of one.
@@ -108,6 +108,7 @@ impl Reader<'_> {
             exposure_us,
             preset: match table.preset {
                 PresetName::Bluefox => bluefox(&BLUEFOX_FIT),
+                PresetName::SmallFisheye => small_fisheye(&SMALL_FISHEYE_FIT),
             },
             daylight: table.daylight.map(|daylight| self.daylight(&daylight)).transpose()?,
             water: table

@@ -26,6 +26,8 @@ pub(super) struct SceneTable {
 pub(super) enum PresetName {
     #[serde(rename = "bluefox-dsl215-bp365")]
     Bluefox,
+    #[serde(rename = "small-fisheye-960x600")]
+    SmallFisheye,
 }
 
 #[derive(Deserialize)]

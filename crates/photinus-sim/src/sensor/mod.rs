@@ -29,12 +29,26 @@ pub enum Shutter {
     },
 }
 
+/// How grey levels grow with charge.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Response {
+    /// In proportion.
+    Linear,
+    /// In proportion when dark, towards a ceiling when bright: C (1 - exp(-x / C)), the tone curve of a camera driver.
+    Soft {
+        /// The ceiling C above the dark offset, grey levels.
+        ceiling_dn: f64,
+    },
+}
+
 /// A sensor.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sensor {
     /// Quantum efficiency at the markers' wavelength.
     pub quantum_efficiency: f64,
-    /// Photo-electrons that make a grey level.
+    /// How grey levels grow with charge.
+    pub response: Response,
+    /// Photo-electrons that make a grey level, in the dark.
     pub electrons_per_dn: f64,
     /// Charge at which a pixel overflows, electrons; more than 255 levels' worth where the converter saturates first.
     pub full_well_e: f64,
@@ -44,6 +58,8 @@ pub struct Sensor {
     pub read_noise_e: f64,
     /// Grey level of a pixel without light.
     pub dark_offset_dn: f64,
+    /// By how much the offset is higher in the corners of the image: what a driver's shading correction leaves of it.
+    pub corner_offset_dn: f64,
     /// Dark current of an ordinary pixel, electrons per second.
     pub dark_current_e_per_s: f64,
     /// Share of pixels that are hot.
@@ -60,8 +76,16 @@ impl Sensor {
         power_w * time_s / photon_j * self.quantum_efficiency
     }
 
-    /// Charge that reads as `level`, electrons, without noise.
+    /// Charge that reads as `level_dn`, electrons, without noise; infinite for a level that none reads as.
     pub fn electrons_at(&self, level_dn: f64) -> f64 {
-        (level_dn - self.dark_offset_dn) * self.electrons_per_dn
+        let above_dn = level_dn - self.dark_offset_dn;
+        let linear_dn = match self.response {
+            Response::Linear => above_dn,
+            Response::Soft { ceiling_dn } if above_dn < ceiling_dn => {
+                -ceiling_dn * libm::log1p(-above_dn / ceiling_dn)
+            }
+            Response::Soft { .. } => f64::INFINITY,
+        };
+        linear_dn * self.electrons_per_dn
     }
 }

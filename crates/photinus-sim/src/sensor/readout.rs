@@ -3,7 +3,7 @@
 //! A pixel without a marker costs its background, its noise and its rounding, nothing else.
 
 use super::noise::hash;
-use super::{Charge, NoiseTable, Sensor};
+use super::{Charge, NoiseTable, Response, Sensor};
 
 /// Light that changes slowly over the image (sky, ground, glare, dark current): electrons on a coarse grid, linear between.
 #[derive(Clone, Debug)]
@@ -55,6 +55,7 @@ pub struct Readout {
     dn_per_electron: f32,
     offset_dn: f32,
     well_dn: f32,
+    ceiling_dn: Option<f32>,
     noise: NoiseTable,
     nodes_e: Vec<f32>,
     nodes_dn: Vec<f32>,
@@ -73,6 +74,10 @@ impl Readout {
             dn_per_electron: dn_per_electron as f32,
             offset_dn: sensor.dark_offset_dn as f32,
             well_dn: (sensor.full_well_e * dn_per_electron) as f32,
+            ceiling_dn: match sensor.response {
+                Response::Linear => None,
+                Response::Soft { ceiling_dn } => Some(ceiling_dn as f32),
+            },
             noise: NoiseTable::new(),
             nodes_e: Vec::new(),
             nodes_dn: Vec::new(),
@@ -116,24 +121,36 @@ impl Readout {
                 let node = run * (NoiseTable::RUN / LANE) + lane;
                 let first = node * LANE;
                 let is_lit = first < touched.1 && first + LANE > touched.0;
-                let light = if is_lit { &light[first..first + pixels.len()] } else { &DARK[..pixels.len()] };
-                self.read_lane(node, light, &normal[lane * LANE..][..LANE], pixels);
+                let lit_dn = if is_lit { self.respond(&light[first..first + pixels.len()]) } else { DARK };
+                self.read_lane(node, &lit_dn, &normal[lane * LANE..][..LANE], pixels);
             }
         }
     }
 
     #[inline]
-    fn read_lane(&self, node: usize, light: &[f32], normal: &[f32], onto: &mut [u8]) {
+    fn read_lane(&self, node: usize, lit_dn: &[f32; LANE], normal: &[f32], onto: &mut [u8]) {
         const STEP: f32 = 1.0 / LANE as f32;
         let (mean, sigma) = (self.nodes_dn[node], self.nodes_sigma_dn[node]);
         let mean_step = (self.nodes_dn[node + 1] - mean) * STEP;
         let sigma_step = (self.nodes_sigma_dn[node + 1] - sigma) * STEP;
-        for (i, ((pixel, light), normal)) in onto.iter_mut().zip(light).zip(normal).enumerate() {
+        for (i, ((pixel, lit), normal)) in onto.iter_mut().zip(lit_dn).zip(normal).enumerate() {
             let at = i as f32;
-            let charge = (mean + mean_step * at + light * self.dn_per_electron).min(self.well_dn);
-            let level = charge + (sigma + sigma_step * at) * normal + self.offset_dn;
-            *pixel = to_grey(level);
+            let level = (mean + mean_step * at + lit).min(self.well_dn) + (sigma + sigma_step * at) * normal;
+            *pixel = to_grey(level + self.offset_dn);
         }
+    }
+
+    /// Grey levels of markers' light. A background is far below the ceiling of a soft response and not bent by it.
+    fn respond(&self, light_e: &[f32]) -> [f32; LANE] {
+        let mut levels = DARK;
+        for (level, electrons) in levels.iter_mut().zip(light_e) {
+            let linear = electrons * self.dn_per_electron;
+            *level = match self.ceiling_dn {
+                Some(ceiling) => -ceiling * libm::expm1f(-linear.max(0.0) / ceiling) + linear.min(0.0),
+                None => linear,
+            };
+        }
+        levels
     }
 }
 
@@ -145,17 +162,19 @@ fn to_grey(level: f32) -> u8 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Overflow, Shutter};
+    use super::super::{Overflow, Response, Shutter};
     use super::*;
 
     fn sensor() -> Sensor {
         Sensor {
             quantum_efficiency: 0.34,
+            response: Response::Linear,
             electrons_per_dn: 20.0,
             full_well_e: 4000.0,
             overflow: Overflow { spill: 0.9 },
             read_noise_e: 30.0,
             dark_offset_dn: 10.0,
+            corner_offset_dn: 0.0,
             dark_current_e_per_s: 0.0,
             hot_pixel_share: 0.0,
             hot_pixel_e_per_s: 0.0,
@@ -185,6 +204,24 @@ mod tests {
         {
             assert_eq!(to_grey(level), grey, "{level}");
         }
+    }
+
+    #[test]
+    fn a_soft_response_is_linear_in_the_dark_and_ends_at_its_ceiling() {
+        let soft = Sensor {
+            response: Response::Soft { ceiling_dn: 200.0 },
+            full_well_e: 1e6,
+            read_noise_e: 0.0,
+            ..sensor()
+        };
+        let mut charge = Charge::new(64, 1);
+        [100.0, 4000.0, 1e5].iter().zip([5, 20, 40]).for_each(|(&e, u)| _ = charge.add(u, 0, e));
+        let mut row = [0; 64];
+        Readout::new(&soft).read_row(0, &Background::new(64, 1), &charge, 1, &mut row);
+        // 200 (1 - exp(-x / 200)) + 10 for x of 5, 200 and 5000 levels
+        assert_eq!([row[5], row[20], row[40]], [15, 136, 210]);
+        assert!((soft.electrons_at(136.424) / 4000.0 - 1.0).abs() < 1e-4);
+        assert!(soft.electrons_at(211.0).is_infinite());
     }
 
     #[test]

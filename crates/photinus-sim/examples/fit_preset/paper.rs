@@ -1,14 +1,12 @@
-//! Fits the paper's camera to the paper's numbers: figures 10 and 11 and equation (13).
+//! The paper's camera: figures 10 and 11 and equation (13).
 //!
-//! A global random search over five physical parameters, then random steps that shrink; the sixth, the light that passes
-//! lens and filter, follows in closed form from the last two-pixel spot at 6.62 m.
-
-#![allow(clippy::print_stdout, reason = "a program that reports")]
+//! Five physical parameters are searched; the sixth, the light that passes lens and filter, follows in closed form from the
+//! last two-pixel spot at 6.62 m.
 
 use photinus_sim::preset::{BLUEFOX_FIT, Fitted, bluefox};
 use photinus_sim::receding::RecedingLed;
-use rand_distr::{Distribution, StandardNormal, StandardUniform};
-use rand_pcg::Pcg64;
+
+use crate::search::{between, least};
 
 const LAST_TWO_PX_M: f64 = 6.62;
 #[allow(clippy::approx_constant, reason = "a distance, not a ratio")]
@@ -35,7 +33,6 @@ fn experiment(fitted: &Fitted) -> RecedingLed {
 
 /// Parameters from a point of the unit cube.
 fn fitted(x: &[f64; 5]) -> Fitted {
-    let between = |x: f64, low: f64, high: f64| low * libm::pow(high / low, x);
     Fitted {
         core_px: between(x[0], 0.1, 0.6),
         skirt_share: between(x[1], 0.01, 0.7),
@@ -67,37 +64,10 @@ fn cost(fitted: &Fitted) -> f64 {
     sum
 }
 
-fn main() {
-    let mut random = Pcg64::new(13, 314_662);
-    let mut uniform = move || -> f64 { StandardUniform.sample(&mut random) };
-    let mut pool: Vec<(f64, [f64; 5])> = (0..1500)
-        .map(|_| {
-            let x = std::array::from_fn(|_| uniform());
-            (cost(&with_light(fitted(&x))), x)
-        })
-        .collect();
-    pool.sort_by(|a, b| a.0.total_cmp(&b.0));
-    pool.truncate(6);
-    let mut random = Pcg64::new(13, 2);
-    for (best, at) in &mut pool {
-        let mut step = 0.15;
-        for _ in 0..300 {
-            let x = at.map(|x| {
-                let normal: f64 = StandardNormal.sample(&mut random);
-                (x + step * normal).clamp(0.0, 1.0)
-            });
-            let cost = cost(&with_light(fitted(&x)));
-            if cost < *best {
-                (*best, *at) = (cost, x);
-            } else {
-                step *= 0.98;
-            }
-        }
-        println!("{best:.4} {:?}", with_light(fitted(at)));
-    }
-    pool.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let found = with_light(fitted(&pool[0].1));
-    println!("{found:#?}");
+/// Searches, and prints what was found and what the preset as it stands gives.
+pub(crate) fn fit() {
+    let (cost, x) = least(|x| cost(&with_light(fitted(x))));
+    println!("the paper's camera, found with a cost of {cost:.3}: {:#?}", with_light(fitted(&x)));
     println!("\nthe preset as it stands, {BLUEFOX_FIT:?}:\n");
     report(&experiment(&BLUEFOX_FIT));
 }

@@ -3,6 +3,7 @@
 //! ```text
 //! input -> run: detect or locate, frame by frame -> output (JSON lines, CSV, overlay, lines to read) -> summary
 //! info, convert: what a file holds, and the same in another format
+//! simulate: a scene -> frames with truth
 //! evaluate: results against the truth of a dataset
 //! ```
 
@@ -20,6 +21,7 @@ mod locate;
 mod output;
 mod overlay;
 mod run;
+mod simulate;
 mod spot_options;
 mod summary;
 mod terminal;
@@ -43,6 +45,7 @@ Examples:
   photinus info camera.txt                     what a file holds, whether it is in order
   photinus detect photo.png --overlay seen     the spots of a photo, and a picture of them
   photinus locate recording --out results.jsonl --overlay seen
+  photinus simulate scene.toml --out recording frames with truth, where there is no recording
   photinus evaluate recording results.jsonl    how well that went, where the truth is known
 
 Every command explains itself: photinus locate --help
@@ -55,6 +58,7 @@ enum Command {
     Detect(detect::Args),
     Info(info::Args),
     Convert(convert::Args),
+    Simulate(simulate::Args),
     Evaluate(evaluate::Args),
 }
 
@@ -63,6 +67,7 @@ fn main() -> ExitCode {
     let quiet = match &command {
         Command::Locate(args) => args.quiet(),
         Command::Detect(args) => args.quiet(),
+        Command::Simulate(args) => args.quiet(),
         Command::Evaluate(args) => args.quiet(),
         Command::Info(_) | Command::Convert(_) => false,
     };
@@ -72,6 +77,7 @@ fn main() -> ExitCode {
         Command::Detect(args) => detect::run(&args, &mut terminal),
         Command::Info(args) => info::run(&args, &terminal),
         Command::Convert(args) => convert::run(&args, &mut terminal),
+        Command::Simulate(args) => simulate::run(&args, &mut terminal),
         Command::Evaluate(args) => evaluate::run(&args, &terminal),
     };
     let Err(failure) = done else { return ExitCode::SUCCESS };

@@ -21,7 +21,7 @@ pub mod results;
 #[cfg(test)]
 mod scratch;
 pub mod spot_curve;
-mod table;
+pub mod table;
 pub mod video;
 mod whole;
 

@@ -7,8 +7,11 @@ use serde::de::DeserializeOwned;
 use crate::error::in_plain_words;
 use crate::{Error, Place, Result};
 
-/// Reads TOML into `T`, which lists the keys it knows and refuses others.
-pub(crate) fn parse<T: DeserializeOwned>(text: &str, path: &Path) -> Result<T> {
+/// Reads TOML into `T`, which lists the keys it knows and refuses others; `path` is for the messages.
+///
+/// # Errors
+/// [`Error`] with the line for what is no TOML, for unknown and missing keys, and for values of another kind.
+pub fn parse<T: DeserializeOwned>(text: &str, path: &Path) -> Result<T> {
     toml::from_str(text).map_err(|error| {
         let reason = in_plain_words(error.message());
         let advice = if reason.starts_with("unknown key") {

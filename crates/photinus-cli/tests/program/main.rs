@@ -10,4 +10,5 @@ mod bad_input;
 mod commands;
 mod evaluate;
 mod real_photos;
+mod simulate;
 mod stage;

@@ -1,0 +1,52 @@
+//! Numbers of a scene: each is what it must be, or its key is named.
+
+use std::path::Path;
+
+use nalgebra::Vector3;
+use photinus_io::{Error, Place, Result};
+
+/// Farthest place in a scene, m.
+const FARTHEST_M: f64 = 1e5;
+
+/// Checks the numbers of one file.
+pub(super) struct Check<'a> {
+    pub(super) path: &'a Path,
+}
+
+impl Check<'_> {
+    /// The error of a key.
+    pub(super) fn refuse(&self, key: &str, reason: impl Into<String>) -> Error {
+        Error::format(self.path, reason).at(Place::Key(key.to_owned()))
+    }
+
+    /// A number between two others.
+    pub(super) fn within(&self, key: &str, value: f64, (least, most): (f64, f64)) -> Result<f64> {
+        if (least..=most).contains(&value) {
+            return Ok(value);
+        }
+        Err(self.refuse(key, format!("{value} is out of range")).advise(format!("give {least} to {most}")))
+    }
+
+    /// A number above 0.
+    pub(super) fn positive(&self, key: &str, value: f64, most: f64) -> Result<f64> {
+        if value > 0.0 && value <= most {
+            return Ok(value);
+        }
+        Err(self
+            .refuse(key, format!("{value} is not a positive number"))
+            .advise(format!("give up to {most}")))
+    }
+
+    /// A place.
+    pub(super) fn place(&self, key: &str, place_m: [f64; 3]) -> Result<Vector3<f64>> {
+        for value in place_m {
+            self.within(key, value, (-FARTHEST_M, FARTHEST_M))?;
+        }
+        Ok(Vector3::from(place_m))
+    }
+
+    /// An angle, rad from deg.
+    pub(super) fn angle(&self, key: &str, value_deg: f64) -> Result<f64> {
+        self.within(key, value_deg, (-360.0, 360.0)).map(f64::to_radians)
+    }
+}

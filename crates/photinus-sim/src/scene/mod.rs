@@ -1,0 +1,86 @@
+//! Scenes: what a TOML file says, checked and with its files read.
+//!
+//! Paths in a scene are relative to the scene's folder. Unknown keys are refused; every refusal names file, key and
+//! reason. The keys are described in docs/scenes.md.
+
+mod check;
+mod read;
+mod table;
+#[cfg(test)]
+mod tests;
+
+use nalgebra::Isometry3;
+use photinus::airframe::Airframe;
+use photinus::camera::Camera;
+use photinus_io::blink::BlinkCodes;
+
+use crate::background::{Daylight, Water};
+use crate::motion::Motion;
+use crate::occlusion::Solid;
+use crate::preset::Preset;
+
+/// What is simulated.
+#[derive(Clone, Debug)]
+pub struct Scene {
+    /// What it is called.
+    pub name: String,
+    /// Where random numbers start.
+    pub seed: u64,
+    /// Frames per second.
+    pub rate_hz: f64,
+    /// Number of frames.
+    pub frames: u64,
+    /// Exposure of a frame, us.
+    pub exposure_us: f64,
+    /// Lens, sensor and LEDs.
+    pub preset: Preset,
+    /// Light that does not come from markers.
+    pub daylight: Option<Daylight>,
+    /// A water surface below.
+    pub water: Option<Water>,
+    /// How the robot with the cameras moves.
+    pub observer: Motion,
+    /// Its cameras, at least one.
+    pub cameras: Vec<MountedCamera>,
+    /// Those that are looked at.
+    pub targets: Vec<Target>,
+}
+
+/// A camera and how it sits on the observer.
+#[derive(Clone, Debug)]
+pub struct MountedCamera {
+    /// What it is called.
+    pub name: String,
+    /// Its projection.
+    pub camera: Camera,
+    /// The pose body_from_camera.
+    pub body_from_camera: Isometry3<f64>,
+}
+
+/// A robot with markers.
+#[derive(Clone, Debug)]
+pub struct Target {
+    /// Its id in the truth.
+    pub id: u32,
+    /// Its LEDs.
+    pub airframe: Airframe,
+    /// What of it hides LEDs.
+    pub solids: Vec<Solid>,
+    /// How it moves.
+    pub motion: Motion,
+    /// How its LEDs blink; without, they shine.
+    pub blink: Option<BlinkPlan>,
+}
+
+/// Which code words a target sends, and when.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BlinkPlan {
+    /// The words.
+    pub codes: BlinkCodes,
+    /// Word of an LED whose signal is 0 or none; that of signal s is s words further.
+    pub first_word: usize,
+    /// Bits per second on the camera's clock.
+    pub rate_hz: f64,
+    /// How far into its word it is at time 0, s.
+    pub shift_s: f64,
+}

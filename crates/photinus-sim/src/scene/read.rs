@@ -1,0 +1,334 @@
+//! From the file as it stands to a scene.
+
+use std::path::{Path, PathBuf};
+
+use nalgebra::{Isometry3, Matrix3, Rotation3, Translation3, UnitQuaternion, Vector3};
+use photinus_io::airframe::read_airframe;
+use photinus_io::blink::read_blink_codes;
+use photinus_io::{Result, read_camera, table as toml_table};
+use toml::value::{Datetime, Offset};
+
+use super::check::Check;
+use super::table::{
+    BlinkTable, CameraTable, DaylightTable, MotionTable, PresetName, SceneTable, SkyName, SolidTable,
+    SpinTable, TargetTable,
+};
+use super::{BlinkPlan, MountedCamera, Scene, Target};
+use crate::background::{Daylight, Place, Sky, Water, sun_direction};
+use crate::motion::{Flight, Motion, Path as FlightPath, Recorded, Spin, Wander};
+use crate::occlusion::Solid;
+use crate::preset::{BLUEFOX_FIT, SMALL_FISHEYE_FIT, bluefox, small_fisheye};
+use crate::sensor::hash;
+
+/// Longest scene, s, and most frames of one.
+const LONGEST_S: f64 = 86_400.0;
+
+impl Scene {
+    /// Reads a scene file and the files it names.
+    ///
+    /// # Errors
+    /// [`photinus_io::Error`] with file, line or key and reason: see [`Scene::parse`]; and when a file cannot be read.
+    pub fn read(path: impl AsRef<Path>) -> Result<Self> {
+        let path = path.as_ref();
+        let text = std::fs::read_to_string(path).map_err(|error| photinus_io::Error::io(path, error))?;
+        Self::parse(&text, path)
+    }
+
+    /// Reads the text of a scene; the files it names are relative to the folder of `path`.
+    ///
+    /// # Errors
+    /// [`photinus_io::Error`] for unknown and missing keys, numbers that make no sense, an exposure longer than the time
+    /// between frames, a target that flies through a camera, and for any error in a file that is named.
+    pub fn parse(text: &str, path: impl AsRef<Path>) -> Result<Self> {
+        let path = path.as_ref();
+        let table: SceneTable = toml_table::parse(text, path)?;
+        let reader = Reader { check: Check { path }, seed: table.seed };
+        let scene = reader.scene(table)?;
+        reader.clear_of_cameras(&scene)?;
+        Ok(scene)
+    }
+}
+
+impl Scene {
+    /// The same scene with other random numbers: noise, wind, units of LEDs.
+    pub fn set_seed(&mut self, seed: u64) {
+        self.seed = seed;
+        let robots = self.targets.iter_mut().map(|target| (u64::from(target.id), &mut target.motion));
+        for (salt, motion) in robots.chain([(OBSERVER, &mut self.observer)]) {
+            if let Motion::Flown(flight) = motion {
+                flight.wander = flight.wander.with_seed(wind_seed(seed, salt));
+            }
+        }
+    }
+}
+
+/// What tells the observer's wind from that of target number n, which is n.
+const OBSERVER: u64 = u64::MAX;
+
+fn wind_seed(seed: u64, robot: u64) -> u64 {
+    hash(seed ^ hash(robot))
+}
+
+struct Reader<'a> {
+    check: Check<'a>,
+    seed: u64,
+}
+
+impl Reader<'_> {
+    fn scene(&self, table: SceneTable) -> Result<Scene> {
+        let check = &self.check;
+        let rate_hz = check.positive("rate_hz", table.rate_hz, 1e4)?;
+        let duration_s = check.positive("duration_s", table.duration_s, LONGEST_S)?;
+        let exposure_us = check.positive("exposure_us", table.exposure_us, 1e7)?;
+        if exposure_us > 1e6 / rate_hz {
+            let reason = format!("an exposure of {exposure_us} us is longer than {:.1} us", 1e6 / rate_hz);
+            return Err(check
+                .refuse("exposure_us", reason)
+                .advise("that is the time between frames at rate_hz"));
+        }
+        for (key, count) in [("camera", table.camera.len()), ("target", table.target.len())] {
+            if count == 0 {
+                return Err(check.refuse(key, "there is none").advise(format!("add a [[{key}]]")));
+            }
+        }
+        let observer = table.observer;
+        let observer = self.motion(
+            "observer",
+            observer.motion,
+            (observer.wind_m_s, observer.heading_deg, observer.spin),
+            OBSERVER,
+        )?;
+        let cameras = table.camera.into_iter().enumerate().map(|(i, camera)| self.camera(i, camera));
+        let targets = table.target.into_iter().enumerate().map(|(i, target)| self.target(i, target));
+        Ok(Scene {
+            name: table.name,
+            seed: table.seed,
+            rate_hz,
+            frames: (duration_s * rate_hz).round().max(1.0) as u64,
+            exposure_us,
+            preset: match table.preset {
+                PresetName::Bluefox => bluefox(&BLUEFOX_FIT),
+                PresetName::SmallFisheye => small_fisheye(&SMALL_FISHEYE_FIT),
+            },
+            daylight: table.daylight.map(|daylight| self.daylight(&daylight)).transpose()?,
+            water: table
+                .water
+                .map(|water| -> Result<Water> {
+                    let level_m = check.within("water.level_m", water.level_m, (-1e5, 1e5))?;
+                    let wind_m_s = check.within("water.wind_m_s", water.wind_m_s, (0.0, 40.0))?;
+                    Ok(Water { level_m, wind_m_s })
+                })
+                .transpose()?,
+            observer,
+            cameras: cameras.collect::<Result<_>>()?,
+            targets: targets.collect::<Result<_>>()?,
+        })
+    }
+
+    /// A file that the scene names.
+    fn named(&self, key: &str, file: &Path) -> Result<PathBuf> {
+        if file.as_os_str().is_empty() {
+            return Err(self.check.refuse(key, "the path is empty").advise("name a file"));
+        }
+        let path = self.check.path.parent().map_or_else(|| file.to_owned(), |folder| folder.join(file));
+        if path.is_file() {
+            return Ok(path);
+        }
+        let reason = format!("there is no file {}", path.display());
+        Err(self.check.refuse(key, reason).advise("paths are taken from the scene's folder"))
+    }
+
+    fn daylight(&self, table: &DaylightTable) -> Result<Daylight> {
+        let check = &self.check;
+        let place = Place {
+            latitude_deg: check.within("daylight.latitude_deg", table.latitude_deg, (-90.0, 90.0))?,
+            longitude_deg: check.within("daylight.longitude_deg", table.longitude_deg, (-180.0, 180.0))?,
+            height_m: check.within("daylight.height_m", table.height_m, (-500.0, 9000.0))?,
+        };
+        let Datetime { date: Some(date), time: Some(time), offset: Some(Offset::Z) } = table.time else {
+            return Err(check
+                .refuse("daylight.time", format!("{} is no date and time in UTC", table.time))
+                .advise("write it as 2018-05-10T10:00:00Z"));
+        };
+        let [year, month, day] = [u32::from(date.year), u32::from(date.month), u32::from(date.day)];
+        let second = f64::from(time.second.unwrap_or(0)) + f64::from(time.nanosecond.unwrap_or(0)) * 1e-9;
+        let hour = [u32::from(time.hour), u32::from(time.minute)];
+        let sun = sun_direction(&place, [year, month, day], hour, second)
+            .ok_or_else(|| check.refuse("daylight.time", "the sun's place is not known for it"))?;
+        let sky = match table.sky {
+            SkyName::Clear => Sky::Clear,
+            SkyName::Overcast => Sky::Overcast,
+        };
+        Ok(Daylight::new(sky, sun))
+    }
+
+    fn camera(&self, index: usize, table: CameraTable) -> Result<MountedCamera> {
+        let key = |name: &str| format!("camera[{index}].{name}");
+        let plain = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
+        if table.name.is_empty() || !table.name.chars().all(plain) {
+            let reason = format!("`{}` cannot name a folder", table.name);
+            return Err(self.check.refuse(&key("name"), reason).advise("use letters, digits, - and _"));
+        }
+        let camera = read_camera(&self.named(&key("file"), &table.file)?)?.camera;
+        let position_m = self.check.place(&key("position_m"), table.position_m)?;
+        let yaw_rad = self.check.angle(&key("yaw_deg"), table.yaw_deg)?;
+        let pitch_rad = self.check.angle(&key("pitch_deg"), table.pitch_deg)?;
+        let roll_rad = self.check.angle(&key("roll_deg"), table.roll_deg)?;
+        Ok(MountedCamera {
+            name: table.name,
+            camera,
+            body_from_camera: Isometry3::from_parts(
+                Translation3::from(position_m),
+                mounting(yaw_rad, pitch_rad, roll_rad),
+            ),
+        })
+    }
+
+    fn target(&self, index: usize, table: TargetTable) -> Result<Target> {
+        let key = |name: &str| format!("target[{index}].{name}");
+        let airframe = read_airframe(self.named(&key("airframe"), &table.airframe)?)?.airframe;
+        let how = (table.wind_m_s, table.heading_deg, table.spin);
+        let motion = self.motion(&format!("target[{index}]"), table.motion, how, u64::from(table.id))?;
+        let solids = table.solid.into_iter().enumerate();
+        let solids = solids.map(|(i, solid)| self.solid(&format!("target[{index}].solid[{i}]"), solid));
+        let blink = table.blink.map(|blink| self.blink(&key("blink"), blink, &airframe)).transpose()?;
+        Ok(Target { id: table.id, solids: solids.collect::<Result<_>>()?, motion, blink, airframe })
+    }
+
+    fn blink(
+        &self,
+        key: &str,
+        table: BlinkTable,
+        airframe: &photinus::airframe::Airframe,
+    ) -> Result<BlinkPlan> {
+        let codes = read_blink_codes(self.named(&format!("{key}.codes"), &table.codes)?)?;
+        let last = airframe.leds().iter().filter_map(|led| led.signal).max().unwrap_or(0) as usize;
+        if table.first_word.saturating_add(last) >= codes.words().len() {
+            let reason =
+                format!("word {} of {} words", table.first_word.saturating_add(last), codes.words().len());
+            return Err(self
+                .check
+                .refuse(&format!("{key}.first_word"), reason)
+                .advise("an LED of signal s sends word first_word + s, counted from 0"));
+        }
+        Ok(BlinkPlan {
+            codes,
+            first_word: table.first_word,
+            rate_hz: self.check.positive(&format!("{key}.rate_hz"), table.rate_hz, 1e5)?,
+            shift_s: self.check.within(&format!("{key}.shift_s"), table.shift_s, (-1e3, 1e3))?,
+        })
+    }
+
+    fn solid(&self, key: &str, table: SolidTable) -> Result<Solid> {
+        let check = &self.check;
+        Ok(match table {
+            SolidTable::Sphere { centre_m, radius_m } => Solid::Sphere {
+                centre_m: check.place(&format!("{key}.sphere.centre_m"), centre_m)?,
+                radius_m: check.positive(&format!("{key}.sphere.radius_m"), radius_m, 100.0)?,
+            },
+            SolidTable::Cylinder { centre_m, radius_m, half_height_m } => Solid::Cylinder {
+                centre_m: check.place(&format!("{key}.cylinder.centre_m"), centre_m)?,
+                radius_m: check.positive(&format!("{key}.cylinder.radius_m"), radius_m, 100.0)?,
+                half_height_m: check.positive(
+                    &format!("{key}.cylinder.half_height_m"),
+                    half_height_m,
+                    100.0,
+                )?,
+            },
+        })
+    }
+
+    fn motion(
+        &self,
+        owner: &str,
+        table: MotionTable,
+        (wind_m_s, heading_deg, spins): (f64, f64, Vec<SpinTable>),
+        salt: u64,
+    ) -> Result<Motion> {
+        let check = &self.check;
+        let key = |name: &str| format!("{owner}.motion.{name}");
+        let path = match table {
+            MotionTable::Hover { position_m } => {
+                FlightPath::Hover { position_m: check.place(&key("hover.position_m"), position_m)? }
+            }
+            MotionTable::Line { from_m, to_m, duration_s } => FlightPath::Line {
+                from_m: check.place(&key("line.from_m"), from_m)?,
+                to_m: check.place(&key("line.to_m"), to_m)?,
+                duration_s: check.positive(&key("line.duration_s"), duration_s, LONGEST_S)?,
+            },
+            MotionTable::Circle { centre_m, radius_m, speed_m_s, phase_deg } => FlightPath::Circle {
+                centre_m: check.place(&key("circle.centre_m"), centre_m)?,
+                radius_m: check.positive(&key("circle.radius_m"), radius_m, 1e4)?,
+                speed_m_s: check.within(&key("circle.speed_m_s"), speed_m_s, (-100.0, 100.0))?,
+                phase_rad: check.angle(&key("circle.phase_deg"), phase_deg)?,
+            },
+            MotionTable::FigureEight { centre_m, half_size_m, period_s } => FlightPath::FigureEight {
+                centre_m: check.place(&key("figure_eight.centre_m"), centre_m)?,
+                half_size_m: [
+                    check.positive(&key("figure_eight.half_size_m"), half_size_m[0], 1e4)?,
+                    check.positive(&key("figure_eight.half_size_m"), half_size_m[1], 1e4)?,
+                ],
+                period_s: check.positive(&key("figure_eight.period_s"), period_s, LONGEST_S)?,
+            },
+            MotionTable::Recorded { file } => {
+                let path = self.named(&key("recorded.file"), &file)?;
+                return Recorded::read(&path).map(Motion::Recorded);
+            }
+        };
+        let wind_m_s = check.within(&format!("{owner}.wind_m_s"), wind_m_s, (0.0, 40.0))?;
+        let wander = Wander::new(wind_m_s, wind_seed(self.seed, salt));
+        let heading_rad = check.angle(&format!("{owner}.heading_deg"), heading_deg)?;
+        let spin = |(i, spin): (usize, SpinTable)| -> Result<Spin> {
+            let key = |name: &str| format!("{owner}.spin[{i}].{name}");
+            Ok(Spin {
+                start_s: check.within(&key("start_s"), spin.start_s, (-LONGEST_S, LONGEST_S))?,
+                duration_s: check.positive(&key("duration_s"), spin.duration_s, LONGEST_S)?,
+                turns: check.within(&key("turns"), spin.turns, (-1e4, 1e4))?,
+            })
+        };
+        let spins = spins.into_iter().enumerate().map(spin).collect::<Result<_>>()?;
+        Ok(Motion::Flown(Flight { path, wander, heading_rad, spins }))
+    }
+
+    /// Refuses a target that a camera would be inside of, looked at every frame, or 2000 times in a long scene.
+    fn clear_of_cameras(&self, scene: &Scene) -> Result<()> {
+        let looks = scene.frames.min(2000);
+        for look in 0..looks {
+            let time_s = scene.frames as f64 / scene.rate_hz * look as f64 / looks as f64;
+            let observer = scene.observer.pose(time_s);
+            for (index, target) in scene.targets.iter().enumerate() {
+                let target_m = target.motion.pose(time_s).translation.vector;
+                for mounted in &scene.cameras {
+                    let camera_m = (observer * mounted.body_from_camera).translation.vector;
+                    let gap_m = (target_m - camera_m).norm();
+                    if gap_m <= target.airframe.max_radius_m() {
+                        let reason = format!(
+                            "at {time_s:.2} s camera {} is inside the target, {gap_m:.2} m from its centre",
+                            mounted.name
+                        );
+                        let advice = format!("keep more than {:.2} m apart", target.airframe.max_radius_m());
+                        return Err(self
+                            .check
+                            .refuse(&format!("target[{index}].motion"), reason)
+                            .advise(advice));
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// body_from_camera of a camera that looks along the body's x axis, then turned: yaw to the left, pitch down, roll
+/// clockwise about the view.
+fn mounting(yaw_rad: f64, pitch_rad: f64, roll_rad: f64) -> UnitQuaternion<f64> {
+    let level = Rotation3::from_matrix_unchecked(Matrix3::new(0.0, 0.0, 1.0, -1.0, 0.0, 0.0, 0.0, -1.0, 0.0));
+    let about = |axis: Vector3<f64>, angle_rad: f64| {
+        let (sin, cos) = libm::sincos(0.5 * angle_rad);
+        UnitQuaternion::new_unchecked(nalgebra::Quaternion::from_parts(cos, axis * sin))
+    };
+    about(Vector3::z(), yaw_rad)
+        * about(Vector3::y(), pitch_rad)
+        * about(Vector3::x(), roll_rad)
+        * UnitQuaternion::from_rotation_matrix(&level)
+}

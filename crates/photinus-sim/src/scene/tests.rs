@@ -1,0 +1,113 @@
+//! What is refused, and how.
+
+use std::path::{Path, PathBuf};
+
+use nalgebra::Vector3;
+
+use super::*;
+
+const SCENE: &str = r#"
+name = "test"
+preset = "bluefox-dsl215-bp365"
+rate_hz = 60.0
+duration_s = 2.0
+exposure_us = 1000.0
+[daylight]
+sky = "clear"
+latitude_deg = 50.0
+longitude_deg = 14.4
+time = 2018-05-10T10:00:00Z
+[observer]
+motion = { hover = { position_m = [0.0, 0.0, 3.0] } }
+[[camera]]
+name = "front"
+file = "cameras/bluefox-dsl215.toml"
+yaw_deg = 90.0
+[[target]]
+id = 1
+airframe = "airframes/hexarotor-0.4.toml"
+motion = { circle = { centre_m = [0.0, 8.0, 3.0], radius_m = 2.0, speed_m_s = 1.0, phase_deg = 270.0 } }
+solid = [{ cylinder = { centre_m = [0.0, 0.0, 0.0], radius_m = 0.1, half_height_m = 0.1 } }]
+"#;
+
+fn scenes() -> PathBuf {
+    Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes")).to_owned()
+}
+
+fn parse(text: &str) -> photinus_io::Result<Scene> {
+    Scene::parse(text, scenes().join("test.toml"))
+}
+
+#[test]
+fn a_scene_is_read_with_its_files() {
+    let scene = parse(SCENE).unwrap();
+    assert_eq!((scene.frames, scene.targets[0].airframe.leds().len()), (120, 6));
+    let ahead = scene.cameras[0].body_from_camera * Vector3::z();
+    assert!((ahead - Vector3::y()).norm() < 1e-12, "yaw of 90 deg looks to the left");
+    let down = scene.cameras[0].body_from_camera * Vector3::y();
+    assert!((down + Vector3::z()).norm() < 1e-12);
+    let elevation_deg = libm::asin(scene.daylight.unwrap().sun().unwrap().z).to_degrees();
+    assert!((50.0..60.0).contains(&elevation_deg), "a May forenoon in Prague: {elevation_deg}");
+}
+
+#[test]
+fn bad_scenes_are_refused_with_file_key_and_reason() {
+    for (from, to, message) in [
+        ("rate_hz = 60.0", "rate_hz = 60.0\nframes = 3", "line 5: unknown key `frames`"),
+        (
+            "radius_m = 2.0, s",
+            "radius_m = -2.0, s",
+            "`target[0].motion.circle.radius_m`: -2 is not a positive number",
+        ),
+        ("[0.0, 8.0, 3.0]", "[0.0, 2.3, 3.0]", "`target[0].motion`: at "),
+        (
+            "exposure_us = 1000.0",
+            "exposure_us = 17000.0",
+            "`exposure_us`: an exposure of 17000 us is longer than 16666.7 us",
+        ),
+        ("exposure_us = 1000.0", "exposure_us = nan", "`exposure_us`: NaN is not a positive number"),
+        (
+            "hover = { position_m = [0.0, 0.0, 3.0] }",
+            "recorded = { file = \"none.csv\" }",
+            "`observer.motion.recorded.file`: there is no file ",
+        ),
+        (
+            "position_m = [0.0, 0.0, 3.0]",
+            "position_m = [0.0, inf, 3.0]",
+            "`observer.motion.hover.position_m`: inf is out of range",
+        ),
+        ("airframes/hexarotor-0.4.toml", "airframes/none.toml", "`target[0].airframe`: there is no file "),
+        ("name = \"front\"", "name = \"../x\"", "`camera[0].name`: `../x` cannot name a folder"),
+        ("10:00:00Z", "10:00:00", "`daylight.time`: 2018-05-10T10:00:00 is no date and time in UTC"),
+        (
+            "latitude_deg = 50.0",
+            "latitude_deg = 95",
+            "`daylight.latitude_deg`: 95 is out of range; give -90 to 90",
+        ),
+        (
+            "half_height_m = 0.1",
+            "half_height_m = 0",
+            "`target[0].solid[0].cylinder.half_height_m`: 0 is not a positive",
+        ),
+        ("bluefox-dsl215-bp365", "other", "line 3: unknown variant `other`"),
+        ("yaw_deg = 90.0", "yaw_deg = 9000.0", "`camera[0].yaw_deg`: 9000 is out of range"),
+    ] {
+        let text = SCENE.replacen(from, to, 1);
+        assert_ne!(text, SCENE, "{from}");
+        let error = parse(&text).map(|_| ()).unwrap_err().to_string();
+        assert!(error.contains(&format!("test.toml, {message}")), "{error}\nnot {message}");
+    }
+}
+
+#[test]
+fn every_scene_of_the_library_is_read() {
+    let mut read = 0;
+    for entry in std::fs::read_dir(scenes()).unwrap() {
+        let path = entry.unwrap().path();
+        if path.extension().is_some_and(|end| end == "toml") {
+            Scene::read(&path).unwrap_or_else(|error| panic!("{error}"));
+            read += 1;
+        }
+    }
+    assert!(read >= 1);
+}

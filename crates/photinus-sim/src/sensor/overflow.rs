@@ -1,0 +1,131 @@
+//! Charge above the full well spills into the four neighbours; part of it is drained.
+//!
+//! A pixel above its well gives all the excess away: `spill` of it in equal parts to the neighbours, the rest to the
+//! anti-blooming drain, and so on until none is above. Without a drain this is the divisible sandpile, whose limit shape is
+//! a disc (L. Levine, Y. Peres, Potential Analysis 30, 2009), so that the area of an overflown spot grows with its energy,
+//! as the paper's (13) does.
+
+use super::Charge;
+
+/// What becomes of charge above the full well.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Overflow {
+    /// Share of a pixel's excess that reaches its neighbours; the rest is drained. Below 1.
+    pub spill: f64,
+}
+
+/// Where charge went.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Overflown {
+    /// Electrons that were drained.
+    pub drained_e: f64,
+    /// Electrons that left the image.
+    pub lost_e: f64,
+}
+
+impl Overflow {
+    /// Excess below this share of the full well stays: it changes no grey level.
+    const TOLERANCE: f32 = 1e-3;
+
+    /// Lets charge overflow until no pixel holds more than `full_well_e`.
+    pub fn settle(&self, charge: &mut Charge, full_well_e: f64) -> Overflown {
+        let well = full_well_e as f32;
+        let limit = well * (1.0 + Self::TOLERANCE);
+        let mut full: Vec<(usize, usize)> = Vec::new();
+        for v in 0..charge.height() {
+            let Some((first, pixels)) = charge.touched_row_mut(v) else { continue };
+            full.extend(pixels.iter().enumerate().filter(|(_, e)| **e > limit).map(|(i, _)| (first + i, v)));
+        }
+        let mut gone = Overflown::default();
+        let mut next = Vec::new();
+        while !full.is_empty() {
+            for &(u, v) in &full {
+                self.topple(charge, (u, v), (well, limit), &mut next, &mut gone);
+            }
+            full.clear();
+            std::mem::swap(&mut full, &mut next);
+        }
+        gone
+    }
+
+    fn topple(
+        &self,
+        charge: &mut Charge,
+        (u, v): (usize, usize),
+        (well, limit): (f32, f32),
+        next: &mut Vec<(usize, usize)>,
+        gone: &mut Overflown,
+    ) {
+        let excess = charge.at(u, v) - well;
+        if excess <= well * Self::TOLERANCE {
+            return; // listed twice, and toppled already
+        }
+        charge.add(u, v, -excess);
+        let part = excess * self.spill as f32 * 0.25;
+        gone.drained_e += f64::from(excess - 4.0 * part);
+        let (left, up) = (u.checked_sub(1), v.checked_sub(1));
+        let (right, down) =
+            (Some(u + 1).filter(|u| *u < charge.width()), Some(v + 1).filter(|v| *v < charge.height()));
+        for place in [left.map(|u| (u, v)), right.map(|u| (u, v)), up.map(|v| (u, v)), down.map(|v| (u, v))] {
+            match place {
+                None => gone.lost_e += f64::from(part),
+                Some((u, v)) => {
+                    let before = charge.at(u, v);
+                    if charge.add(u, v, part) > limit && before <= limit {
+                        next.push((u, v));
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn settle(spill: f64, electrons: f32, at: (usize, usize)) -> (Charge, Overflown) {
+        let mut charge = Charge::new(41, 41);
+        charge.add(at.0, at.1, electrons);
+        let gone = Overflow { spill }.settle(&mut charge, 1000.0);
+        (charge, gone)
+    }
+
+    #[test]
+    fn charge_is_conserved_but_for_what_is_drained_or_leaves_the_image() {
+        for (spill, electrons, at) in
+            [(0.9, 20_000.0, (20, 20)), (0.999, 60_000.0, (20, 20)), (0.99, 60_000.0, (0, 3))]
+        {
+            let (charge, gone) = settle(spill, electrons, at);
+            let sum = charge.total() + gone.drained_e + gone.lost_e;
+            assert!((sum / f64::from(electrons) - 1.0).abs() < 1e-4, "{sum} {gone:?}");
+            assert!(gone.drained_e > 0.0);
+            assert_eq!(gone.lost_e > 0.0, at == (0, 3));
+            let brightest = (0..41).flat_map(|v| charge.row(v).to_vec()).fold(0.0, f32::max);
+            assert!(brightest <= 1001.1, "{brightest}");
+        }
+    }
+
+    #[test]
+    fn one_overflow_gives_each_neighbour_a_quarter() {
+        let (charge, gone) = settle(0.8, 2000.0, (20, 20));
+        for (u, v) in [(19, 20), (21, 20), (20, 19), (20, 21)] {
+            assert!((charge.at(u, v) - 200.0).abs() < 0.01);
+        }
+        assert!((gone.drained_e - 200.0).abs() < 0.01);
+    }
+
+    #[test]
+    fn nearly_undrained_charge_fills_a_disc_whose_area_is_its_energy() {
+        let (charge, _) = settle(0.9999, 200_000.0, (20, 20));
+        let mut full = Vec::new();
+        for v in 0..41 {
+            full.extend(
+                (0..41).filter(|&u| charge.at(u, v) > 900.0).map(|u| (u as f64 - 20.0, v as f64 - 20.0)),
+            );
+        }
+        assert!((170..=200).contains(&full.len()), "{}", full.len());
+        let farthest = full.iter().map(|(x, y)| libm::hypot(*x, *y)).fold(0.0, f64::max);
+        assert!(farthest < 9.0, "a disc of 200 px has a radius of 8: {farthest}");
+    }
+}

@@ -20,7 +20,7 @@ doc:
 
 # Times beside floors measured in the same run.
 bench:
-    cargo bench -p photinus
+    cargo bench -p photinus -p photinus-sim
 
 # A minute of fuzzing for one target, e.g. `just fuzz spots`; needs cargo-fuzz and a nightly toolchain.
 fuzz target:

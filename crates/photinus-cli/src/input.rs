@@ -122,7 +122,7 @@ impl Input {
 }
 
 impl Entry {
-    fn from_frame(frame: Frame) -> Self {
+    pub(crate) fn from_frame(frame: Frame) -> Self {
         let record = FrameRecord {
             frame: Some(frame.index),
             time_s: frame.time_s,

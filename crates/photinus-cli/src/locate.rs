@@ -145,7 +145,15 @@ pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> std::result::Result<(
 }
 
 /// Completes the record of a frame.
-fn fill(entry: &mut Entry, locator: &mut Locator, airframe: &str, clock: &mut Clock) -> Result<()> {
+///
+/// # Errors
+/// [`Error`] when the frame is not of the camera's size.
+pub(crate) fn fill(
+    entry: &mut Entry,
+    locator: &mut Locator,
+    airframe: &str,
+    clock: &mut Clock,
+) -> Result<()> {
     let gravity = entry.gravity.as_ref();
     let finished = &mut |stage| clock.lap(name(stage));
     let located = match &entry.image {

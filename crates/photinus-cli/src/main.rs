@@ -5,12 +5,14 @@
 //! info, convert: what a file holds, and the same in another format
 //! simulate: a scene -> frames with truth
 //! evaluate: results against the truth of a dataset
+//! demo: all of it on a flight that the program carries along
 //! ```
 
 mod aligned;
 mod beforehand;
 mod clock;
 mod convert;
+mod demo;
 mod detect;
 mod evaluate;
 mod failure;
@@ -42,6 +44,7 @@ struct Program {
 
 const EXAMPLES: &str = "\
 Examples:
+  photinus demo                                see it work: two robots fly, a page shows what was found
   photinus info camera.txt                     what a file holds, whether it is in order
   photinus detect photo.png --overlay seen     the spots of a photo, and a picture of them
   photinus locate recording --out results.jsonl --overlay seen
@@ -60,6 +63,7 @@ enum Command {
     Convert(convert::Args),
     Simulate(simulate::Args),
     Evaluate(evaluate::Args),
+    Demo(demo::Args),
 }
 
 fn main() -> ExitCode {
@@ -69,7 +73,7 @@ fn main() -> ExitCode {
         Command::Detect(args) => args.quiet(),
         Command::Simulate(args) => args.quiet(),
         Command::Evaluate(args) => args.quiet(),
-        Command::Info(_) | Command::Convert(_) => false,
+        Command::Info(_) | Command::Convert(_) | Command::Demo(_) => false,
     };
     let mut terminal = Terminal::new(quiet);
     let done = match command {
@@ -79,6 +83,7 @@ fn main() -> ExitCode {
         Command::Convert(args) => convert::run(&args, &mut terminal),
         Command::Simulate(args) => simulate::run(&args, &mut terminal),
         Command::Evaluate(args) => evaluate::run(&args, &terminal),
+        Command::Demo(args) => demo::run(&args, &mut terminal),
     };
     let Err(failure) = done else { return ExitCode::SUCCESS };
     if let Some(message) = failure.message() {

@@ -5,6 +5,7 @@ use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use photinus_io::Error;
+use photinus_io::dataset::TruthFrame;
 use photinus_io::video::Y4mWriter;
 use photinus_sim::{Rendered, Scene, Simulator, dataset};
 
@@ -158,11 +159,7 @@ impl Sink {
         match self {
             Self::Dataset(writer) => dataset::add(writer, rendered),
             Self::Video(writer) => writer.write(&rendered.image.view()),
-            Self::Truth(file) => {
-                let line = serde_json::to_string(&rendered.truth)
-                    .map_err(|error| Error::format(path, error.to_string()))?;
-                writeln!(file, "{line}").map_err(|error| Error::io(path, error))
-            }
+            Self::Truth(file) => write_truth(file, &rendered.truth, path),
         }
     }
 
@@ -173,4 +170,13 @@ impl Sink {
             Self::Truth(mut file) => file.flush().map_err(|error| Error::io(path, error)),
         }
     }
+}
+
+/// Writes a line of truth; `path` is for the messages.
+///
+/// # Errors
+/// [`Error`] when the file cannot be written.
+pub(crate) fn write_truth(file: &mut impl Write, truth: &TruthFrame, path: &Path) -> photinus_io::Result<()> {
+    let line = serde_json::to_string(truth).map_err(|error| Error::format(path, error.to_string()))?;
+    writeln!(file, "{line}").map_err(|error| Error::io(path, error))
 }

@@ -19,7 +19,7 @@ use serde::Serialize;
 use crate::failure::Failure;
 use crate::output::{create, refuse_to_replace};
 use crate::terminal::Terminal;
-use plots::PlotFolder;
+pub(crate) use plots::PlotFolder;
 
 const EXAMPLES: &str = "\
 Examples:

@@ -67,7 +67,7 @@ impl Overlay {
         frame: Option<FrameView<'_>>,
         gravity: Option<&Unit<Vector3<f64>>>,
     ) -> Result<()> {
-        let path = self.folder.join(format!("overlay-{:06}.png", record.frame.unwrap_or_default()));
+        let path = self.folder.join(file_name(record.frame.unwrap_or_default()));
         let layout = Layout::new(self.size(record, frame), self.camera.is_some());
         let mut canvas = Canvas::new(layout.width, layout.height, colours::PAPER, &self.font)
             .ok_or_else(|| Error::format(&path, "no memory for a picture of this size"))?;
@@ -97,6 +97,11 @@ impl Overlay {
         let side = |px: usize| u32::try_from(px).unwrap_or(u32::MAX).min(FrameView::MAX_SIDE_PX as u32);
         (side(width), side(height))
     }
+}
+
+/// What the picture of a frame is called.
+pub(crate) fn file_name(frame: u64) -> String {
+    format!("overlay-{frame:06}.png")
 }
 
 /// Where everything stands.

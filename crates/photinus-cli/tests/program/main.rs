@@ -8,6 +8,7 @@
 
 mod bad_input;
 mod commands;
+mod demo;
 mod evaluate;
 mod real_photos;
 mod simulate;

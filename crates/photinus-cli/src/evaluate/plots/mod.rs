@@ -29,14 +29,14 @@ struct Figure {
 }
 
 /// A folder of figures.
-pub(super) struct PlotFolder(PathBuf);
+pub(crate) struct PlotFolder(PathBuf);
 
 impl PlotFolder {
     /// Makes the folder.
     ///
     /// # Errors
     /// [`Error`] when it cannot be made.
-    pub(super) fn create(folder: &Path) -> Result<Self> {
+    pub(crate) fn create(folder: &Path) -> Result<Self> {
         std::fs::create_dir_all(folder).map_err(|error| {
             Error::io(folder, error).advise("name a folder that can be made and written to")
         })?;
@@ -47,7 +47,7 @@ impl PlotFolder {
     ///
     /// # Errors
     /// [`Error`] when a figure cannot be drawn or written.
-    pub(super) fn draw(&self, evaluation: &Evaluation<'_>, truth: &[TruthFrame]) -> Result<()> {
+    pub(crate) fn draw(&self, evaluation: &Evaluation<'_>, truth: &[TruthFrame]) -> Result<()> {
         let neighbours: BTreeSet<u32> =
             truth.iter().flat_map(|frame| &frame.neighbours).map(|neighbour| neighbour.id).collect();
         let over_time = neighbours.into_iter().filter_map(|id| over_time::distance(id, evaluation, truth));

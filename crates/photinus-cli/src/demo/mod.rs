@@ -1,0 +1,150 @@
+//! `photinus demo`: what a newcomer runs first. Nothing enters but a flight that the program carries along; it is
+//! simulated, located and evaluated as recordings are, and a folder to look at leaves.
+//!
+//! ```text
+//! carried  the scene and the files it names
+//! pace     which frames are drawn
+//! page     pictures and figure on a page that a browser plays
+//! told     what came out, in lines to read
+//! ```
+
+mod carried;
+mod pace;
+mod page;
+mod told;
+
+use std::fs::File;
+use std::io::{BufWriter, Write};
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use photinus::locator::{Locator, Settings};
+use photinus_evaluate::evaluate;
+use photinus_io::dataset::TruthFrame;
+use photinus_io::frames::Frame;
+use photinus_io::results::{FrameRecord, ResultsWriter};
+use photinus_io::{Error, Result};
+use photinus_sim::{Rendered, Scene, Simulator};
+
+use crate::clock::Clock;
+use crate::evaluate::PlotFolder;
+use crate::failure::Failure;
+use crate::input::Entry;
+use crate::locate;
+use crate::output::create;
+use crate::overlay::Overlay;
+use crate::simulate::write_truth;
+use crate::terminal::Terminal;
+use pace::Pace;
+
+const PICTURES: &str = "pictures";
+const FIGURES: &str = "figures";
+
+/// See it work: simulate the flight of two robots, locate, evaluate, and leave a page to look at
+#[derive(Debug, clap::Args)]
+pub(crate) struct Args {
+    /// Where to write: a new folder
+    #[arg(long, value_name = "DIR", default_value = "photinus-demo")]
+    out: PathBuf,
+    /// Seconds of the flight, from its start
+    #[arg(long, value_name = "S", hide = true)]
+    seconds: Option<u32>,
+}
+
+/// What was there and what was found, frame by frame.
+#[derive(Default)]
+struct Flown {
+    truth: Vec<TruthFrame>,
+    records: Vec<FrameRecord>,
+    /// Numbers of the frames that were drawn.
+    drawn: Vec<u64>,
+}
+
+/// Runs the command.
+pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> std::result::Result<(), Failure> {
+    let started = Instant::now();
+    refuse_to_mix(&args.out)?;
+    let mut scene = carried::unpack(&args.out.join("scene")).map_err(Failure::input)?;
+    if let Some(seconds) = args.seconds {
+        scene.frames = scene.frames.min((f64::from(seconds) * scene.rate_hz) as u64);
+    }
+    let flown = fly(&scene, &args.out, terminal)?;
+    let settings =
+        photinus_evaluate::Settings { time_tolerance_s: 0.5 / scene.rate_hz, ..Default::default() };
+    let evaluation = evaluate(&flown.truth, &flown.records, &settings)
+        .map_err(|error| Failure::Running(error.to_string()))?;
+    let figures = PlotFolder::create(&args.out.join(FIGURES)).map_err(Failure::running)?;
+    figures.draw(&evaluation, &flown.truth).map_err(Failure::running)?;
+    let told = told::lines(&scene, &flown.truth, &evaluation.scores);
+    page::write(&args.out, &scene, &flown.drawn, &told).map_err(Failure::running)?;
+    let out = args.out.display();
+    terminal.result(told)?;
+    terminal.result(format_args!(
+        "Done in {:.0} s. Open {out}/index.html in a browser: the flight as it was seen, and the distance over time.\n\
+         {out}/{FIGURES} holds that figure and others, PNG and SVG; results.jsonl and truth.jsonl every number.",
+        started.elapsed().as_secs_f64()
+    ))
+}
+
+/// Files of somebody else, or of another run, are left alone.
+fn refuse_to_mix(folder: &Path) -> std::result::Result<(), Failure> {
+    let is_empty = |mut entries: std::fs::ReadDir| entries.next().is_none();
+    match folder.exists() && !std::fs::read_dir(folder).is_ok_and(is_empty) {
+        false => Ok(()),
+        true => Err(Failure::Input(format!(
+            "{}: it is there already; remove it, or name another folder with --out",
+            folder.display()
+        ))),
+    }
+}
+
+/// Renders and locates every frame, writes truth and results, and draws a choice of frames.
+fn fly(scene: &Scene, out: &Path, terminal: &mut Terminal) -> std::result::Result<Flown, Failure> {
+    let no_target = || Failure::Running("the scene has no camera or no target".to_owned());
+    let simulator = Simulator::new(scene, 0).ok_or_else(no_target)?;
+    let airframe = &scene.targets.first().ok_or_else(no_target)?.airframe;
+    let camera = scene.cameras[0].camera.clone();
+    let overlay = Overlay::create(&out.join(PICTURES), Some(camera.clone())).map_err(Failure::input)?;
+    let mut locator = Locator::new(camera, airframe, None, Settings::default())
+        .map_err(|error| Failure::Running(error.to_string()))?;
+    let (truth_path, results_path) = (out.join("truth.jsonl"), out.join("results.jsonl"));
+    let mut truth_file = BufWriter::new(create(&truth_path)?);
+    let mut results: ResultsWriter<File> = ResultsWriter::new(create(&results_path)?, &results_path);
+
+    let (mut flown, mut pace, mut clock) = (Flown::default(), Pace::of(scene), Clock::new());
+    terminal.start(Some(scene.frames));
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    let take = |rendered: Rendered| -> Result<()> {
+        let (truth, mut entry) = apart(rendered);
+        locate::fill(&mut entry, &mut locator, airframe.name(), &mut clock)?;
+        write_truth(&mut truth_file, &truth, &truth_path)?;
+        results.write(&entry.record)?;
+        if pace.is_due(truth.time_s) {
+            let image = entry.image.as_ref().map(|image| image.view());
+            overlay.draw(&entry.record, image, entry.gravity.as_ref())?;
+            flown.drawn.push(truth.frame);
+        }
+        flown.truth.push(truth);
+        flown.records.push(entry.record);
+        terminal.frame_done();
+        Ok(())
+    };
+    simulator.render(0..scene.frames, threads, take).map_err(Failure::running)?;
+    truth_file.flush().map_err(|error| Failure::running(Error::io(&truth_path, error)))?;
+    terminal.finish();
+    Ok(flown)
+}
+
+/// What was there, and what a locator is given.
+fn apart(rendered: Rendered) -> (TruthFrame, Entry) {
+    let Rendered { image, truth, gravity } = rendered;
+    let frame = Frame {
+        index: truth.frame,
+        time_s: Some(truth.time_s),
+        source: "simulated".to_owned(),
+        image,
+        gravity: Some(gravity),
+        conversions: Vec::new(),
+    };
+    (truth, Entry::from_frame(frame))
+}

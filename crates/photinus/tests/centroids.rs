@@ -107,12 +107,12 @@ fn measure(width_px: f64, height: f64, scenes: u64) -> Errors {
     errors
 }
 
-#[test]
-fn unsaturated_spots_are_placed_to_a_hundredth_of_a_pixel() {
+/// The centre within `most_px`, the sigma within 20 % of the scatter, no bias by where in a pixel the light falls.
+fn hold(heights: &[f64], most_px: f64) {
     for width in [0.8, 1.0, 1.5, 2.1, 2.5] {
-        for height in [100.0, 150.0, 230.0] {
+        for &height in heights {
             let errors = measure(width, height, 40);
-            assert!(errors.rms() <= 0.0105, "width {width}, height {height}: rms {}", errors.rms());
+            assert!(errors.rms() <= most_px, "width {width}, height {height}: rms {}", errors.rms());
             assert!(
                 (errors.honesty() - 1.0).abs() < 0.2,
                 "width {width}, height {height}: {}",
@@ -121,6 +121,11 @@ fn unsaturated_spots_are_placed_to_a_hundredth_of_a_pixel() {
             assert!(errors.worst_phase() < 4.5, "width {width}, height {height}: {}", errors.worst_phase());
         }
     }
+}
+
+#[test]
+fn unsaturated_spots_are_placed_to_a_hundredth_of_a_pixel() {
+    hold(&[100.0, 150.0, 230.0], 0.0105);
 }
 
 #[test]
@@ -132,18 +137,7 @@ fn five_pixels_wide_is_within_the_goal() {
 
 #[test]
 fn saturated_spots_are_placed_by_their_skirt() {
-    for width in [0.8, 1.0, 1.5, 2.1, 2.5] {
-        for height in [300.0, 600.0, 3000.0, 20_000.0] {
-            let errors = measure(width, height, 40);
-            assert!(errors.rms() <= 0.03, "width {width}, height {height}: rms {}", errors.rms());
-            assert!(
-                (errors.honesty() - 1.0).abs() < 0.2,
-                "width {width}, height {height}: {}",
-                errors.honesty()
-            );
-            assert!(errors.worst_phase() < 4.5, "width {width}, height {height}: {}", errors.worst_phase());
-        }
-    }
+    hold(&[300.0, 600.0, 3000.0, 20_000.0], 0.03);
 }
 
 #[test]

@@ -7,14 +7,14 @@
 //! - [`AdjacentPair`] and [`Margins`](margins::Margins): the paper's two estimates for a ring seen from the
 //!   side, (5) to (12);
 //! - [`DistanceBounds`]: strict bounds for any airframe, attitude and subset of its markers;
-//! - [`ExtentTable`]: one estimate with a sigma, for any airframe.
+//! - [`Estimate`]: a distance with its sigma, for any airframe; [`crate::locator`] makes it.
 //!
 //! "Paper" is V. Walter, M. Saska, A. Franchi, "Fast Mutual Relative Localization of UAVs using Ultraviolet
 //! LED Markers", ICUAS 2018.
 
 mod bearing_bound;
 pub mod bounds;
-mod extent;
+mod estimate;
 mod interval;
 pub mod margins;
 mod pair;
@@ -22,7 +22,7 @@ mod spot_size;
 
 pub use bearing_bound::bearing_bound_rad;
 pub use bounds::{BoundedBearing, DistanceBounds};
-pub use extent::{Estimate, ExtentTable};
+pub use estimate::Estimate;
 pub use interval::Interval;
 pub use pair::AdjacentPair;
 pub use spot_size::{Envelope, SpotCurve, SpotCurveError};

@@ -7,11 +7,11 @@
 //! runs           rows of pixels at or above their threshold       -> runs
 //! grouping       runs that touch, also by a corner                -> components
 //! splitting      one component with several summits               -> parts
-//! ledge          parts that go on where the threshold is higher   -> background
-//! rejection      what is no marker, and why
-//! neighbourhood  how far a part's light is its own                -> a window
-//! patch          the pixels around a part, less their background  -> signal
-//! centroid       where the light fell: window, or skirt if saturated
+//! part           size, shape and first guess of a part; ledge: whether it goes on where the threshold is higher
+//! rejection      what is no marker by its outline, and why
+//! neighbourhood  how far a part's light is its own                -> room for a window
+//! measuring      background (patch) and centre with covariance: by a window (centroid) or by the skirt -> spots
+//! reflections    spots that are faint images of others
 //! ```
 //!
 //! Every pixel at or above its threshold belongs to exactly one part, and every part is either a [`Spot`] or a

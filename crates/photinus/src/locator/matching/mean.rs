@@ -6,8 +6,8 @@ use super::image::Image;
 use super::{Match, NEIGHBOUR_NATS};
 use crate::locator::views::MOST_ORDERED;
 
-/// What that leaves of a place, as a share of the airframe's radius, and of the distance, as a share of it: half the
-/// steps of yaw and elevation, spread evenly.
+/// What the grid of views leaves of a place, as a share of the airframe's radius, and of the distance, as a share of it:
+/// chosen so that the covariance is a cautious one on rendered frames (`tests/rendered_neighbours.rs`).
 const GRID_ACROSS: f64 = 0.008;
 const GRID_ALONG: f64 = 0.004;
 

@@ -8,7 +8,7 @@ use crate::locator::views::{Outline, Spread, UNSEEN_NATS};
 /// How far the outline of a group may be from that of a view, in slimness.
 const SLIMNESS_SIGMA: f64 = 0.08;
 /// An outline so far off is no match, nats.
-pub(super) const FAR_NATS: f64 = 30.0;
+const FAR_NATS: f64 = 30.0;
 
 /// The place of the airframe if the group is all of a view that shows, and what that costs; `None` when far from it.
 pub(super) fn compare(

@@ -36,10 +36,10 @@ pub(super) fn spread(problem: &Problem<'_>, mode: &Refined, hypothesis: usize, c
     }
     let step_rad = (STEP_SIGMAS * yaw_sigma_rad).min(WIDEST_STEP_RAD);
     let Some(middle) = slice(problem, mode, hypothesis, 0.0, step_rad) else { return };
-    let mut best = middle.log_weight;
     components.push(middle);
     for side in [step_rad, -step_rad] {
-        let (mut here, mut poor) = (*mode, 0);
+        // Each side has a summit of its own: a spot alone is likelier a marker at the edge of those that show.
+        let (mut here, mut poor, mut best) = (*mode, 0, middle.log_weight);
         for number in 1..=MOST_SLICES {
             let yaw_rad = side * number as f64;
             if yaw_rad.abs() > PI || poor == 2 {

@@ -9,7 +9,7 @@ const LOBE_ERROR: f64 = 0.02;
 /// A marker that shines with less than this towards the camera shines away.
 const DARK: f64 = 0.01;
 /// How often a marker that must show does not: dead, occluded, merged with another.
-const MISSED: f64 = 0.002;
+const MISSED: f64 = 0.0005;
 /// How sharply finding falls off around the faintest light, as a power of light.
 const STEEPNESS: f64 = 8.0;
 /// Light at which a marker is found half of the time when nothing tells what is faintest, 1 being one LED straight ahead.

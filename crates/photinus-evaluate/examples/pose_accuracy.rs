@@ -1,19 +1,23 @@
-//! How good poses are, against the information bound: pure geometry with a known pixel sigma.
+//! How good poses are, against the information bound: through rendered frames, and in pure geometry with a known pixel sigma.
 //!
-//! `cargo run --release -p photinus --example pose_accuracy [neighbours per row] [sigma in px]`
+//! `cargo run --release -p photinus-evaluate --example pose_accuracy [neighbours per range] [sigma in px, 0 renders]`
 //!
 //! Single neighbours at a few ranges, any yaw, elevations to 20 deg, tilted by 4 deg (one sigma per axis), gravity known to
 //! 0.3 deg. Beside each error stands the Cramer-Rao bound of the same views, with the priors as information: what is
 //! possible, if which spot is which marker were known.
 
 use std::f64::consts::{FRAC_PI_2, TAU};
+use std::path::Path;
 
-use nalgebra::{Matrix2, Matrix6, Rotation3, Unit, Vector3, Vector6};
+use nalgebra::{Matrix2, Matrix6, Rotation3, Unit, UnitQuaternion, Vector3, Vector6};
 use photinus::airframe::{Airframe, Ring};
 use photinus::camera::{Bearing, Camera, Ideal, IdealLaw, Model, Pixel};
-use photinus::locator::{Locator, Settings};
+use photinus::locator::{Located, Locator, Settings, Sighting};
 use photinus::pose;
 use photinus::spots::{Extent, Spot};
+use photinus_io::image::GreyImage;
+use photinus_sim::motion::{Motion, Recorded};
+use photinus_sim::{Scene, Simulator};
 use rand_distr::{Distribution, StandardNormal, Uniform};
 use rand_pcg::Pcg64;
 
@@ -40,7 +44,10 @@ fn main() {
     }
 }
 
-fn camera() -> Camera {
+fn camera(sigma_px: f64) -> Camera {
+    if sigma_px == 0.0 {
+        return scene("time_s,x_m,y_m,z_m,qx,qy,qz,qw\n0,9,0,0,0,0,0,1\n", "hexarotor-0.4", 0).cameras[0].camera.clone();
+    }
     let lens =
         Ideal::new(IdealLaw::Equidistant, [1.0 / 3.7673e-3; 2], Pixel::new(375.5, 239.5)).expect("a lens");
     Camera::new(Model::Ideal(lens), 752, 480, None).expect("a camera")
@@ -60,6 +67,7 @@ struct Tally {
 
 fn row(airframe: &Airframe, distance_m: f64, sigma_px: f64, count: usize) {
     let mut rng = Pcg64::new(7, 11);
+    let camera = camera(sigma_px);
     let settings = Settings {
         pose: pose::Settings {
             tilt_sigma_rad: libm::hypot(TILT_RAD, GRAVITY_RAD),
@@ -69,17 +77,42 @@ fn row(airframe: &Airframe, distance_m: f64, sigma_px: f64, count: usize) {
         },
         ..Settings::default()
     };
-    let mut locator = Locator::new(camera(), airframe, None, settings).expect("a locator");
+    let mut locator = Locator::new(camera.clone(), airframe, None, settings).expect("a locator");
     let mut tallies = [Tally::default(); 8];
-    for _ in 0..count {
-        let view = View::draw(airframe, distance_m, &mut rng);
-        let (spots, markers) = view.spots(airframe, sigma_px, &mut rng);
-        if spots.is_empty() {
+    let mut frames = Vec::new();
+    let mut missed = 0;
+    for number in 0..count {
+        if sigma_px == 0.0 && frames.is_empty() {
+            frames = render(airframe, distance_m, number as u64, &mut rng);
+        }
+        let rendered = frames.pop();
+        let (view, located, markers) = if let Some((view, image)) = &rendered {
+            let located = locator.locate(&image.view(), Some(&view.gravity), &mut |_| ()).expect("a frame");
+            (view, located, view.matched(airframe, located))
+        } else {
+            let view = View::draw(distance_m, &mut rng);
+            let (spots, markers) = view.spots(airframe, &camera, sigma_px, &mut rng);
+            let located = locator.locate_spots(&spots, Some(&view.gravity), &mut |_| ());
+            (&*Box::leak(Box::new(view)), located, markers)
+        };
+        if located.neighbours.is_empty() {
+            missed += 1;
             continue;
         }
-        let bound_m2 = view.bound_m2(airframe, &markers, sigma_px);
-        let located = locator.locate_spots(&spots, Some(&view.gravity), &mut |_| ());
+        let bound_m2 = view.bound_m2(airframe, &markers);
         let of_most = located.neighbours.iter().max_by_key(|neighbour| located.members(neighbour).len());
+        if let Some((view, _)) = &rendered { if std::env::var("SPOTS").is_ok() {
+            for (i, s) in located.sightings.iter().enumerate() {
+                let at = |m: &usize| camera.pixel(&Bearing::new(view.camera_from_body * airframe.markers()[*m].position_m + view.position_m).unwrap()).unwrap();
+                let gap = |m: &usize| { let p = at(m); (p.u - s.spot.centre.u).hypot(p.v - s.spot.centre.v) };
+                let m = (0..airframe.markers().len()).min_by(|a, b| gap(a).total_cmp(&gap(b))).unwrap();
+                let p = at(&m);
+                let near = located.sightings.iter().enumerate().filter(|(j, _)| *j != i).map(|(_, o)| ((o.spot.centre.u - s.spot.centre.u).hypot(o.spot.centre.v - s.spot.centre.v), o.spot.flux / s.spot.flux)).min_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((99.0, 0.0));
+                let c = -(view.camera_from_body.inverse() * view.position_m);
+                let light = airframe.intensity(m, &c) / (c - airframe.markers()[m].position_m).norm_squared();
+                eprintln!("S,{distance_m},{},{},{},{:.4},{:.4},{:.4},{:.2},{:.3},{:.1},{:.1},{:.6},{:.6}", s.spot.area_px, s.spot.peak, s.spot.saturated_px, s.spot.centre.u - p.u, s.spot.centre.v - p.v, s.spot.sigma_px(), near.0, near.1, s.spot.flux, s.spot.background, light, airframe.intensity(m, &c));
+            }
+        } }
         let neighbour = of_most.expect("no view without an answer");
         let used = located.members(neighbour).len();
         let (Some(estimate), Some(position), Some(orientation)) =
@@ -101,6 +134,28 @@ fn row(airframe: &Airframe, distance_m: f64, sigma_px: f64, count: usize) {
                 eprintln!("   w {:.4} d {:.3} sd {:.4} yaw sd {:.3}", m.weight, m.pose.position_m.norm(), (a.dot(&(m.position_covariance_m2 * a))).sqrt(), m.orientation_covariance_rad2[(2,2)].sqrt());
             }
         }
+        if std::env::var("OUT").is_ok() && nees > 25.0 {
+            eprintln!("nees {nees:.0} spots {used} of {} true {:.3} est {:.3} sigma {:.3} bound {:.3}", located.sightings.len(), view.position_m.norm(), estimate.distance_m, estimate.sigma_m, bound_m2.sqrt());
+            let camera_m = -(view.camera_from_body.inverse() * view.position_m);
+            for s in &located.sightings {
+                let gap = |m: &usize| s.bearing.angle_to(&Bearing::new(view.camera_from_body * airframe.markers()[*m].position_m + view.position_m).unwrap());
+                let m = (0..airframe.markers().len()).min_by(|a, b| gap(a).total_cmp(&gap(b))).unwrap();
+                let truth = camera.pixel(&Bearing::new(view.camera_from_body * airframe.markers()[m].position_m + view.position_m).unwrap()).unwrap();
+                eprintln!("  at {:.3} {:.3} truth {:.3} {:.3}", s.spot.centre.u, s.spot.centre.v, truth.u, truth.v);
+                if let Some((_, image)) = &rendered { let f = image.view();
+                    for v in (truth.v.round() as usize - 4)..=(truth.v.round() as usize + 4) {
+                        let row: Vec<_> = ((truth.u.round() as usize - 4)..=(truth.u.round() as usize + 4)).map(|u| f.row(v)[u]).collect();
+                        eprintln!("      {row:?}");
+                    } }
+                eprintln!("   spot area {} peak {} sat {} flux {:.0} sigma {:.3} px; marker {m} I {:.3} off {:.2} sigma", s.spot.area_px, s.spot.peak, s.spot.saturated_px, s.spot.flux, s.spot.sigma_px(), airframe.intensity(m, &camera_m), gap(&m) / (s.covariance_rad2.trace()/2.0).sqrt());
+            }
+            for m in 0..airframe.markers().len() { eprint!(" I{m}={:.3}", airframe.intensity(m, &camera_m)); }
+            eprintln!(" rejected {:?}", located.rejected.iter().map(|r| (r.reason, r.peak)).collect::<Vec<_>>());
+            for m in located.modes(neighbour).iter().take(3) {
+                let a = m.pose.position_m.normalize();
+                eprintln!("   w {:.4} d {:.3} sd {:.4} yaw sd {:.3}", m.weight, m.pose.position_m.norm(), (a.dot(&(m.position_covariance_m2 * a))).sqrt(), m.orientation_covariance_rad2[(2,2)].sqrt());
+            }
+        }
         let distance_off = estimate.distance_m - view.position_m.norm();
         tally.square += distance_off * distance_off;
         tally.bias += distance_off;
@@ -112,6 +167,9 @@ fn row(airframe: &Airframe, distance_m: f64, sigma_px: f64, count: usize) {
         let turn = (orientation.camera_from_body.inverse() * view.camera_from_body).scaled_axis().z;
         let turn = turn - (turn / sector).round() * sector;
         tally.yaw += turn * turn / orientation.covariance_rad2[(2, 2)];
+    }
+    if missed > 0 {
+        println!("{:9} {distance_m:5.0} m nothing found {missed} times", airframe.name());
     }
     for (spots, tally) in tallies.iter().enumerate().filter(|(_, tally)| tally.count > 0.0) {
         let n = tally.count;
@@ -130,6 +188,58 @@ fn row(airframe: &Airframe, distance_m: f64, sigma_px: f64, count: usize) {
     }
 }
 
+const BATCH: usize = 50;
+
+fn scene(poses: &str, airframe: &str, seed: u64) -> Scene {
+    let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes"));
+    let text = format!(
+        r#"name = "poses"
+        seed = {seed}
+        preset = "bluefox-dsl215-bp365"
+        rate_hz = 1.0
+        duration_s = {BATCH}.0
+        exposure_us = 1000.0
+        [observer]
+        motion = {{ hover = {{ position_m = [0.0, 0.0, 0.0] }} }}
+        wind_m_s = 0.0
+        heading_deg = 0.0
+        [[camera]]
+        name = "front"
+        file = "cameras/bluefox-dsl215.toml"
+        position_m = [0.0, 0.0, 0.0]
+        [[target]]
+        id = 1
+        airframe = "airframes/{airframe}.toml"
+        motion = {{ hover = {{ position_m = [5.0, 0.0, 0.0] }} }}
+        solid = [{{ cylinder = {{ centre_m = [0.0, 0.0, 0.0], radius_m = 0.12, half_height_m = 0.08 }} }}]
+        "#
+    );
+    let mut scene = Scene::parse(&text, folder.join("poses.toml")).expect("a scene");
+    scene.targets[0].motion = Motion::Recorded(Recorded::parse(poses, Path::new("poses.csv")).expect("poses"));
+    scene
+}
+
+/// Frames with a neighbour each, of a batch of poses with LEDs of their own.
+fn render(airframe: &Airframe, distance_m: f64, seed: u64, rng: &mut Pcg64) -> Vec<(View, GreyImage)> {
+    let world_from_camera = Rotation3::from_basis_unchecked(&[-Vector3::y(), -Vector3::z(), Vector3::x()]);
+    let mut poses = String::from("time_s,x_m,y_m,z_m,qx,qy,qz,qw\n");
+    let views: Vec<View> = (0..BATCH).map(|_| View::draw(distance_m, rng)).collect();
+    for (second, view) in views.iter().enumerate() {
+        let place = world_from_camera * view.position_m;
+        let turn = UnitQuaternion::from_rotation_matrix(&(world_from_camera * view.camera_from_body));
+        for time_s in [second as f64, second as f64 + 0.9] {
+            let row = [time_s, place.x, place.y, place.z, turn.i, turn.j, turn.k, turn.w];
+            poses += &row.map(|number| number.to_string()).join(",");
+            poses.push('\n');
+        }
+    }
+    let name = if airframe.markers().len() == 6 { "hexarotor-0.4" } else { "quadrotor-0.245" };
+    let scene = scene(&poses, name, seed);
+    let mut simulator = Simulator::new(&scene, 0).expect("a camera");
+    let rendered: Vec<_> = simulator.frames().map(|frame| frame.image).collect();
+    views.into_iter().zip(rendered).collect()
+}
+
 /// A neighbour, and what is known of the vertical.
 struct View {
     position_m: Vector3<f64>,
@@ -146,8 +256,7 @@ fn uniform(rng: &mut Pcg64, low: f64, high: f64) -> f64 {
 }
 
 impl View {
-    fn draw(airframe: &Airframe, distance_m: f64, rng: &mut Pcg64) -> Self {
-        let _ = airframe;
+    fn draw(distance_m: f64, rng: &mut Pcg64) -> Self {
         let (azimuth, elevation) = (uniform(rng, -1.0, 1.0), uniform(rng, -0.35, 0.35));
         let ahead = Vector3::new(
             libm::cos(elevation) * libm::sin(azimuth),
@@ -165,8 +274,7 @@ impl View {
         }
     }
 
-    fn spots(&self, airframe: &Airframe, sigma_px: f64, rng: &mut Pcg64) -> (Vec<Spot>, Vec<usize>) {
-        let camera = camera();
+    fn spots(&self, airframe: &Airframe, camera: &Camera, sigma_px: f64, rng: &mut Pcg64) -> (Vec<Spot>, Vec<(usize, f64)>) {
         let camera_m = -(self.camera_from_body.inverse() * self.position_m);
         let (mut spots, mut markers) = (Vec::new(), Vec::new());
         for marker in 0..airframe.markers().len() {
@@ -181,7 +289,8 @@ impl View {
             let centre = Pixel::new(pixel.u + sigma_px * normal(rng), pixel.v + sigma_px * normal(rng));
             let (u, v) = (pixel.u.round() as u32, pixel.v.round() as u32);
             let extent = Extent { left: u.max(1) - 1, top: v.max(1) - 1, right: u + 1, bottom: v + 1 };
-            markers.push(marker);
+            // An equidistant lens: the same angle per pixel along the radius, nearly so across it.
+            markers.push((marker, sigma_px * 3.7673e-3));
             spots.push(Spot {
                 centre,
                 covariance_px2: Matrix2::identity() * (sigma_px * sigma_px),
@@ -197,20 +306,31 @@ impl View {
         (spots, markers)
     }
 
+    /// The markers behind the spots, each with the sigma of its direction, rad.
+    fn matched(&self, airframe: &Airframe, located: &Located) -> Vec<(usize, f64)> {
+        let nearest = |sighting: &Sighting| {
+            let gap = |marker: &usize| {
+                let place = self.camera_from_body * airframe.markers()[*marker].position_m + self.position_m;
+                sighting.bearing.angle_to(&Bearing::new(place).expect("a direction"))
+            };
+            (0..airframe.markers().len()).min_by(|a, b| gap(a).total_cmp(&gap(b))).expect("a marker")
+        };
+        let sigma_rad = |sighting: &Sighting| (sighting.covariance_rad2.trace() / 2.0).sqrt();
+        located.sightings.iter().map(|sighting| (nearest(sighting), sigma_rad(sighting))).collect()
+    }
+
     /// The Cramer-Rao bound of the variance of distance, by numeric derivatives of all that is measured or believed.
-    fn bound_m2(&self, airframe: &Airframe, markers: &[usize], sigma_px: f64) -> f64 {
+    fn bound_m2(&self, airframe: &Airframe, markers: &[(usize, f64)]) -> f64 {
         let measured = |step: &Vector6<f64>| -> Vec<f64> {
             let position_m = self.position_m + step.fixed_rows::<3>(0);
             let turn = Rotation3::new(step.fixed_rows::<3>(3).into_owned());
             let camera_from_body = self.camera_from_body * turn;
             let camera_m = -(camera_from_body.inverse() * position_m);
-            let sigma_rad = sigma_px * 3.7673e-3;
             let mut numbers = Vec::new();
             let mut lights = Vec::new();
-            for &marker in markers {
+            for &(marker, sigma_rad) in markers {
                 let arm_m = airframe.markers()[marker].position_m;
                 let seen = (camera_from_body * arm_m + position_m).normalize();
-                // An equidistant lens: the same angle per pixel along the radius, nearly so across it.
                 numbers.extend(seen.iter().map(|number| number / sigma_rad));
                 let intensity = airframe.intensity(marker, &camera_m).max(1e-6);
                 lights.push(libm::log(intensity) - libm::log((camera_m - arm_m).norm_squared()));

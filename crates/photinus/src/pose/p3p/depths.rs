@@ -17,8 +17,12 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::conics::meets;
 
-/// Newton steps after which the depths are at rounding, from a start that is good to a few digits.
-const POLISHING_STEPS: usize = 3;
+/// Newton steps that bring a start of a few digits to rounding: one or two, more where solutions meet.
+const POLISHING_STEPS: usize = 12;
+/// A residual that no further step improves, in the square of the longest side.
+const ROUNDING: f64 = 4e-16;
+/// Solutions are one when they differ by less than this share: two that meet are no better known.
+const SAME: f64 = 1e-7;
 /// Largest residual of an exact solution, in the square of the longest side.
 const EXACT: f64 = 1e-10;
 
@@ -86,33 +90,41 @@ impl DepthEquations {
         let [s12, s13, s23] = self.squares.into();
         let cones = [q12 * s23 - q23 * s12, q13 * s23 - q23 * s13];
         let sum = q12 + q13 + q23;
+        let mut known = [Vector3::zeros(); 4];
+        let mut count = 0;
         meets(&cones, |direction| {
             let length_square = self.squares.sum() / direction.dot(&(sum * direction));
             let scale = length_square.sqrt().copysign(direction.x);
             let (y, residual) = self.polished(direction * scale);
+            if known[..count].iter().any(|other| (y - other).amax() < SAME * y.amax()) {
+                return;
+            }
+            (known[count], count) = (y, count + 1);
             let first = y.x / self.spread;
-            let deepest = first * self.unit_m;
-            if first > 0.0 && first + y.y > 0.0 && first + y.z > 0.0 && deepest.is_finite() {
+            let first_m = first * self.unit_m;
+            if first > 0.0 && first + y.y > 0.0 && first + y.z > 0.0 && first_m.is_finite() {
                 let beyond_m = [y.y * self.unit_m, y.z * self.unit_m];
-                found(Depths { first_m: deepest, beyond_m, residual });
+                found(Depths { first_m, beyond_m, residual });
             }
         });
     }
 
-    /// Newton's method for as long as it helps, and the residual it leaves.
+    /// Newton's method: the best point that it comes by, and the residual there.
     fn polished(&self, start: Vector3<f64>) -> (Vector3<f64>, f64) {
         let (mut y, (mut error, mut jacobian)) = (start, self.linearised(&start));
+        let mut best = (y, error.amax());
         for _ in 0..POLISHING_STEPS {
-            let Some(inverse) = jacobian.try_inverse() else { break };
-            let next = y - inverse * error;
-            let (next_error, next_jacobian) = self.linearised(&next);
-            // Written so that NaN stops.
-            if !(next_error.amax() < error.amax()) {
+            if error.amax() <= ROUNDING {
                 break;
             }
-            (y, error, jacobian) = (next, next_error, next_jacobian);
+            let Some(inverse) = jacobian.try_inverse() else { break };
+            y -= inverse * error;
+            (error, jacobian) = self.linearised(&y);
+            if error.amax() < best.1 {
+                best = (y, error.amax());
+            }
         }
-        (y, error.amax())
+        best
     }
 
     /// The errors of the three equations and their derivatives by y.

@@ -25,7 +25,7 @@ pub struct P3pSolutions {
 }
 
 impl P3pSolutions {
-    fn none() -> Self {
+    pub(super) fn none() -> Self {
         Self { poses: [Isometry3::identity(); 4], count: 0 }
     }
 
@@ -66,8 +66,7 @@ fn poses(
 ) -> P3pSolutions {
     let mut solutions = P3pSolutions::none();
     let edges_m = [points_m[1] - points_m[0], points_m[2] - points_m[0]];
-    let (Some(body), Some(equations)) =
-        (triangle_axes(&edges_m), DepthEquations::new(bearings, &edges_m))
+    let (Some(body), Some(equations)) = (triangle_axes(&edges_m), DepthEquations::new(bearings, &edges_m))
     else {
         return solutions;
     };

@@ -96,10 +96,13 @@ impl DepthEquations {
             let length_square = self.squares.sum() / direction.dot(&(sum * direction));
             let scale = length_square.sqrt().copysign(direction.x);
             let (y, residual) = self.polished(direction * scale);
-            if known[..count].iter().any(|other| (y - other).amax() < SAME * y.amax()) {
-                return;
+            // A complex pair may have been polished into a solution that has its own turn.
+            if residual <= EXACT {
+                if known[..count].iter().any(|other| (y - other).amax() < SAME * y.amax()) {
+                    return;
+                }
+                (known[count], count) = (y, count + 1);
             }
-            (known[count], count) = (y, count + 1);
             let first = y.x / self.spread;
             let first_m = first * self.unit_m;
             if first > 0.0 && first + y.y > 0.0 && first + y.z > 0.0 && first_m.is_finite() {

@@ -6,6 +6,9 @@
 //! bearing is the chord to where the point is seen, |p/|p| - f|: the angle for small errors, and largest, not
 //! zero, for the opposite direction.
 
+#[cfg(test)]
+mod tests;
+
 use core::array;
 
 use nalgebra::{Isometry3, Matrix3, Matrix6, Translation3, UnitQuaternion, Vector3, Vector6};
@@ -175,6 +178,3 @@ fn turned(pose: &Isometry3<f64>, centroid_m: &Vector3<f64>, step: &Vector6<f64>)
     let centre = pose.rotation * centroid_m + pose.translation.vector + shift;
     Isometry3::from_parts(Translation3::from(centre - rotation * centroid_m), rotation)
 }
-
-#[cfg(test)]
-mod tests;

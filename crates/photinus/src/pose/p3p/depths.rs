@@ -24,7 +24,7 @@ const ROUNDING: f64 = 4e-16;
 /// Solutions are one when they differ by less than this share: two that meet are no better known.
 const SAME: f64 = 1e-7;
 /// Largest residual of an exact solution, in the square of the longest side.
-const EXACT: f64 = 1e-10;
+const EXACT: f64 = 1e-12;
 
 /// Depths of the three points.
 #[derive(Clone, Copy, Debug)]

@@ -44,9 +44,9 @@ impl P3pSolutions {
 /// frame, any direction).
 ///
 /// Each solution reproduces the bearings to rounding. Where two solutions meet (the camera on the cylinder
-/// that stands on the circle through the points) they are accurate to the root of rounding only, and bearings
-/// with noise may have none. None come from points on one line, three equal bearings, or numbers that are not
-/// finite.
+/// that stands on the circle through the points) they come as one, accurate to the root of rounding; where
+/// three meet, one in fifty is missed. Bearings with noise may have none. None come from points on one line,
+/// three equal bearings, or numbers that are not finite.
 pub fn p3p(bearings: &[Vector3<f64>; 3], points_m: &[Vector3<f64>; 3]) -> P3pSolutions {
     poses(bearings, points_m, Depths::is_exact)
 }

@@ -80,16 +80,17 @@ proptest! {
     }
 
     #[test]
-    fn every_solution_reproduces_its_bearings(
+    fn every_solution_reproduces_the_bearings_and_is_another(
         bearings in prop::array::uniform3(vector(1.0)),
         points_m in prop::array::uniform3(vector(1.0)),
     ) {
         prop_assume!(flatness(&points_m) > 0.05);
         let bearings = bearings.map(|bearing| bearing.normalize());
         let solutions = p3p(&bearings, &points_m);
-        for pose in solutions.iter() {
+        for (i, pose) in solutions.iter().enumerate() {
             let worst = worst_bearing(pose, &bearings, &points_m);
             prop_assert!(worst < 1e-9, "{worst:e}");
+            prop_assert!(solutions.iter().take(i).all(|other| (other.to_homogeneous() - pose.to_homogeneous()).norm() > 1e-9));
             prop_assert!((pose.rotation.norm() - 1.0).abs() < 1e-12);
         }
     }

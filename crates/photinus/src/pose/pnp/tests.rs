@@ -56,6 +56,18 @@ fn exact_bearings_give_the_pose() {
     }
 }
 
+#[test]
+fn three_of_four_points_may_be_on_a_line() {
+    let mut draw = Draw(Pcg64::new(6, 1));
+    let line = [-0.2, 0.0, 0.2].map(|x| Vector3::new(x, 0.0, 0.0));
+    let points_m = [line[0], line[1], line[2], Vector3::new(0.0, 0.5, 0.0)];
+    for _ in 0..100 {
+        let truth = draw.pose(3.0);
+        let pose = pnp(&draw.seen(&truth, &points_m, 0.0), &points_m).unwrap();
+        assert!((pose.to_homogeneous() - truth.to_homogeneous()).norm() < 1e-7);
+    }
+}
+
 /// Of the 2 n errors the pose takes up six: the cost of the truth is above that of the estimate by 6 sigma^2
 /// on average, neither less (an estimate that is not the best) nor more.
 #[test]

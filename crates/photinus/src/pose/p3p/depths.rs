@@ -20,7 +20,7 @@ use super::conics::meets;
 /// Newton steps that bring a start of a few digits to rounding: one or two, more where solutions meet.
 const POLISHING_STEPS: usize = 12;
 /// A residual that no further step improves, in the square of the longest side.
-const ROUNDING: f64 = 4e-16;
+const ROUNDING: f64 = 5e-16;
 /// Solutions are one when they differ by less than this share: two that meet are no better known.
 const SAME: f64 = 1e-7;
 /// Largest residual of an exact solution, in the square of the longest side.
@@ -104,10 +104,10 @@ impl DepthEquations {
                 (known[count], count) = (y, count + 1);
             }
             let first = y.x / self.spread;
-            let first_m = first * self.unit_m;
-            if first > 0.0 && first + y.y > 0.0 && first + y.z > 0.0 && first_m.is_finite() {
+            // A camera on a point, but for rounding, does not see it.
+            if [first, first + y.y, first + y.z].iter().all(|&depth| depth > EXACT) {
                 let beyond_m = [y.y * self.unit_m, y.z * self.unit_m];
-                found(Depths { first_m, beyond_m, residual });
+                found(Depths { first_m: first * self.unit_m, beyond_m, residual });
             }
         });
     }
@@ -115,16 +115,16 @@ impl DepthEquations {
     /// Newton's method: the best point that it comes by, and the residual there.
     fn polished(&self, start: Vector3<f64>) -> (Vector3<f64>, f64) {
         let (mut y, (mut error, mut jacobian)) = (start, self.linearised(&start));
-        let mut best = (y, error.amax());
+        let mut best = (y, error.norm());
         for _ in 0..POLISHING_STEPS {
-            if error.amax() <= ROUNDING {
+            if error.norm() <= ROUNDING {
                 break;
             }
             let Some(inverse) = jacobian.try_inverse() else { break };
             y -= inverse * error;
             (error, jacobian) = self.linearised(&y);
-            if error.amax() < best.1 {
-                best = (y, error.amax());
+            if error.norm() < best.1 {
+                best = (y, error.norm());
             }
         }
         best

@@ -23,8 +23,10 @@ pub(super) fn meets(cones: &[Matrix3<f64>; 2], mut found: impl FnMut(Vector3<f64
         (b, a, separate_root([cubic[3], cubic[2], cubic[1], cubic[0]]))
     };
     let degenerate = near + far * root;
+    // A member unlike the degenerate one: the root may be huge.
+    let other = if root.abs() > 1.0 { near } else { far };
     match Planes::of(&degenerate) {
-        Planes::Real(normals) => normals.iter().for_each(|normal| cut(normal, far, &mut found)),
+        Planes::Real(normals) => normals.iter().for_each(|normal| cut(normal, other, &mut found)),
         Planes::Complex { common } => found(common),
     }
 }

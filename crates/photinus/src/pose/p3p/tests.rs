@@ -203,6 +203,15 @@ fn no_solution_is_missed() {
     assert!(by_count[1] > 3 && by_count[2] > 3 && by_count[4] > 3, "{by_count:?}");
 }
 
+/// Here the separate root of the cubic is infinite but for rounding.
+#[test]
+fn two_degenerate_cones_make_no_difference() {
+    let points_m =
+        [Vector3::new(1.0, 2.0, -1.0), Vector3::new(-2.0, 1.0, -1.0), Vector3::new(-1.0, 0.0, 0.0)];
+    let truth = Isometry3::translation(0.0, -3.0, 0.0);
+    assert!(nearest_error(&p3p(&seen(&truth, &points_m), &points_m), &truth) < 1e-9);
+}
+
 #[test]
 fn level_ring_and_frontal_ring_come_back_at_any_distance() {
     let corner = |i: f64| Vector3::new(0.4 * libm::cos(i), 0.4 * libm::sin(i), 0.0);

@@ -11,7 +11,7 @@
 //! bearing   map (x / |x| - direction), x = R p + t                        two per spot, Huber beyond 3.5 sigma
 //! light     ln f - ln I(camera in body) + 2 ln |x| - c                    one per spot, c (the LED's power) solved for
 //! tilt      x and y of "up" in the body frame over the tilt's sigma       two, where gravity is known
-//! elevation z of the direction to the camera in the body frame            one, where it is not
+//! elevation z of the direction to the camera in the body frame, weak      one, where it is not; and "up" is the image's, weak
 //! size      (ln distance - mean) / sigma                                  one, where nothing else tells distance
 //! ```
 
@@ -26,6 +26,9 @@ use crate::airframe::Airframe;
 const HUBER: f64 = 3.5;
 /// Without gravity: how far a camera is above or below a neighbour's own horizon, the sine's sigma.
 const ELEVATION_SIGMA: f64 = 0.6;
+/// Without gravity: how far a neighbour is from upright in the image, the sine's sigma. It keeps what nothing tells from
+/// being anything.
+const IMAGE_TILT_SIGMA: f64 = 1.0;
 /// What it costs, nats, that a spot among an airframe's own is none of its markers: a spot that is one is likelier by its
 /// sigma of a third of a milliradian against the few hundredths of a radian around the others, and strangers are rare.
 const STRANGER_NATS: f64 = 14.0;
@@ -185,28 +188,31 @@ impl Problem<'_> {
 
     fn add_attitude(&self, pose: &Pose, normal: &mut Normal) {
         let body_from_camera = pose.camera_from_body.matrix().transpose();
-        if let Some(up) = &self.up {
-            let sigma = self.settings.tilt_sigma_rad;
-            let up = body_from_camera * up.into_inner();
-            if up.z <= 0.0 {
-                // Upside down: as far from level as can be, whatever the horizontal part says.
-                normal.nats += 0.5 / (sigma * sigma);
-            }
-            // d(exp(-omega) up) = up x omega.
-            let by_turn = up.cross_matrix();
-            for axis in 0..2 {
-                let row = by_turn.row(axis) / sigma;
-                normal.add(up[axis] / sigma, &Vector6::new(0.0, 0.0, 0.0, row[0], row[1], row[2]));
-            }
-        } else {
-            let distance_m = pose.position_m.norm();
-            let away = body_from_camera * pose.position_m / distance_m;
-            let by_turn = away.cross_matrix().row(2) / ELEVATION_SIGMA;
-            let by_step =
-                (Matrix3::identity() - away * away.transpose()).row(2) * body_from_camera / ELEVATION_SIGMA;
-            let row =
-                Vector6::new(by_step[0], by_step[1], by_step[2], by_turn[0], by_turn[1], by_turn[2]);
-            normal.add(away.z / ELEVATION_SIGMA, &row);
+        let (up, sigma) = match &self.up {
+            Some(up) => (body_from_camera * up.into_inner(), self.settings.tilt_sigma_rad),
+            None => (-body_from_camera.column(1), IMAGE_TILT_SIGMA),
+        };
+        if self.up.is_some() && up.z <= 0.0 {
+            // Upside down: as far from level as can be, whatever the horizontal part says.
+            normal.nats += 0.5 / (sigma * sigma);
         }
+        // d(exp(-omega) up) = up x omega.
+        let by_turn = up.cross_matrix() / sigma;
+        for axis in 0..2 {
+            let row = by_turn.row(axis);
+            normal.add(up[axis] / sigma, &Vector6::new(0.0, 0.0, 0.0, row[0], row[1], row[2]));
+        }
+        if self.up.is_none() {
+            self.add_elevation(pose, &body_from_camera, normal);
+        }
+    }
+
+    fn add_elevation(&self, pose: &Pose, body_from_camera: &Matrix3<f64>, normal: &mut Normal) {
+        let away = body_from_camera * pose.position_m / pose.position_m.norm();
+        let by_turn = away.cross_matrix().row(2) / ELEVATION_SIGMA;
+        let by_step =
+            (Matrix3::identity() - away * away.transpose()).row(2) * body_from_camera / ELEVATION_SIGMA;
+        let row = Vector6::new(by_step[0], by_step[1], by_step[2], by_turn[0], by_turn[1], by_turn[2]);
+        normal.add(away.z / ELEVATION_SIGMA, &row);
     }
 }

@@ -26,7 +26,7 @@ const SUMMIT_PX: f64 = 1.8;
 const LARGEST_MISFIT: f64 = 5.0;
 /// Error of the centre of a saturated core of no pixels at all, px; it falls with the root of their number. On rendered
 /// frames with overflow 0.08 to 0.12.
-const SATURATION_BLUR_PX: f64 = 0.09;
+const SATURATION_BLUR_PX: f64 = 0.13;
 /// Error of the centre of an undersampled spot whose window is cut short by another spot, px.
 const CROWDED_BLUR_PX: f64 = 0.07;
 
@@ -172,5 +172,5 @@ fn reach_px(window_px: f64) -> i32 {
 
 /// Variance of the centre of a saturated core that shows no skirt, px^2: its outline is known to a pixel all around.
 fn blur_of_saturation(saturated_px: u32) -> f64 {
-    SATURATION_BLUR_PX * SATURATION_BLUR_PX / (f64::from(saturated_px) + 4.0)
+    SATURATION_BLUR_PX * SATURATION_BLUR_PX / (f64::from(saturated_px.max(5)) + 4.0)
 }

@@ -72,7 +72,7 @@ fn row(airframe: &Airframe, distance_m: f64, sigma_px: f64, count: usize) {
         pose: pose::Settings {
             tilt_sigma_rad: libm::hypot(TILT_RAD, GRAVITY_RAD),
             marker_sigma_m: 0.0,
-            unit_sigma: UNIT_SIGMA,
+            unit_sigma: if sigma_px == 0.0 { 0.06 } else { UNIT_SIGMA },
             ..pose::Settings::default()
         },
         ..Settings::default()

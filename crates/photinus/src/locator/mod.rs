@@ -114,6 +114,8 @@ pub struct Sighting {
     pub bearing: Bearing,
     /// Covariance of the direction, rad^2, tangent to the sphere (rank 2).
     pub covariance_rad2: Matrix3<f64>,
+    /// How far the direction turns per pixel there, where it turns most, rad/px.
+    pub rad_per_px: f64,
     /// The marker's true direction is no further from the bearing, rad: its light falls within the box of pixels that its
     /// spot spans. The camera's calibration is taken as exact.
     pub bound_rad: f64,

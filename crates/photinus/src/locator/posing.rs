@@ -19,7 +19,12 @@ use crate::ranging::Interval;
 /// A spot far from the pose, in sigma: the group is looked at without it.
 const STRANGE_SIGMAS: f64 = 5.0;
 /// Light of a spot whose core is saturated: how far its logarithm can be off.
-const SATURATED_LOG_SIGMA: f64 = 0.5;
+const SATURATED_LOG_SIGMA: f64 = 0.2;
+
+/// Error of the logarithm of a spot's light per error of its centre, 1/px (rendered frames, beside other spots).
+const LOG_SIGMA_PER_PX: f64 = 1.5;
+/// Markers nearer to each other than this are one spot, px.
+const RESOLUTION_PX: f64 = 2.5;
 
 /// Tells the neighbours behind groups of sightings.
 #[derive(Debug)]
@@ -187,16 +192,17 @@ fn observe(sighting: &Sighting) -> Observation {
     // A detector that measures no light says nothing by it.
     let log_light = (spot.flux > 0.0).then(|| LogLight {
         value: libm::log(spot.flux),
-        sigma: if spot.saturated_px > 0 {
-            SATURATED_LOG_SIGMA
-        } else {
-            (0.03 / spot.flux + 12.0 / (spot.flux * spot.flux)).sqrt()
-        },
+        // What is uncertain of the centre is so of the light: noise, and other light in the window.
+        sigma: libm::hypot(
+            LOG_SIGMA_PER_PX * spot.sigma_px(),
+            if spot.saturated_px > 0 { SATURATED_LOG_SIGMA } else { 0.0 },
+        ),
     });
     Observation {
         bearing: sighting.bearing,
         covariance_rad2: sighting.covariance_rad2,
         log_light,
+        resolution_rad: RESOLUTION_PX * sighting.rad_per_px,
         signal: None,
     }
 }

@@ -11,11 +11,13 @@ const SCALE_CHANGE: f64 = 1.05;
 /// Sights a spot; `None` outside the camera's field.
 pub(super) fn sight(camera: &Camera, curve: Option<&SpotCurve>, spot: &Spot) -> Option<Sighting> {
     let (bearing, jacobian) = camera.bearing_with_jacobian(spot.centre)?;
+    let rad_per_px = largest_rad_per_px(&jacobian);
     Some(Sighting {
         spot: spot.clone(),
+        rad_per_px,
         bearing,
         covariance_rad2: jacobian * spot.covariance_px2 * jacobian.transpose(),
-        bound_rad: (farthest_px(spot) * largest_rad_per_px(&jacobian) * SCALE_CHANGE)
+        bound_rad: (farthest_px(spot) * rad_per_px * SCALE_CHANGE)
             .min(std::f64::consts::PI),
         range: curve.and_then(|curve| curve.distances(spot.area_px.max(1))),
     })

@@ -58,6 +58,8 @@ pub struct Estimator {
     whitened: Vec<Whitened>,
     assignment: Assignment,
     modes: Vec<Refined>,
+    /// What each mode costs with what is seen and what is not, nats.
+    nats: Vec<f64>,
     components: Vec<Component>,
     posterior: Posterior,
 }
@@ -76,6 +78,7 @@ impl Estimator {
             whitened: Vec::new(),
             assignment: Assignment::default(),
             modes: Vec::new(),
+            nats: Vec::new(),
             components: Vec::new(),
             posterior: Posterior::default(),
         })
@@ -102,20 +105,19 @@ impl Estimator {
         self.posterior.modes.clear();
         self.posterior.log_evidence = f64::NEG_INFINITY;
         self.find_modes(observations, hypotheses, known);
-        let nats = |mode: &Refined| mode.normal.nats;
-        let best = (0..self.modes.len()).min_by(|&a, &b| nats(&self.modes[a]).total_cmp(&nats(&self.modes[b])));
-        let Some(best) = best.filter(|&best| nats(&self.modes[best]).is_finite()) else {
+        let best = (0..self.modes.len()).min_by(|&a, &b| self.nats[a].total_cmp(&self.nats[b]));
+        let Some(best) = best.filter(|&best| self.nats[best].is_finite()) else {
             return &self.posterior;
         };
         self.posterior.markers.clear();
         self.posterior.markers.extend_from_slice(hypotheses.markers(best));
-        let limit = nats(&self.modes[best]) + HOPELESS_NATS;
+        let limit = self.nats[best] + HOPELESS_NATS;
         self.components.clear();
         for index in 0..self.modes.len() {
             let mode = self.modes[index];
             let twin = |other: &Refined| is_same(other, &mode);
             let same = |other: usize| hypotheses.markers(other) == hypotheses.markers(index);
-            if nats(&mode) > limit || (0..index).any(|other| same(other) && twin(&self.modes[other])) {
+            if self.nats[index] > limit || (0..index).any(|other| same(other) && twin(&self.modes[other])) {
                 continue;
             }
             let problem = problem(&self.airframe, &self.settings, observations, &self.whitened, known)
@@ -134,6 +136,7 @@ impl Estimator {
 
     fn find_modes(&mut self, observations: &[Observation], hypotheses: &mut Hypotheses, known: &Known) {
         self.modes.clear();
+        self.nats.clear();
         for index in 0..hypotheses.len() {
             let start = hypotheses.start(index).pose;
             if index == 0 {
@@ -148,6 +151,8 @@ impl Estimator {
             } else {
                 refine(&problem.assigned(hypotheses.markers(index)), start)
             };
+            let unseen = problem.assigned(hypotheses.markers(index)).visibility_nats(&mode.pose);
+            self.nats.push(mode.normal.nats + unseen);
             self.modes.push(mode);
         }
     }

@@ -12,6 +12,10 @@ const DARK: f64 = 0.01;
 const MISSED: f64 = 0.0005;
 /// How sharply finding falls off around the faintest light, as a power of light.
 const STEEPNESS: f64 = 8.0;
+/// A marker that others outshine by more than this is taken for a reflection, unless it is bright in itself.
+const OUTSHONE: f64 = 0.22;
+/// ... which it is when the faintest light is less than this share of the least that is not outshone.
+const CERTAIN_SHARE: f64 = 0.4;
 /// Light at which a marker is found half of the time when nothing tells what is faintest, 1 being one LED straight ahead.
 const FAINTEST_SHARE: f64 = 0.15;
 
@@ -107,16 +111,25 @@ impl Problem<'_> {
         let half = match power {
             // The intensity at which a marker at the origin's distance gives the faintest light.
             Some(power) => {
-                (self.faintest_light * camera_in_body_m.norm_squared() / power).clamp(0.02, FAINTEST_SHARE * 4.0)
+                (self.faintest_light * camera_in_body_m.norm_squared() / power).clamp(0.02, 1.0)
             }
             None => FAINTEST_SHARE,
         };
+        // Where light is scarce, a marker that another outshines by far is taken for a reflection of it.
+        let brightest = self.used().map(|(_, marker)| self.airframe.intensity(marker, &camera_in_body_m));
+        let outshone = OUTSHONE * brightest.fold(0.0, f64::max);
+        let half = if half > CERTAIN_SHARE * outshone { half.max(outshone) } else { half };
         let nats = |marker: usize| {
             let intensity = self.airframe.intensity(marker, &camera_in_body_m);
             let odds = libm::pow(intensity.max(1e-3) / half, STEEPNESS);
             let found = (1.0 - MISSED) * odds / (1.0 + odds);
-            let is_seen = self.markers.contains(&u16::try_from(marker).ok());
-            -libm::log(if is_seen { found.max(1e-9) } else { 1.0 - found })
+            if self.markers.contains(&u16::try_from(marker).ok()) {
+                return -libm::log(found.max(1e-9));
+            }
+            if self.used().any(|(spot, seen)| self.are_one(spot, seen, marker, &camera_in_body_m)) {
+                return 0.0;
+            }
+            -libm::log(1.0 - found)
         };
         (0..self.airframe.markers().len()).map(nats).sum()
     }

@@ -13,6 +13,8 @@ pub struct Observation {
     pub covariance_rad2: Matrix3<f64>,
     /// Logarithm of its light, in units of any kind that are the same for all spots of the frame; `None` where unknown.
     pub log_light: Option<LogLight>,
+    /// Markers nearer to each other than this are one spot, rad; 0 where all are told apart.
+    pub resolution_rad: f64,
     /// Which of the airframe's signals it was seen to blink, where that was decoded.
     pub signal: Option<u32>,
 }
@@ -73,7 +75,7 @@ mod tests {
         let [across, along] = tangent_basis(bearing.vector());
         let jacobian = nalgebra::Matrix3x2::from_columns(&[across + 0.5 * along, 0.3 * along]) * 1e-3;
         let covariance_rad2 = jacobian * jacobian.transpose();
-        let observation = Observation { bearing, covariance_rad2, log_light: None, signal: None };
+        let observation = Observation { bearing, covariance_rad2, log_light: None, resolution_rad: 0.0, signal: None };
         let whitened = Whitened::of(&observation, 0.0);
         let white = whitened.map * covariance_rad2 * whitened.map.transpose();
         assert!((white - nalgebra::Matrix2::identity()).norm() < 1e-4, "{white}");

@@ -29,6 +29,8 @@ const ELEVATION_SIGMA: f64 = 0.6;
 /// Without gravity: how far a neighbour is from upright in the image, the sine's sigma. It keeps what nothing tells from
 /// being anything.
 const IMAGE_TILT_SIGMA: f64 = 1.0;
+/// The place of the light of markers that melt into one spot is known to this share of how far it is from the first of them.
+const MELTED_SHARE: f64 = 0.2;
 /// What it costs, nats, that a spot among an airframe's own is none of its markers: a spot that is one is likelier by its
 /// sigma of a third of a milliradian against the few hundredths of a radian around the others, and strangers are rare.
 const STRANGER_NATS: f64 = 14.0;
@@ -150,21 +152,69 @@ impl Problem<'_> {
     /// Squared misfit of a spot's bearing, in units of its variance.
     pub(super) fn misfit(&self, pose: &Pose, spot: usize, marker: usize) -> f64 {
         let Whitened { direction, map, .. } = &self.whitened[spot];
-        let place_m = pose.camera_from_body * self.airframe.markers()[marker].position_m + pose.position_m;
-        (map * (place_m.normalize() - direction)).norm_squared()
+        let (arm_m, factor) = self.seen_at_m(spot, marker, &pose.camera_in_body_m());
+        let place_m = pose.camera_from_body * arm_m + pose.position_m;
+        (map * (place_m.normalize() - direction) * factor).norm_squared()
+    }
+
+    /// Whether two markers are one spot for a camera at a place in the body frame.
+    pub(super) fn are_one(&self, spot: usize, a: usize, b: usize, camera_in_body_m: &Vector3<f64>) -> bool {
+        let [a_m, b_m] = [a, b].map(|marker| self.airframe.markers()[marker].position_m);
+        let between_m = b_m - a_m;
+        let range2_m2 = (camera_in_body_m - a_m).norm_squared();
+        let along_m = between_m.dot(&(camera_in_body_m - a_m));
+        let across2_m2 = between_m.norm_squared() - along_m * along_m / range2_m2;
+        let limit_rad = self.observations[spot].resolution_rad;
+        across2_m2 < limit_rad * limit_rad * range2_m2
+    }
+
+    /// Where the light of a spot comes from in the body frame, m: its marker, with those that melt into it and have no spot
+    /// of their own; and how far that is known, as a factor on its residual.
+    fn seen_at_m(
+        &self,
+        spot: usize,
+        marker: usize,
+        camera_in_body_m: &Vector3<f64>,
+    ) -> (Vector3<f64>, f64) {
+        let markers = self.airframe.markers();
+        let alone_m = markers[marker].position_m;
+        let mut at_m = alone_m;
+        let mut light = None;
+        for (other, beside) in markers.iter().enumerate() {
+            if other == marker
+                || !self.are_one(spot, marker, other, camera_in_body_m)
+                || self.markers.contains(&u16::try_from(other).ok())
+            {
+                continue;
+            }
+            let more = self.airframe.intensity(other, camera_in_body_m);
+            let light = light.get_or_insert_with(|| self.airframe.intensity(marker, camera_in_body_m).max(1e-3));
+            *light += more;
+            at_m += (beside.position_m - at_m) * (more / *light);
+        }
+        if light.is_none() {
+            return (at_m, 1.0);
+        }
+        let off_rad = MELTED_SHARE * (at_m - alone_m).norm() / camera_in_body_m.norm();
+        let sigma2_rad2 = self.observations[spot].covariance_rad2.trace() / 2.0;
+        (at_m, (sigma2_rad2 / (sigma2_rad2 + off_rad * off_rad)).sqrt())
     }
 
     fn add_bearings(&self, pose: &Pose, normal: &mut Normal) {
         let distance_m = pose.position_m.norm();
         let camera_from_body = pose.camera_from_body.matrix();
+        let camera_in_body_m = pose.camera_in_body_m();
         for (spot, marker) in self.used() {
-            let arm_m = self.airframe.markers()[marker].position_m;
+            let (arm_m, factor) = self.seen_at_m(spot, marker, &camera_in_body_m);
             let place_m = camera_from_body * arm_m + pose.position_m;
             let range_m = place_m.norm();
             let seen = place_m / range_m;
             let Whitened { direction, map, .. } = &self.whitened[spot];
-            let residual = map * (seen - direction);
-            let by_place = (map - map * seen * seen.transpose()) / range_m;
+            if factor < 1.0 {
+                normal.nats -= 2.0 * libm::log(factor);
+            }
+            let residual = map * (seen - direction) * factor;
+            let by_place = (map - map * seen * seen.transpose()) * (factor / range_m);
             let by_turn = by_place * camera_from_body;
             let square = residual.norm_squared();
             let weight = if square > HUBER * HUBER {

@@ -29,6 +29,7 @@ fn observation(direction: Vector3<f64>, sigma_rad: f64, light: f64) -> Observati
         bearing,
         covariance_rad2: across * (sigma_rad * sigma_rad),
         log_light: Some(LogLight { value: libm::log(light), sigma: 0.05 }),
+        resolution_rad: 0.0,
         signal: None,
     }
 }

@@ -23,7 +23,11 @@ pub(super) fn reject(detections: &mut Detections, shape: &Shape) {
             continue;
         }
         let nearest = nearest_certain(spots, index, 4.0 * shape.widest_px, is_certain);
-        if nearest.is_some_and(|nearest| height(spot) < shape.faintest * height(nearest)) {
+        // By light as well: the height of a narrow spot depends on where in a pixel it falls.
+        let outshone = |nearest: &Spot| {
+            height(spot) < shape.faintest * height(nearest) && spot.flux < shape.faintest * nearest.flux
+        };
+        if nearest.is_some_and(outshone) {
             rejected.push(Rejected {
                 centre: spot.centre,
                 area_px: spot.area_px,

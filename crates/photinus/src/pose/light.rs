@@ -9,7 +9,7 @@ const LOBE_ERROR: f64 = 0.02;
 /// A marker that shines with less than this towards the camera shines away.
 const DARK: f64 = 0.01;
 /// How often a marker that must show does not: dead, occluded, merged with another.
-const MISSED: f64 = 0.0005;
+const MISSED: f64 = 0.001;
 /// How sharply finding falls off around the faintest light, as a power of light.
 const STEEPNESS: f64 = 8.0;
 /// A marker that others outshine by more than this is taken for a reflection, unless it is bright in itself.

@@ -30,7 +30,7 @@ const ELEVATION_SIGMA: f64 = 0.6;
 /// being anything.
 const IMAGE_TILT_SIGMA: f64 = 1.0;
 /// The place of the light of markers that melt into one spot is known to this share of how far it is from the first of them.
-const MELTED_SHARE: f64 = 0.2;
+const MELTED_SHARE: f64 = 0.1;
 /// What it costs, nats, that a spot among an airframe's own is none of its markers: a spot that is one is likelier by its
 /// sigma of a third of a milliradian against the few hundredths of a radian around the others, and strangers are rare.
 const STRANGER_NATS: f64 = 14.0;

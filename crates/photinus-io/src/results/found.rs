@@ -1,11 +1,13 @@
 //! What the method found, as records, and spots of a file as the method takes them.
 
-use nalgebra::{Matrix2, Matrix3};
+use nalgebra::{Matrix2, Matrix3, Rotation3, UnitQuaternion};
 
 use photinus::camera::Pixel;
 use photinus::locator::{self, Located, Neighbour, Sighting};
+use photinus::pose::Mode;
 use photinus::spots::{Extent, Rejected, Spot};
 
+use super::record::Mode as ModeRecord;
 use super::{Distance, FrameRecord, NeighbourRecord, RejectedRecord, SpotRecord};
 
 impl FrameRecord {
@@ -14,25 +16,37 @@ impl FrameRecord {
     pub fn put_located(&mut self, located: &Located, airframe: &str) {
         self.spots = located.sightings.iter().map(SpotRecord::from).collect();
         self.rejected.extend(located.rejected.iter().map(RejectedRecord::from));
-        let record = |neighbour| NeighbourRecord::new(neighbour, located.members(neighbour), airframe);
+        let record = |neighbour| NeighbourRecord::new(neighbour, located, airframe);
         self.neighbours = located.neighbours.iter().map(record).collect();
     }
 }
 
 impl NeighbourRecord {
-    fn new(neighbour: &Neighbour, members: &[usize], airframe: &str) -> Self {
+    fn new(neighbour: &Neighbour, located: &Located, airframe: &str) -> Self {
+        let orientation = neighbour.orientation;
         Self {
             track: None,
             id: None,
             airframe: airframe.to_owned(),
-            spots: members.to_vec(),
+            spots: located.members(neighbour).to_vec(),
             bearing: (*neighbour.bearing.vector()).into(),
             distance_m: Distance::from(&neighbour.distance),
             position_m: neighbour.position.map(|position| position.mean_m.into()),
             position_covariance_m2: neighbour.position.map(|position| rows(&position.covariance_m2)),
-            orientation_xyzw: None,
-            orientation_covariance_rad2: None,
-            modes: Vec::new(),
+            orientation_xyzw: orientation.map(|turned| xyzw(&turned.camera_from_body)),
+            orientation_covariance_rad2: orientation.map(|turned| rows(&turned.covariance_rad2)),
+            modes: located.modes(neighbour).iter().map(ModeRecord::from).collect(),
+        }
+    }
+}
+
+impl From<&Mode> for ModeRecord {
+    fn from(mode: &Mode) -> Self {
+        Self {
+            weight: mode.weight,
+            position_m: mode.pose.position_m.into(),
+            position_covariance_m2: rows(&mode.position_covariance_m2),
+            orientation_xyzw: Some(xyzw(&mode.pose.camera_from_body)),
         }
     }
 }
@@ -130,6 +144,12 @@ impl From<&Rejected> for RejectedRecord {
 
 fn finite(value: f64) -> Option<f64> {
     value.is_finite().then_some(value)
+}
+
+/// The quaternion of a rotation, its last number not negative.
+fn xyzw(rotation: &Rotation3<f64>) -> [f64; 4] {
+    let [x, y, z, w] = UnitQuaternion::from_rotation_matrix(rotation).into_inner().coords.into();
+    if w < 0.0 { [-x, -y, -z, -w] } else { [x, y, z, w] }
 }
 
 fn rows(matrix: &Matrix3<f64>) -> [[f64; 3]; 3] {

@@ -139,8 +139,10 @@ impl Poser {
         for marker in 0..self.airframe.markers().len() {
             let number = marker as u16;
             if symmetry.canonical_turn(&[number]) == 0 {
-                let camera_from_body = facing(&self.airframe, marker, &ahead, &up);
-                self.hypotheses.offer(&[Some(number)], Pose { position_m, camera_from_body }, 0.0, 0);
+                self.hypotheses.offer(&[Some(number)], 0.0, 0, || Pose {
+                    position_m,
+                    camera_from_body: facing(&self.airframe, marker, &ahead, &up),
+                });
             }
         }
     }

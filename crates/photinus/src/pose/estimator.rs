@@ -121,7 +121,7 @@ impl Estimator {
                 continue;
             }
             let problem = problem(&self.airframe, &self.settings, observations, &self.whitened, known)
-                .assigned(hypotheses.markers(index));
+                .assigned(hypotheses.markers(index), &mode.pose);
             if index == best {
                 let misfit = |(spot, marker)| problem.misfit(&mode.pose, spot, marker);
                 self.posterior.worst_sigma = problem.used().map(misfit).fold(0.0, f64::max).sqrt();
@@ -149,9 +149,9 @@ impl Estimator {
                 let markers = hypotheses.markers_mut(index);
                 settle(&problem, start, markers, &mut self.assignment)
             } else {
-                refine(&problem.assigned(hypotheses.markers(index)), start)
+                refine(&problem.assigned(hypotheses.markers(index), &start), start)
             };
-            let unseen = problem.assigned(hypotheses.markers(index)).visibility_nats(&mode.pose);
+            let unseen = problem.assigned(hypotheses.markers(index), &mode.pose).visibility_nats(&mode.pose);
             self.nats.push(mode.normal.nats + unseen);
             self.modes.push(mode);
         }
@@ -215,6 +215,7 @@ fn problem<'a>(
         up: known.up,
         size: known.size,
         faintest_light: known.faintest_light,
+        melting: true,
     }
 }
 
@@ -230,17 +231,19 @@ fn settle(
         if !assignment.assign(problem.airframe, &pose, problem.observations, markers) {
             break;
         }
-        pose = refine(&problem.assigned(markers), pose).pose;
+        pose = refine(&problem.assigned(markers, &pose), pose).pose;
     }
-    Refined::at(&problem.assigned(markers), pose)
+    Refined::at(&problem.assigned(markers, &pose), pose)
 }
 
 impl<'a> Problem<'a> {
-    fn assigned<'b>(&self, markers: &'b [Option<u16>]) -> Problem<'b>
+    /// The problem of one assignment, near a pose.
+    fn assigned<'b>(&self, markers: &'b [Option<u16>], near: &Pose) -> Problem<'b>
     where
         'a: 'b,
     {
-        Problem { markers, ..*self }
+        let assigned = Problem { markers, melting: true, ..*self };
+        Problem { melting: assigned.may_melt(near), ..assigned }
     }
 }
 

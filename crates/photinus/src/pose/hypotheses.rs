@@ -34,40 +34,47 @@ impl Hypotheses {
         self.markers.clear();
     }
 
-    /// Offers an assignment, the marker of each spot, that costs `nats` by a first look. Of one assignment and branch the
-    /// cheapest is kept, of all the cheapest sixteen.
-    pub fn offer(&mut self, markers: &[Option<u16>], pose: Pose, nats: f64, branch: u8) {
-        let start = Start { pose, nats, branch };
+    /// Offers an assignment, the marker of each spot, that costs `nats` by a first look; `pose` is asked only if it is kept.
+    /// Of one assignment and branch the cheapest is kept, of all the cheapest few.
+    pub fn offer(
+        &mut self,
+        markers: &[Option<u16>],
+        nats: f64,
+        branch: u8,
+        pose: impl FnOnce() -> Pose,
+    ) {
         let same = (0..self.starts.len())
             .find(|&index| self.starts[index].branch == branch && self.markers(index) == markers);
-        let place = if let Some(same) = same {
-            same
-        } else if self.starts.len() < MOST {
-            self.starts.push(Start { nats: f64::INFINITY, ..start });
-            self.markers.extend_from_slice(markers);
-            self.starts.len() - 1
-        } else {
-            let worst = (0..MOST).max_by(|&a, &b| self.starts[a].nats.total_cmp(&self.starts[b].nats));
-            worst.unwrap_or(0)
-        };
-        if nats < self.starts[place].nats {
-            self.starts[place] = start;
-            let from = place * self.spots;
-            self.markers[from..from + self.spots].copy_from_slice(markers);
+        let place = same.or_else(|| self.dearest());
+        match place {
+            Some(place) if nats >= self.starts[place].nats => {}
+            Some(place) => {
+                self.starts[place] = Start { pose: pose(), nats, branch };
+                self.markers_mut(place).copy_from_slice(markers);
+            }
+            None => {
+                self.starts.push(Start { pose: pose(), nats, branch });
+                self.markers.extend_from_slice(markers);
+            }
         }
+    }
+
+    /// The one that gives way to a cheaper one; `None` while there is room for more.
+    fn dearest(&self) -> Option<usize> {
+        let dearer = |&a: &usize, &b: &usize| self.starts[a].nats.total_cmp(&self.starts[b].nats);
+        (self.starts.len() >= MOST).then(|| (0..MOST).max_by(dearer))?
     }
 
     /// Offers a pose without an assignment: each spot becomes the marker that is nearest in the end.
     pub fn offer_loose(&mut self, pose: Pose, nats: f64) {
-        if self.starts.len() == MOST {
-            let worst = (0..MOST).max_by(|&a, &b| self.starts[a].nats.total_cmp(&self.starts[b].nats));
-            let worst = worst.unwrap_or(0);
-            if nats < self.starts[worst].nats {
-                self.starts[worst] = Start { pose, nats, branch: LOOSE };
+        let start = Start { pose, nats, branch: LOOSE };
+        match self.dearest() {
+            Some(place) if nats < self.starts[place].nats => self.starts[place] = start,
+            Some(_) => {}
+            None => {
+                self.starts.push(start);
+                self.markers.resize(self.markers.len() + self.spots, None);
             }
-        } else {
-            self.starts.push(Start { pose, nats, branch: LOOSE });
-            self.markers.resize(self.markers.len() + self.spots, None);
         }
     }
 

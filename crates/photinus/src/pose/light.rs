@@ -10,8 +10,6 @@ const LOBE_ERROR: f64 = 0.02;
 const DARK: f64 = 0.01;
 /// How often a marker that must show does not: dead, occluded, merged with another.
 const MISSED: f64 = 0.001;
-/// How sharply finding falls off around the faintest light, as a power of light.
-const STEEPNESS: f64 = 8.0;
 /// A marker that others outshine by more than this is taken for a reflection, unless it is bright in itself.
 const OUTSHONE: f64 = 0.22;
 /// ... which it is when the faintest light is less than this share of the least that is not outshone.
@@ -99,6 +97,12 @@ impl Light {
     }
 }
 
+/// The odds of finding a marker whose light is so many times the faintest: its eighth power.
+fn steep(times: f64) -> f64 {
+    let fourth = (times * times) * (times * times);
+    fourth * fourth
+}
+
 impl Problem<'_> {
     /// What it costs, nats, that these markers are seen and the others are not.
     pub(super) fn visibility_nats(&self, pose: &Pose) -> f64 {
@@ -121,12 +125,12 @@ impl Problem<'_> {
         let half = if half > CERTAIN_SHARE * outshone { half.max(outshone) } else { half };
         let nats = |marker: usize| {
             let intensity = self.airframe.intensity(marker, &camera_in_body_m);
-            let odds = libm::pow(intensity.max(1e-3) / half, STEEPNESS);
+            let odds = steep(intensity.max(1e-3) / half);
             let found = (1.0 - MISSED) * odds / (1.0 + odds);
             if self.markers.contains(&u16::try_from(marker).ok()) {
                 return -libm::log(found.max(1e-9));
             }
-            if self.used().any(|(spot, seen)| self.are_one(spot, seen, marker, &camera_in_body_m)) {
+            if self.melting && self.used().any(|(spot, seen)| self.are_one(spot, seen, marker, &camera_in_body_m)) {
                 return 0.0;
             }
             -libm::log(1.0 - found)

@@ -31,6 +31,8 @@ const ELEVATION_SIGMA: f64 = 0.6;
 const IMAGE_TILT_SIGMA: f64 = 1.0;
 /// The place of the light of markers that melt into one spot is known to this share of how far it is from the first of them.
 const MELTED_SHARE: f64 = 0.1;
+/// How much farther than a pose markers are looked from to tell whether any melt near it.
+const MELTING_ROOM: f64 = 1.5;
 /// What it costs, nats, that a spot among an airframe's own is none of its markers: a spot that is one is likelier by its
 /// sigma of a third of a milliradian against the few hundredths of a radian around the others, and strangers are rare.
 const STRANGER_NATS: f64 = 14.0;
@@ -86,6 +88,8 @@ pub(super) struct Problem<'a> {
     pub(super) size: Option<LogDistance>,
     /// Light below which a marker is not found; 0 where unknown.
     pub(super) faintest_light: f64,
+    /// Whether markers may melt into one spot.
+    pub(super) melting: bool,
 }
 
 /// The cost of a pose, nats, with gradient and Gauss-Newton information for a step [delta; omega].
@@ -157,6 +161,17 @@ impl Problem<'_> {
         (map * (place_m.normalize() - direction) * factor).norm_squared()
     }
 
+    /// Whether a marker without a spot may melt into one that has, anywhere near a pose.
+    pub(super) fn may_melt(&self, pose: &Pose) -> bool {
+        let camera_in_body_m = pose.camera_in_body_m() * MELTING_ROOM;
+        let free = |marker: &usize| !self.markers.contains(&u16::try_from(*marker).ok());
+        let melts = |(spot, seen)| {
+            let mut others = (0..self.airframe.markers().len()).filter(free);
+            others.any(|other| self.are_one(spot, seen, other, &camera_in_body_m))
+        };
+        self.used().any(melts)
+    }
+
     /// Whether two markers are one spot for a camera at a place in the body frame.
     pub(super) fn are_one(&self, spot: usize, a: usize, b: usize, camera_in_body_m: &Vector3<f64>) -> bool {
         let [a_m, b_m] = [a, b].map(|marker| self.airframe.markers()[marker].position_m);
@@ -178,6 +193,9 @@ impl Problem<'_> {
     ) -> (Vector3<f64>, f64) {
         let markers = self.airframe.markers();
         let alone_m = markers[marker].position_m;
+        if !self.melting {
+            return (alone_m, 1.0);
+        }
         let mut at_m = alone_m;
         let mut light = None;
         for (other, beside) in markers.iter().enumerate() {

@@ -60,7 +60,7 @@ proptest! {
         let problem = Problem {
             airframe: &airframe, settings: &settings, observations: &observations, whitened: &whitened, markers: &markers,
             up: with_up.then(|| Unit::new_normalize(Vector3::new(0.05, -1.0, 0.02))),
-            size: Some(LogDistance { mean: 1.0, sigma: 0.5 }), faintest_light: 0.0,
+            size: Some(LogDistance { mean: 1.0, sigma: 0.5 }), faintest_light: 0.0, melting: false,
         };
         let normal = problem.normal(&pose);
         prop_assert!((normal.information - normal.information.transpose()).norm() == 0.0);

@@ -12,10 +12,10 @@ mod size;
 use nalgebra::{Unit, Vector2, Vector3};
 
 use super::Sighting;
-use super::views::{ELEVATION_STEP_RAD, MOST_ORDERED, Spread, Views};
+use super::views::{ELEVATION_STEP_RAD, Spread, Views};
 use crate::airframe::Airframe;
 use crate::lanes::{self, LANES, Lanes};
-use crate::pose::{Hypotheses, LogDistance, Symmetry};
+use crate::pose::{Hypotheses, LogDistance, Pose, Symmetry};
 use crate::ranging::{BoundedBearing, DistanceBounds, Interval};
 use image::Image;
 use ordered::Ordered;
@@ -168,22 +168,18 @@ impl Matcher {
                 if nats > best.nats + POOR_NATS {
                     continue;
                 }
-                let mut markers = [0; MOST_ORDERED];
-                for (to, from) in markers.iter_mut().zip(arrangement.markers) {
-                    *to = from as u16;
-                }
-                let markers = &mut markers[..group.len()];
-                let (place_m, turn) = seen.place(arrangement, &image);
-                let mut pose = image.pose(&place_m, turn, arrangement.yaw_rad, arrangement.elevation_rad);
+                let markers = arrangement.markers.map(|marker| marker as u16);
                 let symmetry = &self.symmetry;
-                let canonical = symmetry.canonical_turn(markers);
-                pose.camera_from_body = symmetry.attitude(&pose.camera_from_body, canonical);
-                let named = std::array::from_fn::<_, MOST_ORDERED, _>(|spot| {
-                    markers.get(spot).map(|&marker| symmetry.turned(canonical, marker))
-                });
+                let canonical = symmetry.canonical_turn(&markers[..group.len()]);
+                let named = markers.map(|marker| Some(symmetry.turned(canonical, marker)));
                 // With gravity the tilt tells above from below; without it both are ways to look.
                 let branch = u8::from(gravity.is_none() && arrangement.elevation_rad < 0.0);
-                hypotheses.offer(&named[..group.len()], pose, f64::from(nats), branch);
+                hypotheses.offer(&named[..group.len()], f64::from(nats), branch, || {
+                    let (place_m, turn) = seen.place(arrangement, &image);
+                    let pose = image.pose(&place_m, turn, arrangement.yaw_rad, arrangement.elevation_rad);
+                    let camera_from_body = symmetry.attitude(&pose.camera_from_body, canonical);
+                    Pose { camera_from_body, ..pose }
+                });
             }
         }
     }

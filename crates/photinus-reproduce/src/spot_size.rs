@@ -14,7 +14,6 @@ use rand_pcg::Pcg64;
 
 use crate::view::{OUTDOOR_DN, PAPER_DN};
 use crate::{Effort, Report, ReproduceError, Rig};
-pub(crate) use envelope::envelope_px;
 
 /// What the paper's figure 10 shows: exposures, and the distance past which spots are always single pixels.
 pub(crate) const EXPOSURES: [(f64, Option<f64>); 7] = [

@@ -28,7 +28,7 @@ pub(super) fn report(repeats: &[Vec<Shot>]) -> Report {
 }
 
 /// The largest area at a distance before it is rounded, px.
-pub(crate) fn envelope_px(envelope: &Envelope, distance_m: f64) -> f64 {
+fn envelope_px(envelope: &Envelope, distance_m: f64) -> f64 {
     let shifted_m = distance_m + envelope.shift_m;
     envelope.offset_px + envelope.scale_px_m2 / (shifted_m * shifted_m)
 }

@@ -20,7 +20,9 @@ const PAPER_M: f64 = 15.0;
 const CIRCLES_M: (f64, f64) = (5.5, 3.2);
 /// A range ends where fewer frames than this have a marker.
 const FOUND: f64 = 0.95;
-const THRESHOLDS_DN: [u8; 3] = [PAPER_DN, 120, OUTDOOR_DN];
+/// The lowest threshold that the sky allows: half as much again as its 20 levels at noon.
+const ABOVE_SKY_DN: u8 = 30;
+const THRESHOLDS_DN: [u8; 4] = [PAPER_DN, 120, OUTDOOR_DN, ABOVE_SKY_DN];
 
 fn frames_each(effort: Effort) -> u64 {
     effort.of(200, 6)
@@ -56,7 +58,7 @@ impl Found {
 
 pub(crate) fn report(rig: &Rig, effort: Effort, frame_done: &dyn Fn()) -> Result<Report, ReproduceError> {
     let by_distance = record(rig, frames_each(effort), frame_done)?;
-    let roles = [Role::Perpendicular, Role::Printed, Role::Inline];
+    let roles = [Role::Perpendicular, Role::Printed, Role::Inline, Role::Member(6)];
     let fixed = THRESHOLDS_DN.into_iter().zip(roles).enumerate().map(|(view, (threshold_dn, role))| {
         Found::of(format!("threshold {threshold_dn}"), role, &by_distance, move |seen| {
             seen.paper[view].markers.len()
@@ -111,7 +113,7 @@ fn record(rig: &Rig, count: u64, frame_done: &dyn Fn()) -> Result<Vec<Vec<Seen>>
 }
 
 fn rows(found: &[Found]) -> Vec<Row> {
-    let [at_200, _, outdoor, own] = found else { return Vec::new() };
+    let [at_200, _, outdoor, above_sky, own] = found else { return Vec::new() };
     let at = |shares: &[(f64, f64)]| {
         shares.iter().find(|point| point.0 >= PAPER_M).map_or(f64::NAN, |point| point.1)
     };
@@ -130,6 +132,13 @@ fn rows(found: &[Found]) -> Vec<Row> {
             at(&at_200.one),
             Tolerance::None,
             "impossible beside 6.62 m: a border halves a point, so past 9.4 m even the middle of a pixel is below 200",
+        ),
+        Row::of_paper(
+            "frames with a marker at 15 m, threshold 30, share",
+            1.0,
+            at(&above_sky.one),
+            Tolerance::AtLeast(FOUND),
+            "the lowest threshold that a sky of 20 levels allows",
         ),
         Row::own(
             "frames with a marker at 15 m, Photinus, share",

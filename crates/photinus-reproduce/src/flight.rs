@@ -3,14 +3,15 @@
 use photinus_sim::Simulator;
 use photinus_sim::motion::{Motion, Spin};
 
-use crate::statistics::{rms, share};
+use crate::statistics::{mean, rms, share};
 use crate::view::{OUTDOOR_DN, Observer, Seen, SeenPair};
 use crate::{Effort, Figure, Kind, Panel, Report, ReproduceError, Rig, Role, Row, Tolerance, heading};
 
 /// A quick run looks at the time around the first spin, before and after it by so much, s, and at every so many frames.
 const QUICK: (f64, usize) = (2.0, 8);
-/// The closer estimate has swapped when truth passes this share of the way between the two; noise in the middle is no swap.
-const SWAPPED: f64 = 0.65;
+/// The closer estimate has swapped when truth passes this share of the way between the two, in the mean over so much time, s;
+/// noise in the middle is no swap.
+const SWAPPED: (f64, f64) = (0.65, 0.1);
 /// A hexagon swaps twice per sixth of a turn.
 const SWAPS_PER_TURN: f64 = 12.0;
 
@@ -150,24 +151,29 @@ fn measured_rows(rig: &Rig, seen: &[Seen]) -> Vec<Row> {
 fn swaps(seen: &[Seen], spins: &[&Spin]) -> u32 {
     let mut count = 0;
     for spin in spins {
-        let mut is_inline = None;
         let within = |seen: &&Seen| (spin.start_s..=spin.start_s + spin.duration_s).contains(&seen.time_s);
-        for (distance_m, pair) in
-            seen.iter().filter(within).filter_map(|seen| Some((seen.distance_m(), pair(seen)?)))
-        {
-            let share = (pair.perpendicular_m - distance_m) / (pair.perpendicular_m - pair.inline_m);
-            let now = if share > SWAPPED {
-                Some(true)
-            } else if share < 1.0 - SWAPPED {
-                Some(false)
-            } else {
-                is_inline
+        let shares = over_time(&seen.iter().filter(within).cloned().collect::<Vec<_>>(), |seen| {
+            let pair = pair(seen)?;
+            Some((pair.perpendicular_m - seen.distance_m()) / (pair.perpendicular_m - pair.inline_m))
+        });
+        let mut was_inline = None;
+        for share in shares.iter().map(|(time_s, _)| mean_around(&shares, *time_s)) {
+            let is_inline = match share {
+                share if share > SWAPPED.0 => Some(true),
+                share if share < 1.0 - SWAPPED.0 => Some(false),
+                _ => was_inline,
             };
-            count += u32::from(is_inline.is_some() && now != is_inline);
-            is_inline = now;
+            count += u32::from(was_inline.is_some() && is_inline != was_inline);
+            was_inline = is_inline;
         }
     }
     count
+}
+
+/// The mean of what lies within half the time over which swaps are smoothed.
+fn mean_around(points: &[(f64, f64)], time_s: f64) -> f64 {
+    let near = points.iter().filter(|point| (point.0 - time_s).abs() <= 0.5 * SWAPPED.1);
+    mean(near.map(|point| point.1))
 }
 
 /// l_A and l_B with alpha widened by an angle.

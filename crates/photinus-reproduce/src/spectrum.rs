@@ -220,12 +220,12 @@ impl<'a> Budget<'a> {
 
     fn panel(&self, sky_kept: f64) -> Panel {
         let led = (0..=120).map(|step| 0.5 * libm::pow(60.0, f64::from(step) / 120.0));
-        let led: Vec<_> = led.map(|l| (l, self.led_e(l).min(4.0 * self.saturated_e))).collect();
+        let led: Vec<_> = led.map(|l| (l, self.led_e(l))).collect();
         let across = |level: f64| vec![(0.0, level), (30.0, level)];
         let mut panel = Panel::new(
-            "One pixel at 1000 us: an LED that faces the camera, and the sky behind it",
+            "Brightest pixel at 1000 us: an LED that faces the camera, and the sky behind it",
             "distance (m)",
-            "photo-electrons in the brightest pixel",
+            "photo-electrons",
         )
         .with_ranges([0.0, 30.0], [100.0, 1e5])
         .with("LED", Kind::Line, Role::Member(6), led)

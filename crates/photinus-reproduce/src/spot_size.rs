@@ -16,7 +16,7 @@ use crate::view::{OUTDOOR_DN, PAPER_DN};
 use crate::{Effort, Report, ReproduceError, Rig};
 
 /// What the paper's figure 10 shows: exposures, and the distance past which spots are always single pixels.
-pub(crate) const EXPOSURES: [(f64, Option<f64>); 7] = [
+const EXPOSURES: [(f64, Option<f64>); 7] = [
     (100.0, Some(2.12)),
     (200.0, Some(3.23)),
     (500.0, Some(5.06)),
@@ -25,28 +25,30 @@ pub(crate) const EXPOSURES: [(f64, Option<f64>); 7] = [
     (5000.0, Some(14.16)),
     (10_000.0, None),
 ];
-/// Nearest and farthest place of the LED, m.
-pub(crate) const NEAR_M: f64 = 0.5;
+/// Nearest place of the LED, m, and the end of the paper's axes.
+const NEAR_M: f64 = 0.5;
 const FAR_M: f64 = 15.0;
+/// Farthest place of the LED at 1000 us, m: nobody finds it there. For other exposures it goes with their square root.
+const LOST_M: f64 = 30.0;
 /// (13) of the paper as its equation prints it.
-pub(crate) const PRINTED: Envelope = Envelope { offset_px: 1.3398, scale_px_m2: 31.4704, shift_m: -0.0154 };
+const PRINTED: Envelope = Envelope { offset_px: 1.3398, scale_px_m2: 31.4704, shift_m: -0.0154 };
 /// Recordings at 1000 us, for the spread of the fit.
 const REPEATS: u64 = 10;
 
 /// One frame of the LED.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Shot {
-    pub(crate) distance_m: f64,
+struct Shot {
+    distance_m: f64,
     /// Pixels at or above 200; 0 where there are none.
-    pub(crate) area_px: u32,
+    area_px: u32,
     /// Whether there is a spot at the outdoor threshold.
-    pub(crate) is_found_outdoors: bool,
+    is_found_outdoors: bool,
     /// Whether Photinus finds one by contrast.
-    pub(crate) is_found_by_contrast: bool,
+    is_found_by_contrast: bool,
 }
 
 fn shots_each(effort: Effort) -> u64 {
-    effort.of(3000, 150)
+    effort.of(8000, 150)
 }
 
 /// How many frames are rendered.
@@ -64,7 +66,7 @@ pub(crate) fn reports(
         |exposure_us, far_m, seed| record(rig, exposure_us, far_m, shots_each(effort), seed, frame_done);
     let mut by_exposure = Vec::new();
     for (number, (exposure_us, _)) in EXPOSURES.into_iter().enumerate() {
-        by_exposure.push(record(exposure_us, 2.5 * FAR_M, number as u64)?);
+        by_exposure.push(record(exposure_us, LOST_M * (exposure_us / 1000.0).sqrt(), number as u64)?);
     }
     let repeats =
         (0..REPEATS).map(|repeat| record(1000.0, FAR_M, 100 + repeat)).collect::<Result<Vec<_>, _>>()?;

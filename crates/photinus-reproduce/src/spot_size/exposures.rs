@@ -18,8 +18,7 @@ pub(super) fn report(by_exposure: &[Vec<Shot>]) -> Report {
 }
 
 fn areas(by_exposure: &[Vec<Shot>], single_px_m: &[f64]) -> Panel {
-    let title =
-        "Spot area, threshold 200; upright: past it spots are single pixels (solid: here, dashed: the paper)";
+    let title = "Spot area, threshold 200; past the upright lines spots are single pixels";
     let mut panel =
         Panel::new(title, "distance (m)", "spot area (px)").with_ranges([0.0, FAR_M], [0.0, SHOWN_PX]);
     for (member, (shots, (exposure_us, paper_m))) in by_exposure.iter().zip(EXPOSURES).enumerate() {
@@ -30,10 +29,12 @@ fn areas(by_exposure: &[Vec<Shot>], single_px_m: &[f64]) -> Panel {
         panel = panel.with(format!("{exposure_us} us"), Kind::Points, Role::Member(member), points);
         let upright = |at: f64| vec![(at, 0.0), (at, 0.92 * SHOWN_PX)];
         if let Some(paper_m) = paper_m {
-            panel = panel.with("", Kind::Dashed, Role::Member(member), upright(paper_m));
+            let label = if member == 0 { "lines: the paper" } else { "" };
+            panel = panel.with(label, Kind::Dashed, Role::Member(member), upright(paper_m));
         }
         if single_px_m[member] < FAR_M {
-            panel = panel.with("", Kind::Line, Role::Member(member), upright(single_px_m[member]));
+            let label = if member == 0 { "lines: here" } else { "" };
+            panel = panel.with(label, Kind::Line, Role::Member(member), upright(single_px_m[member]));
         }
     }
     panel
@@ -54,7 +55,7 @@ fn ranges(by_exposure: &[Vec<Shot>]) -> Panel {
             over_exposure(|shot| shot.area_px > 0),
         );
     panel.x_range = Some([0.0, 10.0]);
-    panel.y_range = Some([0.0, 40.0]);
+    panel.y_range = Some([0.0, 80.0]);
     panel
 }
 

@@ -70,7 +70,7 @@ pub(crate) fn report(rig: &Rig, effort: Effort, frame_done: &dyn Fn()) -> Result
     }));
     let panel = |title, of: fn(&Found) -> &Vec<(f64, f64)>| {
         let empty =
-            Panel::new(title, "distance (m)", "share of frames (%)").with_ranges([0.0, 30.0], [0.0, 105.0]);
+            Panel::new(title, "distance (m)", "share of frames (%)").with_ranges([0.0, 30.0], [0.0, 115.0]);
         let percent = |found: &Found| of(found).iter().map(|(l, share)| (*l, 100.0 * share)).collect();
         let panel = found.iter().fold(empty, |panel, found| {
             panel.with(found.label.clone(), Kind::Line, found.role, percent(found))

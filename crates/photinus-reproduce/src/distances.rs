@@ -129,7 +129,7 @@ fn error_panels(cases: &[Case], own: &[(f64, f64)], margins: &MarginsOf) -> Vec<
     let axes = |title| {
         Panel::new(title, "true distance (m)", "relative error (%)").with_ranges(SHOWN_M, [0.0, AXIS_PERCENT])
     };
-    let perpendicular = axes("l_A")
+    let perpendicular = axes("Error of l_A")
         .with("l_A", Kind::Points, Role::Perpendicular, percent(|seen| seen.perpendicular_m))
         .with(
             "predicted largest (9)",
@@ -137,14 +137,15 @@ fn error_panels(cases: &[Case], own: &[(f64, f64)], margins: &MarginsOf) -> Vec<
             Role::Bound,
             margins.percent_line(Margins::max_perpendicular_m),
         );
-    let inline = axes("l_B").with("l_B", Kind::Points, Role::Inline, percent(|seen| seen.inline_m)).with(
-        "predicted largest (12)",
-        Kind::Line,
-        Role::Bound,
-        margins.percent_line(Margins::min_inline_m),
-    );
+    let inline = axes("Error of l_B")
+        .with("l_B", Kind::Points, Role::Inline, percent(|seen| seen.inline_m))
+        .with("predicted largest (12)", Kind::Line, Role::Bound, margins.percent_line(Margins::min_inline_m));
     let own = own.iter().map(|(l, estimate_m)| (*l, 100.0 * (estimate_m / l - 1.0).abs())).collect();
-    vec![perpendicular, inline, axes("Photinus").with("estimate", Kind::Points, Role::Own, own)]
+    vec![
+        perpendicular,
+        inline,
+        axes("Error of Photinus' estimate").with("estimate", Kind::Points, Role::Own, own),
+    ]
 }
 
 fn distance_rows(at_paper: &[Case], at_outdoor: &[Case], margins: &MarginsOf) -> Vec<Row> {
@@ -324,4 +325,33 @@ fn error_rows(cases: &[Case], own: &[(f64, f64)], margins: &MarginsOf) -> Vec<Ro
             "2 to 14 m",
         ),
     ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rig::tests::rig;
+
+    #[test]
+    fn a_case_is_inside_its_margins_or_told_with_its_cause() {
+        let rig = rig();
+        let margins =
+            MarginsOf { pair: rig.pair(), rad_per_px: rig.rad_per_px(), curve: SpotCurve::paper_1000_us() };
+        let eps_rad = margins.eps_rad(6.0);
+        assert!((eps_rad - 1.5 * 3.7673e-3).abs() < 1e-8, "two pixels at 6 m");
+        let case = |off_eps: f64| {
+            let alpha_rad = margins.pair.inline_angle_rad(6.0).unwrap() - off_eps * eps_rad;
+            let perpendicular_m = margins.pair.perpendicular_m(alpha_rad).unwrap();
+            let inline_m = margins.pair.inline_m(alpha_rad).unwrap();
+            Case {
+                distance_m: 6.0,
+                seen: SeenPair { alpha_rad, eps_rad: [eps_rad; 2], perpendicular_m, inline_m },
+            }
+        };
+        let cases = [case(0.5), case(1.5), case(3.0)];
+        assert_eq!(cases.each_ref().map(|case| margins.holds_perpendicular(case)), [true, false, false]);
+        assert_eq!(violations(&cases, &margins), (2, 2));
+        let told = causes(&cases, &margins, MarginsOf::holds_inline);
+        assert!(told.starts_with("1 of them within two eps") && told.contains("1 of pairs"), "{told}");
+    }
 }

@@ -149,23 +149,30 @@ fn measured_rows(rig: &Rig, seen: &[Seen]) -> Vec<Row> {
 
 /// How often the estimate that is closer to truth swaps during spins.
 fn swaps(seen: &[Seen], spins: &[&Spin]) -> u32 {
-    let mut count = 0;
-    for spin in spins {
+    let during = |spin: &&Spin| {
         let within = |seen: &&Seen| (spin.start_s..=spin.start_s + spin.duration_s).contains(&seen.time_s);
-        let shares = over_time(&seen.iter().filter(within).cloned().collect::<Vec<_>>(), |seen| {
+        let share = |seen: &Seen| {
             let pair = pair(seen)?;
-            Some((pair.perpendicular_m - seen.distance_m()) / (pair.perpendicular_m - pair.inline_m))
-        });
-        let mut was_inline = None;
-        for share in shares.iter().map(|(time_s, _)| mean_around(&shares, *time_s)) {
-            let is_inline = match share {
-                share if share > SWAPPED.0 => Some(true),
-                share if share < 1.0 - SWAPPED.0 => Some(false),
-                _ => was_inline,
-            };
-            count += u32::from(was_inline.is_some() && is_inline != was_inline);
-            was_inline = is_inline;
-        }
+            let from_far_m = pair.perpendicular_m - seen.distance_m();
+            Some((seen.time_s, from_far_m / (pair.perpendicular_m - pair.inline_m)))
+        };
+        count_swaps(&seen.iter().filter(within).filter_map(share).collect::<Vec<_>>())
+    };
+    spins.iter().map(during).sum()
+}
+
+/// How often (time, share of the way from l_A to l_B) goes from one side to the other.
+fn count_swaps(shares: &[(f64, f64)]) -> u32 {
+    let mut count = 0;
+    let mut was_inline = None;
+    for share in shares.iter().map(|(time_s, _)| mean_around(shares, *time_s)) {
+        let is_inline = match share {
+            share if share > SWAPPED.0 => Some(true),
+            share if share < 1.0 - SWAPPED.0 => Some(false),
+            _ => was_inline,
+        };
+        count += u32::from(was_inline.is_some() && is_inline != was_inline);
+        was_inline = is_inline;
     }
     count
 }
@@ -261,4 +268,29 @@ fn from_above(seen: &[Seen]) -> Report {
         ),
     ];
     Report { figure: Figure::Overlay, panels: vec![panel], rows }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rig::tests::rig;
+
+    #[test]
+    fn swaps_are_counted_through_noise() {
+        let wave = |time_s: f64| 0.5 - 0.5 * libm::cos(core::f64::consts::TAU * time_s);
+        let noise = |step: u32| if step % 2 == 0 { 0.4 } else { -0.4 };
+        let shares: Vec<(f64, f64)> = (0..500)
+            .map(|step| (0.01 * f64::from(step), wave(0.01 * f64::from(step)) + noise(step)))
+            .collect();
+        assert_eq!(count_swaps(&shares), 10, "twice a second over five seconds");
+        assert_eq!(count_swaps(&[(0.0, 0.5), (1.0, 0.6)]), 0);
+    }
+
+    #[test]
+    fn a_quick_run_covers_a_spin() {
+        let rig = rig();
+        let numbers: Vec<u64> = numbers(&rig, Effort::Quick).collect();
+        assert_eq!((numbers[0], numbers.len() as u64), (3780, frames(&rig, Effort::Quick)));
+        assert_eq!(frames(&rig, Effort::Full), rig.scene().frames);
+    }
 }

@@ -113,3 +113,31 @@ fn smoothed(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
     let stretches = points.chunk_by(|a, b| stretch(a) == stretch(b));
     stretches.map(|points| (mean(points.iter().map(|p| p.0)), mean(points.iter().map(|p| p.1)))).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use photinus::ranging::Interval;
+    use photinus_sim::Simulator;
+
+    use super::*;
+    use crate::rig::tests::rig;
+    use crate::view::{Observer, OwnNeighbour};
+
+    #[test]
+    fn an_exact_bearing_gives_the_heading_and_a_metre_aside_turns_it() {
+        let rig = rig();
+        let rendered = Simulator::new(rig.scene(), 0).unwrap().frame(700);
+        let mut seen = Observer::new(&rig, &[]).unwrap().look(&rendered).unwrap();
+        let (bearing, bounds) = (Bearing::new(seen.position_m).unwrap(), Interval::new(0.0, 9.0).unwrap());
+        seen.own.neighbour = Some(OwnNeighbour { bearing, estimate_m: None, bounds });
+        assert!(error_rad(&rig, &seen, Vector3::zeros()).unwrap().abs() < 1e-9);
+        let north_rad = error_rad(&rig, &seen, Vector3::y()).unwrap();
+        assert!((north_rad - 1.0 / seen.distance_m()).abs() < 0.02, "{north_rad}, to the left is positive");
+    }
+
+    #[test]
+    fn a_mean_is_that_of_its_second() {
+        let points = [(0.1, 1.0), (0.9, 3.0), (1.2, 5.0)];
+        assert_eq!(smoothed(&points), [(0.5, 2.0), (1.2, 5.0)]);
+    }
+}

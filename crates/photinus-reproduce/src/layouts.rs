@@ -52,10 +52,10 @@ fn layouts() -> Result<Report, ReproduceError> {
         "direction of the camera (deg)",
         y_label,
     )
-    .with_ranges([0.0, 180.0], [0.0, 180.0]);
+    .with_ranges([0.0, 180.0], [0.0, 110.0]);
     let mut above =
-        Panel::new("The same, its least over all directions", "elevation of the camera (deg)", y_label)
-            .with_ranges([0.0, 90.0], [0.0, 180.0]);
+        Panel::new("The same, the least over all directions", "elevation of the camera (deg)", y_label)
+            .with_ranges([0.0, 90.0], [0.0, 110.0]);
     let mut rows = Vec::new();
     for (label, airframe, role) in &shapes {
         let over_yaw = yaws().map(|yaw_deg| (yaw_deg, second(airframe, yaw_deg, 0.0))).collect();
@@ -113,7 +113,8 @@ fn lobes() -> Result<Report, ReproduceError> {
     )];
     for (member, splay_deg) in SPLAYS_DEG.into_iter().enumerate() {
         let airframe = ring(4, 2, splay_deg.to_radians())?;
-        panel = panel.with(format!("{splay_deg} deg"), Kind::Line, Role::Member(member), over_yaw(&airframe));
+        panel =
+            panel.with(format!("{splay_deg} deg"), Kind::Line, Role::Member(member + 1), over_yaw(&airframe));
         let ahead = 100.0 * airframe.intensity(0, &camera_m(0.0, 0.0));
         let quantity = format!("intensity ahead of two LEDs at {splay_deg} deg (%)");
         let by_hand = 200.0 * libm::cos(0.5 * splay_deg * TAU / 360.0);
@@ -124,4 +125,17 @@ fn lobes() -> Result<Report, ReproduceError> {
         });
     }
     Ok(Report { figure: Figure::Lobes, panels: vec![panel], rows })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn intensities_are_those_of_the_paper() {
+        let reports = reports().unwrap();
+        let rows = reports.iter().flat_map(|report| &report.rows);
+        assert_eq!(rows.clone().filter(|row| row.paper.is_some()).count(), 4);
+        assert!(rows.clone().all(|row| row.is_within() != Some(false)), "{reports:?}");
+    }
 }

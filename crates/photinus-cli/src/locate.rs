@@ -128,7 +128,11 @@ pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> std::result::Result<(
         mask.check_size(camera.width(), camera.height()).map_err(Failure::input)?;
     }
     let mut outputs = args.output.open(args.csv.as_deref(), &input.files, Some(&camera))?;
-    let settings = Settings { spots: args.spot_options.settings(), max_tilt_rad: args.max_tilt.to_radians() };
+    let settings = Settings {
+        spots: args.spot_options.settings(),
+        max_tilt_rad: args.max_tilt.to_radians(),
+        ..Settings::default()
+    };
     let refuse = |error: photinus::locator::LocatorError| Failure::Input(error.to_string());
     let mut locator = Locator::new(camera, &airframe, curve, settings).map_err(refuse)?;
     locator.set_mask(mask_of(mask.as_ref()).cloned()).map_err(refuse)?;
@@ -186,7 +190,7 @@ fn name(stage: Stage) -> &'static str {
         Stage::Spots => "spots",
         Stage::Bearings => "bearings",
         Stage::Grouping => "grouping",
-        Stage::Ranging => "ranging",
+        Stage::Posing => "posing",
     }
 }
 

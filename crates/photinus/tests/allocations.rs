@@ -10,6 +10,7 @@ use photinus::airframe::{Airframe, Ring};
 use photinus::camera::{Camera, Ideal, IdealLaw, Model, Pixel};
 use photinus::frame::{FrameView, Mask};
 use photinus::locator::{self, Locator};
+use photinus::pose::{p3p, pnp};
 use photinus::spots::{Brightness, Detector, Settings};
 use rand_distr::{Distribution, Uniform};
 use rand_pcg::Pcg64;
@@ -117,6 +118,20 @@ fn a_warm_detector_allocates_nothing() {
         assert_eq!(requests_during(|| frames.iter().for_each(|pixels| detect(pixels))), 0, "{brightness:?}");
         assert!(spots > 1000, "{spots} spots");
     }
+}
+
+#[test]
+fn closed_form_poses_allocate_nothing() {
+    let points_m = [[0.4, 0.0, 0.0], [0.0, 0.4, 0.1], [-0.4, 0.0, 0.0], [0.0, -0.4, 0.0], [0.2, 0.2, 0.2]];
+    let points_m = points_m.map(Vector3::from);
+    let bearings = points_m.map(|p| (p + Vector3::new(0.3, 0.2, 2.0)).normalize());
+    let mut poses = 0;
+    let work = || {
+        poses += usize::from(pnp(&bearings, &points_m).is_some());
+        poses += p3p(bearings[..3].try_into().unwrap(), points_m[..3].try_into().unwrap()).iter().len();
+    };
+    assert_eq!(requests_during(work), 0);
+    assert!(poses > 1, "{poses}");
 }
 
 #[test]

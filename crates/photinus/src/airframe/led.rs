@@ -39,6 +39,17 @@ impl Led {
             Lobe::Omni => 1.0,
         }
     }
+
+    /// [`Led::intensity`] with its derivative by the camera's place, 1/m.
+    pub(super) fn intensity_with_gradient(&self, camera_m: &Vector3<f64>) -> (f64, Vector3<f64>) {
+        let intensity = self.intensity(camera_m);
+        if self.lobe == Lobe::Omni || intensity <= 0.0 {
+            return (intensity, Vector3::zeros());
+        }
+        let ray_m = camera_m - self.position_m;
+        let distance_m = ray_m.norm();
+        (intensity, (self.axis.into_inner() - ray_m * (intensity / distance_m)) / distance_m)
+    }
 }
 
 /// Refuses LEDs that no airframe can have.

@@ -100,6 +100,15 @@ impl Airframe {
         leds.iter().map(|&led| self.leds[led].intensity(camera_m)).sum()
     }
 
+    /// [`Airframe::intensity`] with its derivative by the camera's place (body frame), 1/m.
+    pub fn intensity_with_gradient(&self, marker: usize, camera_m: &Vector3<f64>) -> (f64, Vector3<f64>) {
+        let leds = self.markers.get(marker).map_or(&[][..], |marker| &marker.leds);
+        leds.iter().fold((0.0, Vector3::zeros()), |(sum, slope), &led| {
+            let (intensity, gradient) = self.leds[led].intensity_with_gradient(camera_m);
+            (sum + intensity, slope + gradient)
+        })
+    }
+
     /// Whether marker `marker` shines at all towards a camera at `camera_m` (body frame, m).
     pub fn is_visible(&self, marker: usize, camera_m: &Vector3<f64>) -> bool {
         self.intensity(marker, camera_m) > 0.0

@@ -4,30 +4,35 @@
 //! frame -> spots     what is bright                         crate::spots
 //!       -> sightings where each spot lies, how sure, how far  sighting
 //!       -> groups    which spots are one neighbour          grouping, by matching
-//!       -> ranges    how far, between which bounds          ranging, by matching and crate::ranging
+//!       -> poses     where, how turned, between which bounds  posing, by matching, crate::pose and crate::ranging
 //! ```
 //!
 //! Without identities the spots of a neighbour are interchangeable. What the airframe can look like is laid out once, in
-//! `views`; `matching` asks how well a handful of spots looks like one of those views, which tells both whether they
-//! belong together and how far away they are. The estimate is a mean over all views that match; the bounds are strict and
-//! come from [`crate::ranging::DistanceBounds`] alone.
+//! `views`; `matching` asks how well a handful of spots looks like one of those views, which tells whether they belong
+//! together and which markers they may be. From there [`crate::pose`] finds every pose that explains them and how sure each
+//! is; the bounds are strict and come from [`crate::ranging::DistanceBounds`] and spot sizes alone.
 
 mod grouping;
 mod matching;
-mod ranging;
+mod pairs;
+mod posing;
 mod sighting;
 mod views;
 
-use nalgebra::{Matrix3, Unit, Vector3};
+use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 
 use crate::airframe::Airframe;
 use crate::camera::{Bearing, Camera};
 use crate::frame::{FrameError, FrameView, Mask};
+use crate::pose::{self, Mode};
 use crate::ranging::{DistanceBounds, Estimate, Interval, SpotCurve};
-use crate::spots::{self, Detector, Reason, Rejected, SettingsError, Spot};
+use crate::spots::{self, Brightness, Detector, Reason, Rejected, Spot};
 use grouping::Groups;
 use matching::Matcher;
-use ranging::Ranger;
+use posing::Poser;
+
+/// Light of the smallest spots over their height, px.
+const FAINTEST_PX: f64 = 3.0;
 
 /// What a user may choose about locating.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,11 +42,17 @@ pub struct Settings {
     /// Largest tilt of a neighbour against the vertical that the bounds allow for, rad. Default 15 deg. Only with gravity
     /// does it say anything: without, any attitude is allowed.
     pub max_tilt_rad: f64,
+    /// What is believed of a neighbour's pose beforehand.
+    pub pose: pose::Settings,
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { spots: spots::Settings::default(), max_tilt_rad: DistanceBounds::DEFAULT_MAX_TILT_RAD }
+        Self {
+            spots: spots::Settings::default(),
+            max_tilt_rad: DistanceBounds::DEFAULT_MAX_TILT_RAD,
+            pose: pose::Settings::default(),
+        }
     }
 }
 
@@ -51,7 +62,10 @@ impl Default for Settings {
 pub enum LocatorError {
     /// A setting of the detector has no meaning.
     #[error("{0}")]
-    Spots(#[from] SettingsError),
+    Spots(#[from] spots::SettingsError),
+    /// A prior or tolerance of the pose has no meaning.
+    #[error("{0}")]
+    Pose(#[from] pose::SettingsError),
     /// A tilt limit that is no angle from 0 to 180 deg.
     #[error("a tilt limit of {0} rad: it must be an angle from 0 to pi")]
     Tilt(f64),
@@ -87,8 +101,8 @@ pub enum Stage {
     Bearings,
     /// Spots were sorted by neighbour.
     Grouping,
-    /// Neighbours have distances.
-    Ranging,
+    /// Neighbours have poses and distances.
+    Posing,
 }
 
 /// A spot and where it lies.
@@ -110,7 +124,7 @@ pub struct Sighting {
 /// How far away a neighbour is: from the camera's centre to the airframe's origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Distance {
-    /// Mean and standard deviation over the views that match; `None` for a lone spot of unbounded range.
+    /// Mean and standard deviation of the posterior; `None` only where no pose explains the spots.
     pub estimate: Option<Estimate>,
     /// Truth never leaves these, see [`DistanceBounds`]; the far end may be infinite.
     pub bounds: Interval,
@@ -129,6 +143,15 @@ pub struct Position {
     pub covariance_m2: Matrix3<f64>,
 }
 
+/// How a neighbour is turned.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Orientation {
+    /// Maps the body's coordinates to the camera's. Yaw is one of those that the airframe's symmetry makes equal.
+    pub camera_from_body: Rotation3<f64>,
+    /// Covariance as a small rotation in the body frame (its third axis is yaw), rad^2.
+    pub covariance_rad2: Matrix3<f64>,
+}
+
 /// Another robot.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Neighbour {
@@ -136,10 +159,14 @@ pub struct Neighbour {
     pub bearing: Bearing,
     /// How far away.
     pub distance: Distance,
-    /// Where, if the distance is estimated.
+    /// Where, over all modes.
     pub position: Option<Position>,
+    /// How turned, over all modes.
+    pub orientation: Option<Orientation>,
     first_member: usize,
     members: usize,
+    first_mode: usize,
+    modes: usize,
 }
 
 /// What one frame told.
@@ -152,6 +179,7 @@ pub struct Located {
     /// Who is there, in the order of their first sighting.
     pub neighbours: Vec<Neighbour>,
     members: Vec<usize>,
+    modes: Vec<Mode>,
 }
 
 impl Located {
@@ -160,6 +188,14 @@ impl Located {
         self.members
             .get(neighbour.first_member..)
             .and_then(|rest| rest.get(..neighbour.members))
+            .unwrap_or(&[])
+    }
+
+    /// The ways in which this neighbour's spots can be its airframe, the likeliest first.
+    pub fn modes(&self, neighbour: &Neighbour) -> &[Mode] {
+        self.modes
+            .get(neighbour.first_mode..)
+            .and_then(|rest| rest.get(..neighbour.modes))
             .unwrap_or(&[])
     }
 }
@@ -173,8 +209,9 @@ pub struct Locator {
     mask: Option<Mask>,
     detector: Detector,
     matcher: Matcher,
-    ranger: Ranger,
+    poser: Poser,
     groups: Groups,
+    group: Vec<usize>,
     located: Located,
 }
 
@@ -198,8 +235,9 @@ impl Locator {
             mask: None,
             detector: Detector::new(settings.spots)?,
             matcher: Matcher::new(airframe, settings.max_tilt_rad),
-            ranger: Ranger::new(airframe),
+            poser: Poser::new(airframe, settings.pose, faintest_light(&settings.spots))?,
             groups: Groups::default(),
+            group: Vec::new(),
             located: Located::default(),
         })
     }
@@ -270,17 +308,33 @@ impl Locator {
     ) -> &Located {
         self.groups.sort_out(&self.located.sightings, gravity, &mut self.matcher);
         finished(Stage::Grouping);
-        let Located { sightings, neighbours, members, .. } = &mut self.located;
+        let Located { sightings, neighbours, members, modes, .. } = &mut self.located;
         neighbours.clear();
         members.clear();
+        modes.clear();
         for group in self.groups.iter() {
-            let neighbour = self.ranger.range(sightings, group, gravity, &mut self.matcher);
-            neighbours.push(Neighbour { first_member: members.len(), members: group.len(), ..neighbour });
-            members.extend_from_slice(group);
+            self.group.clear();
+            self.group.extend_from_slice(group);
+            let (neighbour, its_modes) =
+                self.poser.tell(sightings, &mut self.group, gravity, &mut self.matcher);
+            neighbours.push(Neighbour {
+                first_member: members.len(),
+                first_mode: modes.len(),
+                modes: its_modes.len(),
+                ..neighbour
+            });
+            members.extend_from_slice(&self.group);
+            modes.extend_from_slice(its_modes);
         }
-        finished(Stage::Ranging);
+        finished(Stage::Posing);
         &self.located
     }
+}
+
+/// The light of a spot that the detector barely finds, grey levels: a spot of a pixel or two that stands out by its step.
+fn faintest_light(settings: &spots::Settings) -> f64 {
+    let (Brightness::Threshold(level) | Brightness::Contrast(level)) = settings.brightness;
+    FAINTEST_PX * f64::from(level)
 }
 
 /// Gives every spot its bearing; those that have none are rejected.

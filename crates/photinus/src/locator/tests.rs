@@ -199,9 +199,12 @@ fn a_lone_spot_is_a_neighbour_with_a_bearing_and_the_range_of_its_size() {
     let mut without = locator(&airframe);
     let located = without.locate_spots(&lone, None, &mut |_| ());
     assert_eq!(located.neighbours.len(), 1);
-    assert_eq!(located.neighbours[0].bearing, located.sightings[0].bearing);
-    assert_eq!(located.neighbours[0].distance.estimate, None);
-    assert!(located.neighbours[0].distance.bounds.max_m().is_infinite());
+    let (neighbour, sighting) = (&located.neighbours[0], &located.sightings[0]);
+    let off = (neighbour.position.unwrap().mean_m.normalize() - sighting.bearing.vector()).norm();
+    assert!(off < 0.01, "as likely to the left as to the right of its spot: {off}");
+    let estimate = neighbour.distance.estimate.unwrap();
+    assert!(estimate.sigma_m > 0.4 * estimate.distance_m, "a weak prior is no measurement: {estimate:?}");
+    assert!(neighbour.distance.bounds.max_m().is_infinite());
 
     let curve = SpotCurve::paper_1000_us();
     let mut with = Locator::new(camera(), &airframe, Some(curve), Settings::default()).unwrap();
@@ -260,7 +263,8 @@ fn any_number_of_spots_anywhere_gives_finite_answers() {
             let mut members: Vec<usize> =
                 located.neighbours.iter().flat_map(|neighbour| located.members(neighbour)).copied().collect();
             members.sort_unstable();
-            assert_eq!(members, (0..spots.len()).collect::<Vec<_>>());
+            let shared = members.windows(2).any(|pair| pair[0] == pair[1]);
+            assert!(!shared && members.iter().all(|&spot| spot < spots.len()), "{members:?}");
             for neighbour in &located.neighbours {
                 let Some(Position { mean_m, covariance_m2 }) = neighbour.position else { continue };
                 assert!(mean_m.iter().chain(covariance_m2.iter()).all(|number| number.is_finite()));

@@ -49,6 +49,8 @@ pub(super) struct Arrangement {
     pub(super) log_intensity: [f64; MOST_ORDERED],
     /// Which markers they are.
     pub(super) markers: [usize; MOST_ORDERED],
+    /// Yaw of the direction to the camera in the body frame, rad.
+    pub(super) yaw_rad: f64,
     /// What the markers that show but are not among them cost, nats.
     pub(super) unseen_nats: f64,
     /// Elevation of the camera above the body's horizon, rad.
@@ -72,7 +74,8 @@ pub(super) struct Outline {
     pub(super) axis_rad: f64,
     /// How much nearer to the camera than the origin they are on average, m.
     pub(super) ahead_m: f64,
-    /// Elevation of the camera above the body's horizon, rad.
+    /// Yaw and elevation of the direction to the camera in the body frame, rad.
+    pub(super) yaw_rad: f64,
     pub(super) elevation_rad: f64,
     /// Logarithm of the share of all views, without gravity.
     pub(super) log_prior: f64,
@@ -158,7 +161,7 @@ impl Views {
                 let seen = look(airframe, yaw_rad, elevation_rad);
                 if seen.len() >= 2 {
                     total += libm::exp(log_prior);
-                    views.add(&seen, elevation_rad, log_prior);
+                    views.add(&seen, [yaw_rad, elevation_rad], log_prior);
                 }
             }
         }
@@ -172,12 +175,12 @@ impl Views {
         (!arrangements.all.is_empty()).then_some(arrangements)
     }
 
-    fn add(&mut self, seen: &[Seen], elevation_rad: f64, log_prior: f64) {
+    fn add(&mut self, seen: &[Seen], towards: [f64; 2], log_prior: f64) {
         self.most_visible = self.most_visible.max(seen.len());
         let unseen_nats: f64 = seen.iter().map(cost_of_unseen).sum();
         let brightest = seen.iter().map(cost_of_unseen).fold(0.0, f64::max);
         self.lone_nats += libm::exp(log_prior) * (unseen_nats - brightest);
-        self.outlines.push(outline(seen, elevation_rad, log_prior));
+        self.outlines.push(outline(seen, towards, log_prior));
         for (spots, arrangements) in (2..).zip(&mut self.arrangements) {
             let arrangements = &mut arrangements.all;
             if arrangements.len() > MOST_ARRANGEMENTS {
@@ -185,7 +188,7 @@ impl Views {
             }
             each_order(seen.len(), spots, &mut |order| {
                 if arrangements.len() <= MOST_ARRANGEMENTS {
-                    arrangements.push(arrange(seen, order, unseen_nats, elevation_rad, log_prior));
+                    arrangements.push(arrange(seen, order, unseen_nats, towards, log_prior));
                 }
             });
         }
@@ -210,11 +213,7 @@ impl Views {
 
 /// The markers that show from a direction.
 fn look(airframe: &Airframe, yaw_rad: f64, elevation_rad: f64) -> Vec<Seen> {
-    let (sin, cos) = libm::sincos(elevation_rad);
-    let (sin_yaw, cos_yaw) = libm::sincos(yaw_rad);
-    let towards_camera = Vector3::new(cos * cos_yaw, cos * sin_yaw, sin);
-    let right = Vector3::new(-sin_yaw, cos_yaw, 0.0);
-    let up = towards_camera.cross(&right);
+    let [right, up, towards_camera] = view_axes(yaw_rad, elevation_rad);
     let camera_m = towards_camera * (FAR_RADII * airframe.max_radius_m());
     let see = |marker: usize| {
         let position_m = airframe.markers()[marker].position_m;
@@ -226,6 +225,15 @@ fn look(airframe: &Airframe, yaw_rad: f64, elevation_rad: f64) -> Vec<Seen> {
         }
     };
     (0..airframe.markers().len()).map(see).filter(|seen| seen.intensity > DARK).collect()
+}
+
+/// Right and up in the image of a far camera, and the direction to it, in the body frame.
+pub(super) fn view_axes(yaw_rad: f64, elevation_rad: f64) -> [Vector3<f64>; 3] {
+    let (sin, cos) = libm::sincos(elevation_rad);
+    let (sin_yaw, cos_yaw) = libm::sincos(yaw_rad);
+    let towards_camera = Vector3::new(cos * cos_yaw, cos * sin_yaw, sin);
+    let right = Vector3::new(-sin_yaw, cos_yaw, 0.0);
+    [right, towards_camera.cross(&right), towards_camera]
 }
 
 fn cost_of_unseen(seen: &Seen) -> f64 {
@@ -256,7 +264,7 @@ fn arrange(
     seen: &[Seen],
     order: &[usize],
     all_unseen_nats: f64,
-    elevation_rad: f64,
+    [yaw_rad, elevation_rad]: [f64; 2],
     log_prior: f64,
 ) -> Arrangement {
     let count = order.len() as f64;
@@ -272,6 +280,7 @@ fn arrange(
         log_intensity: [0.0; MOST_ORDERED],
         markers: [0; MOST_ORDERED],
         unseen_nats: all_unseen_nats - chosen().map(cost_of_unseen).sum::<f64>(),
+        yaw_rad,
         elevation_rad,
         log_prior,
     };
@@ -285,7 +294,7 @@ fn arrange(
     arrangement
 }
 
-fn outline(seen: &[Seen], elevation_rad: f64, log_prior: f64) -> Outline {
+fn outline(seen: &[Seen], [yaw_rad, elevation_rad]: [f64; 2], log_prior: f64) -> Outline {
     let count = seen.len() as f64;
     let middle_m = seen.iter().map(|seen| seen.place_m).sum::<Vector2<f64>>() / count;
     let spread = Spread::of(seen.iter().map(|seen| seen.place_m - middle_m));
@@ -296,6 +305,7 @@ fn outline(seen: &[Seen], elevation_rad: f64, log_prior: f64) -> Outline {
         middle_m,
         axis_rad: spread.axis_rad,
         ahead_m: seen.iter().map(|seen| seen.ahead_m).sum::<f64>() / count,
+        yaw_rad,
         elevation_rad,
         // Markers that shine away are seen from less far: the view counts by how bright it is.
         log_prior: log_prior + libm::log(seen.iter().map(|seen| seen.intensity).sum::<f64>() / count),

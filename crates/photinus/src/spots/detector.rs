@@ -1,6 +1,7 @@
 //! The stages in order: read this first.
 
 use super::background::Background;
+use super::crowding;
 use super::grouping::Components;
 use super::measuring::Meter;
 use super::neighbourhood::Neighbourhood;
@@ -11,7 +12,13 @@ use super::runs::{self, Run};
 use super::settings::{Brightness, Settings, SettingsError};
 use super::splitting::Splitter;
 use super::{Detections, Extent, Rejected};
+use crate::camera::Pixel;
 use crate::frame::{FrameError, FrameView, Mask};
+
+/// A lens scatters noticeable light about so far from the edge of a spot, px ...
+const SCATTERED_PX: f64 = 8.0;
+/// ... when that has at least this share of the light beside it.
+const SCATTERING_SHARE: f64 = 0.7;
 
 /// Finds spots in frames. Keeps its room from frame to frame, so that a warm detector allocates nothing.
 #[derive(Debug)]
@@ -73,6 +80,7 @@ impl Detector {
         if let Brightness::Contrast(_) = self.settings.brightness {
             reflections::reject(&mut self.detections, &self.settings.shape);
         }
+        crowding::widen(&mut self.detections.spots);
         self.detections.rejected.sort_unstable_by_key(|rejected| {
             let Extent { top, left, bottom, right } = rejected.extent;
             (top, left, bottom, right, rejected.area_px)
@@ -111,6 +119,21 @@ impl Detector {
         }
     }
 
+    /// The centre of the one bright part so near to part `i` that the light scattered around it matters; `None` when there
+    /// is none, or more than one.
+    fn scatterer(&self, i: usize) -> Option<Pixel> {
+        let light = |part: &Part| f64::from(part.outline.area_px) * f64::from(part.outline.peak);
+        let mut count = 0;
+        let mut found = None;
+        self.neighbourhood.each_near(i, SCATTERED_PX, |other, edge_px| {
+            if edge_px < SCATTERED_PX && light(&self.parts[other]) > SCATTERING_SHARE * light(&self.parts[i]) {
+                count += 1;
+                found = Some(self.parts[other].guess);
+            }
+        });
+        found.filter(|_| count == 1)
+    }
+
     fn measure_parts(&mut self, frame: &FrameView<'_>) {
         self.neighbourhood.arrange(frame, self.parts.iter().map(|part| (part.guess, part.radius_px)));
         self.detections.spots.clear();
@@ -121,7 +144,8 @@ impl Detector {
                 Some(reason) => Err(reason),
                 None => {
                     let room_px = self.neighbourhood.room_px(i, part.most_room_px());
-                    self.meter.measure(frame, &part, room_px, &self.settings)
+                    let beside = self.scatterer(i);
+                    self.meter.measure(frame, &part, room_px, beside, &self.settings)
                 }
             };
             match measured {

@@ -11,6 +11,7 @@ use super::centroid::{self, PixelVariance};
 use super::part::Part;
 use super::patch::{self, Patch, Surroundings};
 use super::rejection::Reason;
+use super::sampling;
 use super::settings::{Brightness, Settings};
 use super::skirt::{self, Fit};
 use crate::camera::Pixel;
@@ -23,6 +24,9 @@ const SUMMIT_PX: f64 = 1.8;
 /// A skirt that fits no better than this (squared misfit over degrees of freedom) is not that of a Gaussian: charge has
 /// overflowed, or the spot is a core in a halo. Its summit says less than its formal covariance.
 const LARGEST_MISFIT: f64 = 5.0;
+/// Error of the centre of a saturated core of no pixels at all, px; it falls with the root of their number. On rendered
+/// frames with overflow 0.08 to 0.12.
+const SATURATION_BLUR_PX: f64 = 0.09;
 /// Error of the centre of an undersampled spot whose window is cut short by another spot, px.
 const CROWDED_BLUR_PX: f64 = 0.07;
 
@@ -42,16 +46,17 @@ struct Window {
 }
 
 impl Meter {
-    /// Measures `part`, whose light is its own as far as `room_px`.
+    /// Measures `part`, whose light is its own as far as `room_px` but for what a part `beside` it scatters.
     pub(super) fn measure(
         &mut self,
         frame: &FrameView<'_>,
         part: &Part,
         room_px: f64,
+        beside: Option<Pixel>,
         settings: &Settings,
     ) -> Result<Spot, Reason> {
         let outline = &part.outline;
-        let window = open_window(frame, part, room_px);
+        let mut window = open_window(frame, part, room_px);
         let level = window.around.level;
         let height = f64::from(outline.peak) - f64::from(level);
         if let Brightness::Contrast(step) = settings.brightness
@@ -59,13 +64,22 @@ impl Meter {
         {
             return Err(Reason::Background);
         }
-        self.patch.read(frame, nearest_pixel(part.guess), reach_px(window.radius_px), &window.around);
+        let (middle, reach) = (nearest_pixel(part.guess), reach_px(window.radius_px));
+        let alone = outline.saturated_px == 0 && !outline.cut;
+        let beside = beside.filter(|_| alone).is_some_and(|beside| {
+            let radius_px = window.radius_px + 1.5;
+            self.patch.read_beside(frame, middle, reach, radius_px, beside, part.bright)
+        });
+        if beside {
+            window.crowded = false;
+        } else {
+            self.patch.read(frame, middle, reach, &window.around);
+        }
         let flux = self.patch.flux(part.guess, window.radius_px as f32);
         let noise = settings.noise;
         let dark = (noise.read_dn * noise.read_dn + 1.0 / 12.0) as f32;
         let variance = PixelVariance { dark: dark.max(window.around.variance), shot: noise.shot as f32 };
-        let concentration = self.patch.concentration(nearest_pixel(part.guess));
-        let (centre, covariance_px2) = self.centre(part, &window, variance, concentration);
+        let (centre, covariance_px2) = self.centre(part, &window, variance);
         Ok(Spot {
             centre,
             covariance_px2,
@@ -79,14 +93,8 @@ impl Meter {
         })
     }
 
-    /// The centre and its covariance; `concentration` as [`Patch::concentration`] has it.
-    fn centre(
-        &self,
-        part: &Part,
-        window: &Window,
-        variance: PixelVariance,
-        concentration: f64,
-    ) -> (Pixel, Matrix2<f64>) {
+    /// The centre and its covariance.
+    fn centre(&self, part: &Part, window: &Window, variance: PixelVariance) -> (Pixel, Matrix2<f64>) {
         let (radius, saturated_px) = (part.radius_px, part.outline.saturated_px);
         let skirt = |reach_px: f64| {
             skirt::fit(&self.patch, part.guess, reach_px as f32, lowest_saturated(window), variance)
@@ -95,16 +103,16 @@ impl Meter {
         let balanced = || {
             let (centre, covariance) =
                 centroid::balance(&self.patch, part.guess, window.radius_px as f32, variance)?;
-            let blur = match saturated_px {
-                0 => blur_of_sampling(concentration),
-                _ => blur_of_saturation(saturated_px),
+            let (centre, blur) = match saturated_px {
+                0 => sampling::unfold(&self.patch, centre),
+                _ => (centre, Matrix2::from_diagonal_element(blur_of_saturation(saturated_px))),
             };
             let missing = match (part.outline.cut, window.crowded) {
                 (true, _) => radius / 2.0,
                 (false, true) => CROWDED_BLUR_PX,
                 (false, false) => 0.0,
             };
-            Some((centre, covariance + Matrix2::from_diagonal_element(blur + missing * missing)))
+            Some((centre, covariance + blur + Matrix2::from_diagonal_element(missing * missing)))
         };
         let found = if saturated_px > 0 {
             let fit = skirt((radius + 2.5).min(window.radius_px + 1.0));
@@ -162,14 +170,7 @@ fn reach_px(window_px: f64) -> i32 {
     window_px as i32 + 2
 }
 
-/// Variance that the pixel grid adds to a centre when the light falls into few pixels, px^2: nothing for a Gaussian of
-/// 0.7 px (concentration 0.19), a pixel's own for a spot within one.
-fn blur_of_sampling(concentration: f64) -> f64 {
-    let lost = ((concentration - 0.2) / 0.8).clamp(0.0, 1.0);
-    WITHIN_A_PIXEL * WITHIN_A_PIXEL * lost * lost
-}
-
 /// Variance of the centre of a saturated core that shows no skirt, px^2: its outline is known to a pixel all around.
 fn blur_of_saturation(saturated_px: u32) -> f64 {
-    WITHIN_A_PIXEL * WITHIN_A_PIXEL / (f64::from(saturated_px) + 4.0)
+    SATURATION_BLUR_PX * SATURATION_BLUR_PX / (f64::from(saturated_px) + 4.0)
 }

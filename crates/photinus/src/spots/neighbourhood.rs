@@ -60,22 +60,30 @@ impl Neighbourhood {
 
     /// The room around part `i`, at most `most_px`; negative inside another part.
     pub(super) fn room_px(&self, i: usize, most_px: f64) -> f64 {
+        let mut room_px = most_px;
+        self.each_near(i, most_px, |_, edge_px| room_px = room_px.min(edge_px));
+        room_px
+    }
+
+    /// Tells of each part whose edge may be nearer to part `i` than `most_px`, with how far its edge is, px.
+    pub(super) fn each_near(&self, i: usize, most_px: f64, mut with: impl FnMut(usize, f64)) {
         let (centre, _) = self.parts[i];
-        let room_beside = |room: f64, &other: &u32| {
-            let (place, radius_px) = self.parts[other as usize];
+        let mut look = |other: &u32| {
+            let other = *other as usize;
+            let (place, radius_px) = self.parts[other];
             let (du, dv) = (place.u - centre.u, place.v - centre.v);
-            let edge = (du * du + dv * dv).sqrt() - radius_px - 0.5;
-            if other as usize == i { room } else { room.min(edge) }
+            if other != i {
+                with(other, (du * du + dv * dv).sqrt() - radius_px - 0.5);
+            }
         };
         let reach = most_px + self.widest_px + 0.5;
         let columns = cell_of(centre.u - reach, self.columns)..=cell_of(centre.u + reach, self.columns);
-        let mut room = self.large.iter().fold(most_px, room_beside);
+        self.large.iter().for_each(&mut look);
         for row in cell_of(centre.v - reach, self.rows)..=cell_of(centre.v + reach, self.rows) {
             let first = self.starts[row * self.columns + columns.start()] as usize;
             let end = self.starts[row * self.columns + columns.end() + 1] as usize;
-            room = self.by_cell[first..end].iter().fold(room, room_beside);
+            self.by_cell[first..end].iter().for_each(&mut look);
         }
-        room
     }
 }
 

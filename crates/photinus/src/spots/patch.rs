@@ -33,6 +33,8 @@ pub(super) struct Patch {
     rows: usize,
     stride: usize,
     signal: Vec<f32>,
+    /// Light a quarter turn away, one side after the other.
+    turned: Vec<f32>,
 }
 
 impl Patch {
@@ -66,6 +68,83 @@ impl Patch {
         }
     }
 
+    /// Reads the window of pixels within `reach` of (`u`, `v`), less what stands a quarter turn to either side around
+    /// `beside`: the light that a spot there scatters is much the same all around it, and so is the background. Pixels
+    /// beyond `radius_px` from the middle are left zero. `false` where neither side is free of light that reaches `bright`
+    /// within the frame.
+    pub(super) fn read_beside(
+        &mut self,
+        frame: &FrameView<'_>,
+        (u, v): (i32, i32),
+        reach: i32,
+        radius_px: f64,
+        beside: Pixel,
+        bright: u8,
+    ) -> bool {
+        self.turned.clear();
+        for side in [1.0, -1.0] {
+            let first = self.turned.len();
+            if !self.read_turned(frame, (u, v), reach, radius_px, beside, side, bright) {
+                self.turned.truncate(first);
+            }
+        }
+        let count = (2 * reach + 1).pow(2) as usize;
+        if self.turned.is_empty() {
+            return false;
+        }
+        let level = Surroundings { level: 0.0, slope: [0.0; 2], variance: 0.0 };
+        self.read(frame, (u, v), reach, &level);
+        let (first, second) = self.turned.split_at(count);
+        for (index, signal) in self.signal.chunks_exact_mut(self.stride).enumerate() {
+            for (column, signal) in signal.iter_mut().take(self.rows).enumerate() {
+                let at = index * self.rows + column;
+                let other = second.get(at).map_or(first[at], |second| 0.5 * (first[at] + second));
+                *signal = if other.is_nan() { 0.0 } else { *signal - other };
+            }
+        }
+        true
+    }
+
+    /// Appends the values a quarter turn to one side, row by row; NaN beyond the radius. `false` where they are not free.
+    #[expect(clippy::too_many_arguments, reason = "a window and how it is turned")]
+    fn read_turned(
+        &mut self,
+        frame: &FrameView<'_>,
+        (u, v): (i32, i32),
+        reach: i32,
+        radius_px: f64,
+        beside: Pixel,
+        side: f64,
+        bright: u8,
+    ) -> bool {
+        for dv in -reach..=reach {
+            for du in -reach..=reach {
+                let (x, y) = (f64::from(u + du) - beside.u, f64::from(v + dv) - beside.v);
+                let is_core = x * x + y * y < 4.5;
+                if is_core || f64::from(du * du + dv * dv) > radius_px * radius_px {
+                    self.turned.push(f32::NAN);
+                    continue;
+                }
+                let (at_u, at_v) = (beside.u - side * y, beside.v + side * x);
+                let (whole_u, whole_v) = (at_u.floor(), at_v.floor());
+                let (last_u, last_v) = (frame.width() as f64 - 1.0, frame.height() as f64 - 1.0);
+                if whole_u < 0.0 || whole_v < 0.0 || whole_u >= last_u || whole_v >= last_v {
+                    return false;
+                }
+                let (part_u, part_v) = ((at_u - whole_u) as f32, (at_v - whole_v) as f32);
+                let (column, row) = (whole_u as usize, whole_v as usize);
+                let near = &frame.row(row)[column..column + 2];
+                let next = &frame.row(row + 1)[column..column + 2];
+                if near[0].max(near[1]).max(next[0]).max(next[1]) >= bright {
+                    return false;
+                }
+                let across = |pair: &[u8]| f32::from(pair[0]) * (1.0 - part_u) + f32::from(pair[1]) * part_u;
+                self.turned.push(across(near) * (1.0 - part_v) + across(next) * part_v);
+            }
+        }
+        true
+    }
+
     /// The signal in columns `column` to `column` + 3, from the first row to the last.
     pub(super) fn columns(&self, column: usize) -> impl Iterator<Item = Lanes> {
         self.signal.chunks_exact(self.stride).map(move |row| {
@@ -84,18 +163,30 @@ impl Patch {
         ((place.u - f64::from(self.left)) as f32, (place.v - f64::from(self.top)) as f32)
     }
 
-    /// How few pixels the light falls into: one over their effective number, from 1/9 to 1, among the pixel (`u`, `v`) and the
-    /// eight around it.
-    pub(super) fn concentration(&self, (u, v): (i32, i32)) -> f64 {
-        let (column, row) = ((u - self.left) as usize, (v - self.top) as usize);
-        let rows = self.signal.chunks_exact(self.stride).skip(row.saturating_sub(1)).take(3);
-        let near = rows.flat_map(|row| row.iter().skip(column.saturating_sub(1)).take(3));
-        let (mut sum, mut squares) = (0.0, 0.0);
-        for signal in near.map(|&signal| f64::from(signal.max(0.0))) {
-            sum += signal;
-            squares += signal * signal;
+    /// How much of the light of a narrow spot falls into each of three columns and into each of three rows around the pixel
+    /// (`u`, `v`), as shares of all nine, above the halo that the sixteen pixels around these tell of.
+    pub(super) fn shares(&self, (u, v): (i32, i32)) -> [[f64; 3]; 2] {
+        let (column, row) = ((u - self.left).max(2) as usize, (v - self.top).max(2) as usize);
+        let [mut columns, mut rows] = [[0.0; 3]; 2];
+        let [mut beside, mut corners] = [0.0; 2];
+        for (y, line) in self.signal.chunks_exact(self.stride).skip(row - 2).take(5).enumerate() {
+            for (x, &signal) in line.iter().skip(column - 2).take(5).enumerate() {
+                let signal = f64::from(signal);
+                match (x, y) {
+                    (1..4, 1..4) => {
+                        columns[x - 1] += signal;
+                        rows[y - 1] += signal;
+                    }
+                    (0 | 4, 0 | 4) => corners += signal / 4.0,
+                    _ => beside += signal / 12.0,
+                }
+            }
         }
-        if sum > 0.0 { squares / (sum * sum) } else { 1.0 }
+        // A halo that is a Gaussian, from two and from three pixels away to one: as much more again, twice at most.
+        let rise = (beside / corners.max(1e-9)).clamp(1.0, 2.0);
+        let halo = (beside * rise).max(0.0);
+        let total = (columns.iter().sum::<f64>() - 9.0 * halo).max(1e-9);
+        [columns, rows].map(|sums| sums.map(|sum| (sum - 3.0 * halo) / total))
     }
 
     /// Signal within `radius_px` of `centre`, grey levels.

@@ -1,9 +1,10 @@
 //! A group as the camera sees it: places in a plane, with the vertical where it is known.
 
-use nalgebra::{Matrix3, Unit, Vector2, Vector3};
+use nalgebra::{Matrix3, Rotation3, Unit, Vector2, Vector3};
 
 use crate::locator::Sighting;
-use crate::locator::views::firmness;
+use crate::locator::views::{Outline, firmness, view_axes};
+use crate::pose::Pose;
 
 /// The places of a group in the plane that touches the sphere of directions in their middle.
 pub(super) struct Image<'a> {
@@ -65,6 +66,23 @@ impl<'a> Image<'a> {
         })
     }
 
+    /// The pose of an airframe at a place in the axes of the image, seen as from yaw and elevation, the image turned.
+    pub(super) fn pose(
+        &self,
+        place_m: &Vector3<f64>,
+        turn: Vector2<f64>,
+        yaw_rad: f64,
+        elevation_rad: f64,
+    ) -> Pose {
+        let [right, up, towards_camera] = view_axes(yaw_rad, elevation_rad);
+        let rows = [right * turn.x - up * turn.y, right * turn.y + up * turn.x, -towards_camera];
+        let image_from_body = Matrix3::from_rows(&rows.map(|row| row.transpose()));
+        Pose {
+            position_m: self.axes * place_m,
+            camera_from_body: Rotation3::from_matrix_unchecked(self.axes * image_from_body),
+        }
+    }
+
     /// Cost of an elevation and of a turn (its cosine) against the vertical; none without gravity.
     pub(super) fn attitude_nats(&self, elevation_rad: f64, cos_turn: f64, tilt_sigma_rad: f64) -> f64 {
         self.elevation_rad.map_or(0.0, |expected_rad| {
@@ -74,10 +92,10 @@ impl<'a> Image<'a> {
         })
     }
 
-    /// The origin of an airframe whose middle of markers, `middle_m` from it and `ahead_m` nearer, is seen at `depth_m`.
-    pub(super) fn origin(&self, depth_m: f64, turned_middle_m: Vector2<f64>, ahead_m: f64) -> Vector3<f64> {
-        let middle_m = self.middle * depth_m - turned_middle_m;
-        Vector3::new(middle_m.x, middle_m.y, depth_m + ahead_m)
+    /// The origin of an airframe that is seen as an outline `depth_m` away, in the axes of the image.
+    pub(super) fn origin_m(&self, depth_m: f64, turn: Vector2<f64>, outline: &Outline) -> Vector3<f64> {
+        let beside_m = self.middle * depth_m - turned(outline.middle_m, turn);
+        Vector3::new(beside_m.x, beside_m.y, depth_m + outline.ahead_m)
     }
 }
 

@@ -1,32 +1,32 @@
 //! How well a handful of spots looks like a view of the airframe.
 //!
-//! In: sightings that may be one neighbour. Out: what the claim that they are costs, in nats, and where the neighbour is
-//! by the mean over all views that match, each weighted by how well it does. A view matches up to a shift, a turn and a
-//! scale of the image; the scale is the distance. With gravity the turn and the elevation are known but for the tilt.
+//! In: sightings that may be one neighbour. Out: what the claim that they are costs, in nats, and which of the airframe's
+//! markers they may be, each with a first guess of the pose. A view matches up to a shift, a turn and a scale of the image;
+//! the scale is the distance. With gravity the turn and the elevation are known but for the tilt.
 
 mod image;
-mod mean;
 mod ordered;
 mod outlined;
 mod size;
 
-use nalgebra::{Matrix3, Unit, Vector2, Vector3};
+use nalgebra::{Unit, Vector2, Vector3};
 
 use super::Sighting;
-use super::views::{ELEVATION_STEP_RAD, MOST_ORDERED, Outline, Spread, Views};
+use super::views::{ELEVATION_STEP_RAD, MOST_ORDERED, Spread, Views};
 use crate::airframe::Airframe;
 use crate::lanes::{self, LANES, Lanes};
+use crate::pose::{Hypotheses, LogDistance, Symmetry};
 use crate::ranging::{BoundedBearing, DistanceBounds, Interval};
 use image::Image;
-use mean::Mean;
 use ordered::Ordered;
-use outlined::compare;
+use outlined::overlay;
 use size::{plausible_m, size_nats};
 
 /// What a neighbour costs, nats: fewer neighbours are the better explanation.
 pub(super) const NEIGHBOUR_NATS: f64 = 8.0;
-/// Views with less than this share of the best one's weight do not count: the mean moves by far less than its sigma.
-const NEGLIGIBLE: f32 = 3e-2;
+/// A view that costs so much more than the best one, nats, is no first guess of a pose. Views are a coarse grid, and what
+/// they cost as coarse.
+const POOR_NATS: f32 = 9.0;
 /// What cannot be, nats.
 pub(super) const IMPOSSIBLE: f64 = 1e9;
 
@@ -35,24 +35,11 @@ pub(super) const IMPOSSIBLE: f64 = 1e9;
 pub(super) struct Matcher {
     views: Views,
     bounds: DistanceBounds,
+    symmetry: Symmetry,
     tilt_sigma_rad: f64,
-    radius_m: f64,
     bearings: Vec<BoundedBearing>,
     places: Vec<Vector2<f64>>,
     costs: Vec<Lanes>,
-}
-
-/// What a match found.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Match {
-    /// What the claim that these spots are one neighbour costs, nats.
-    pub(super) nats: f64,
-    /// Where the airframe's origin is, camera frame, m.
-    pub(super) mean_m: Vector3<f64>,
-    /// Covariance of it, m^2: over the views, and from the errors of the bearings.
-    pub(super) covariance_m2: Matrix3<f64>,
-    /// The markers that the spots are in the best view, where they were put in order.
-    pub(super) markers: Option<[usize; MOST_ORDERED]>,
 }
 
 impl Matcher {
@@ -60,10 +47,10 @@ impl Matcher {
         let grid_rad = ELEVATION_STEP_RAD / 2.0;
         Self {
             views: Views::of(airframe),
+            symmetry: Symmetry::of(airframe),
             bounds: DistanceBounds::new(airframe, max_tilt_rad),
             // The tilt limit is taken for two sigma; the grid of views adds half a step.
             tilt_sigma_rad: libm::hypot(max_tilt_rad / 2.0, grid_rad),
-            radius_m: airframe.max_radius_m(),
             bearings: Vec::new(),
             places: Vec::new(),
             costs: Vec::new(),
@@ -109,6 +96,16 @@ impl Matcher {
         ranges.map(|range| widened(&range, reach_m)).try_fold(by_angle, |all, range| all.intersect(&range?))
     }
 
+    /// What the size of a lone spot says of its neighbour's distance.
+    pub(super) fn lone_distance(&self, sighting: &Sighting, bounds: &Interval) -> LogDistance {
+        let plausible = plausible_m(sighting);
+        let nearest_m = bounds.min_m().max(plausible.nearest_m.min(bounds.max_m()));
+        let farthest_m = bounds.max_m().min(plausible.farthest_m.max(bounds.min_m())).max(1.01 * nearest_m);
+        // Even over the logarithm of distance: neither near nor far is favoured.
+        let (near, far) = (libm::log(nearest_m), libm::log(farthest_m));
+        LogDistance { mean: 0.5 * (near + far), sigma: (far - near) / 12f64.sqrt() }
+    }
+
     /// What the claim costs that these spots, at least one, are one neighbour, nats.
     pub(super) fn nats(
         &mut self,
@@ -124,7 +121,10 @@ impl Matcher {
         }
         let Some(image) = Image::of(sightings, group, gravity, &mut self.places) else { return IMPOSSIBLE };
         let Some(arrangements) = self.views.arrangements(group.len()) else {
-            return self.match_views(sightings, group, gravity).map_or(IMPOSSIBLE, |found| found.nats);
+            let nats = outlined_nats(&self.views, &image, self.tilt_sigma_rad);
+            return nats.map_or(IMPOSSIBLE, |(nats, distance_m)| {
+                NEIGHBOUR_NATS + nats + size_nats(sightings, group, distance_m)
+            });
         };
         let seen = Ordered::of(&image, sightings, group);
         let best = seen.costs(&arrangements.quads, &image, self.tilt_sigma_rad, &mut self.costs);
@@ -132,44 +132,70 @@ impl Matcher {
             .costs
             .iter()
             .fold(Lanes::ZERO, |sum, &four| sum + lanes::exp(Lanes::splat(best.nats) - four));
-        let distance_m = seen.place(&arrangements.all[best.arrangement], &image).norm();
+        let distance_m = seen.place(&arrangements.all[best.arrangement], &image).0.norm();
         let views = f64::from(best.nats) - libm::log(f64::from(lanes::sum(weight)));
         NEIGHBOUR_NATS + views + size_nats(sightings, group, distance_m)
     }
 
-    /// Matches a group of at least two spots; `None` when no view looks like it.
-    pub(super) fn match_views(
+    /// Which markers the spots of a group of at least two may be.
+    pub(super) fn hypotheses(
         &mut self,
         sightings: &[Sighting],
         group: &[usize],
         gravity: Option<&Unit<Vector3<f64>>>,
-    ) -> Option<Match> {
-        let image = Image::of(sightings, group, gravity, &mut self.places)?;
-        let mut mean = Mean::default();
-        if let Some(arrangements) = self.views.arrangements(group.len()) {
-            let seen = Ordered::of(&image, sightings, group);
-            let best = seen.costs(&arrangements.quads, &image, self.tilt_sigma_rad, &mut self.costs);
-            mean.best = Some(arrangements.all[best.arrangement].markers);
-            mean.least_nats = f64::from(best.nats);
-            for (four, costs) in arrangements.all.chunks(LANES).zip(&self.costs) {
-                let weights = lanes::exp(Lanes::splat(best.nats) - *costs).to_array();
-                for (arrangement, weight) in four.iter().zip(weights) {
-                    if weight > NEGLIGIBLE {
-                        mean.add(seen.place(arrangement, &image), f64::from(weight));
-                    }
+        hypotheses: &mut Hypotheses,
+    ) {
+        hypotheses.begin(group.len());
+        let Some(image) = Image::of(sightings, group, gravity, &mut self.places) else { return };
+        let Some(arrangements) = self.views.arrangements(group.len()) else {
+            let spread = Spread::of(image.places.iter().copied());
+            for outline in &self.views.outlines {
+                let Some(fit) = overlay(&spread, outline, &image, self.tilt_sigma_rad) else { continue };
+                let half = image.attitude_nats(outline.elevation_rad, -1.0, self.tilt_sigma_rad)
+                    - image.attitude_nats(outline.elevation_rad, 1.0, self.tilt_sigma_rad);
+                for (turn, nats) in [(fit.turn, 0.0), (-fit.turn, half)] {
+                    let place_m = image.origin_m(outline.size_m / spread.size, turn, outline);
+                    let pose = image.pose(&place_m, turn, outline.yaw_rad, outline.elevation_rad);
+                    hypotheses.offer_loose(pose, fit.nats + nats);
                 }
             }
-        } else {
-            let spread = Spread::of(image.places.iter().copied());
-            let cost = |outline: &Outline| compare(&spread, outline, &image, self.tilt_sigma_rad);
-            let costs = || self.views.outlines.iter().filter_map(cost);
-            mean.least_nats = costs().map(|(_, nats)| nats).fold(f64::INFINITY, f64::min);
-            for (place, nats) in costs() {
-                mean.add(place, libm::exp(mean.least_nats - nats));
+            return;
+        };
+        let seen = Ordered::of(&image, sightings, group);
+        let best = seen.costs(&arrangements.quads, &image, self.tilt_sigma_rad, &mut self.costs);
+        for (four, costs) in arrangements.all.chunks(LANES).zip(&self.costs) {
+            for (arrangement, nats) in four.iter().zip(costs.to_array()) {
+                if nats > best.nats + POOR_NATS {
+                    continue;
+                }
+                let mut markers = [0; MOST_ORDERED];
+                for (to, from) in markers.iter_mut().zip(arrangement.markers) {
+                    *to = from as u16;
+                }
+                let markers = &mut markers[..group.len()];
+                let (place_m, turn) = seen.place(arrangement, &image);
+                let mut pose = image.pose(&place_m, turn, arrangement.yaw_rad, arrangement.elevation_rad);
+                let symmetry = &self.symmetry;
+                let canonical = symmetry.canonical_turn(markers);
+                pose.camera_from_body = symmetry.attitude(&pose.camera_from_body, canonical);
+                let named = std::array::from_fn::<_, MOST_ORDERED, _>(|spot| {
+                    markers.get(spot).map(|&marker| symmetry.turned(canonical, marker))
+                });
+                // With gravity the tilt tells above from below; without it both are ways to look.
+                let branch = u8::from(gravity.is_none() && arrangement.elevation_rad < 0.0);
+                hypotheses.offer(&named[..group.len()], pose, f64::from(nats), branch);
             }
         }
-        mean.finish(&image, self.radius_m, |distance_m| size_nats(sightings, group, distance_m))
     }
+}
+
+/// What the outline of all spots costs, nats, and the distance at which it fits best, m.
+fn outlined_nats(views: &Views, image: &Image<'_>, tilt_sigma_rad: f64) -> Option<(f64, f64)> {
+    let spread = Spread::of(image.places.iter().copied());
+    let fits = || views.outlines.iter().filter_map(|outline| overlay(&spread, outline, image, tilt_sigma_rad));
+    let best = fits().min_by(|a, b| a.nats.total_cmp(&b.nats))?;
+    let weight: f64 = fits().map(|fit| libm::exp(best.nats - fit.nats)).sum();
+    Some((best.nats - libm::log(weight), best.place_m.norm()))
 }
 
 fn widened(range: &Interval, reach_m: f64) -> Option<Interval> {

@@ -96,8 +96,13 @@ impl Ordered {
         Best { nats, arrangement: of_best.unwrap_or(0) }
     }
 
-    /// The place of the airframe if the spots are these markers, each as much larger in the image as it is nearer.
-    pub(super) fn place(&self, arrangement: &Arrangement, image: &Image<'_>) -> Vector3<f64> {
+    /// The place of the airframe if the spots are these markers, each as much larger in the image as it is nearer, and the
+    /// turn of the image (cosine, sine) against the view.
+    pub(super) fn place(
+        &self,
+        arrangement: &Arrangement,
+        image: &Image<'_>,
+    ) -> (Vector3<f64>, Vector2<f64>) {
         let Arrangement { shape, size_m, middle_m, ahead_m, .. } = arrangement;
         let per_spot = 1.0 / self.count as f64;
         // How much nearer each marker is matters in the second order only: a distance as from afar will do for that.
@@ -121,7 +126,7 @@ impl Ordered {
         let mean_larger = larger.iter().take(self.count).sum::<f64>() * per_spot;
         let beside_m =
             (image.middle * depth_m - turned(middle, turn)) / mean_larger - turned(*middle_m, turn);
-        Vector3::new(beside_m.x, beside_m.y, depth_m)
+        (Vector3::new(beside_m.x, beside_m.y, depth_m), turn)
     }
 }
 

@@ -1,0 +1,101 @@
+//! A mode -> normal distributions that stand for the posterior around it.
+//!
+//! Seen from afar the yaw is the least certain: two markers leave a bent valley of distance against yaw in which no single
+//! normal distribution is honest. Slices of the valley, each with the yaw held and everything else normal around its best
+//! value, are: their weights are the integrals over all but yaw (Laplace's method, as in nested integration). A mode whose
+//! yaw is certain is one normal distribution in all six.
+
+use core::f64::consts::{PI, TAU};
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::mixture::Component;
+use super::problem::Problem;
+use super::refine::{Refined, turned, without_yaw};
+
+/// Yaw surer than this needs no slices, rad.
+const NARROW_RAD: f64 = 0.03;
+/// Slices are at most this far apart, rad, ...
+const WIDEST_STEP_RAD: f64 = 5.0 * PI / 180.0;
+/// ... and this share of the yaw's sigma: sums over a normal distribution in such steps are exact to a part in 10^5.
+const STEP_SIGMAS: f64 = 1.2;
+/// A slice this much worse than the best, nats, is one of two that end the walk.
+const LITTLE_NATS: f64 = 5.5;
+/// Most slices on one side.
+const MOST_SLICES: usize = 36;
+
+/// Adds the components that stand for the posterior around a mode.
+pub(super) fn spread(problem: &Problem<'_>, mode: &Refined, hypothesis: usize, components: &mut Vec<Component>) {
+    let (information, coupling) = without_yaw(&mode.normal);
+    let Some(factor) = information.cholesky() else { return };
+    let yaw_information = mode.normal.information[(5, 5)] - coupling.dot(&factor.solve(&coupling));
+    let yaw_sigma_rad = 1.0 / yaw_information.max(1e-6).sqrt();
+    if yaw_sigma_rad < NARROW_RAD {
+        components.extend(whole(problem, mode, hypothesis));
+        return;
+    }
+    let step_rad = (STEP_SIGMAS * yaw_sigma_rad).min(WIDEST_STEP_RAD);
+    let Some(middle) = slice(problem, mode, hypothesis, 0.0, step_rad) else { return };
+    components.push(middle);
+    for side in [step_rad, -step_rad] {
+        // Each side has a summit of its own: a spot alone is likelier a marker at the edge of those that show.
+        let (mut here, mut poor, mut best) = (*mode, 0, middle.log_weight);
+        for number in 1..=MOST_SLICES {
+            let yaw_rad = side * number as f64;
+            if yaw_rad.abs() > PI || poor == 2 {
+                break;
+            }
+            let Some(there) = turned(problem, &here, side) else { break };
+            let Some(component) = slice(problem, &there, hypothesis, yaw_rad, step_rad) else { break };
+            best = best.max(component.log_weight);
+            poor = if component.log_weight < best - LITTLE_NATS { poor + 1 } else { 0 };
+            components.push(component);
+            here = there;
+        }
+    }
+}
+
+/// A mode as one normal distribution.
+fn whole(problem: &Problem<'_>, mode: &Refined, hypothesis: usize) -> Option<Component> {
+    let factor = mode.normal.information.cholesky()?;
+    let covariance = factor.inverse();
+    let log_root = factor.l_dirty().diagonal().iter().map(|d| libm::log(*d)).sum::<f64>();
+    let distance_m = mode.pose.position_m.norm();
+    Some(Component {
+        log_weight: 3.0 * libm::log(TAU) - log_root - mode.normal.nats - problem.visibility_nats(&mode.pose),
+        pose: mode.pose,
+        position_covariance_m2: covariance.fixed_view::<3, 3>(0, 0) * (distance_m * distance_m),
+        orientation_covariance_rad2: covariance.fixed_view::<3, 3>(3, 3).into_owned(),
+        hypothesis,
+        yaw_rad: 0.0,
+    })
+}
+
+/// One slice of a valley, `step_rad` wide.
+fn slice(
+    problem: &Problem<'_>,
+    at: &Refined,
+    hypothesis: usize,
+    yaw_rad: f64,
+    step_rad: f64,
+) -> Option<Component> {
+    let factor = without_yaw(&at.normal).0.cholesky()?;
+    let covariance = factor.inverse();
+    let log_root = factor.l_dirty().diagonal().iter().map(|d| libm::log(*d)).sum::<f64>();
+    let distance_m = at.pose.position_m.norm();
+    let tilt = covariance.fixed_view::<2, 2>(3, 3);
+    let mut orientation_covariance_rad2 =
+        Matrix3::from_diagonal(&Vector3::new(0.0, 0.0, step_rad * step_rad / 12.0));
+    orientation_covariance_rad2.fixed_view_mut::<2, 2>(0, 0).copy_from(&tilt);
+    Some(Component {
+        log_weight: 2.5 * libm::log(TAU) + libm::log(step_rad)
+            - log_root
+            - at.normal.nats
+            - problem.visibility_nats(&at.pose),
+        pose: at.pose,
+        position_covariance_m2: covariance.fixed_view::<3, 3>(0, 0) * (distance_m * distance_m),
+        orientation_covariance_rad2,
+        hypothesis,
+        yaw_rad,
+    })
+}

@@ -1,0 +1,247 @@
+//! Observations and hypotheses of one neighbour -> its posterior.
+
+use nalgebra::{Unit, Vector3};
+
+use super::along_yaw;
+use super::assignment::Assignment;
+use super::hypotheses::Hypotheses;
+use super::mixture::{self, Component, Mode, Summary};
+use super::observation::{Observation, Whitened};
+use super::problem::{LogDistance, Pose, Problem};
+use super::refine::{Refined, refine};
+use super::settings::{Settings, SettingsError};
+use super::symmetry::Symmetry;
+use crate::airframe::Airframe;
+use crate::ranging::Interval;
+
+/// A mode this much worse than the best, nats, has no weight.
+const HOPELESS_NATS: f64 = 8.0;
+/// Most rounds of assigning spots to markers and refining the pose.
+const MOST_ROUNDS: usize = 10;
+/// What it costs that a decoded signal is not the marker's: one in a hundred and fifty is wrong.
+const WRONG_SIGNAL_NATS: f64 = 5.0;
+
+/// What is known of a neighbour besides its spots.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Known {
+    /// Away from the ground, camera frame.
+    pub up: Option<Unit<Vector3<f64>>>,
+    /// Truth is between these.
+    pub bounds: Interval,
+    /// What spot size says of distance, where nothing better does.
+    pub size: Option<LogDistance>,
+    /// Light below which a marker is not found, in the units of the observations; 0 where unknown.
+    pub faintest_light: f64,
+}
+
+/// What the spots of one neighbour tell.
+#[derive(Clone, Debug, Default)]
+pub struct Posterior {
+    /// Mean and covariance.
+    pub summary: Option<Summary>,
+    /// The modes, the heaviest first.
+    pub modes: Vec<Mode>,
+    /// Logarithm of the probability density of the observations, up to a constant per spot.
+    pub log_evidence: f64,
+    /// The markers that the spots are in the best hypothesis.
+    pub markers: Vec<Option<u16>>,
+    /// Largest misfit of a spot in the best mode, in sigma.
+    pub worst_sigma: f64,
+}
+
+/// Estimates poses of one kind of airframe. Keeps its room, so that a warm one allocates nothing.
+#[derive(Clone, Debug)]
+pub struct Estimator {
+    airframe: Airframe,
+    settings: Settings,
+    symmetry: Symmetry,
+    whitened: Vec<Whitened>,
+    assignment: Assignment,
+    modes: Vec<Refined>,
+    components: Vec<Component>,
+    posterior: Posterior,
+}
+
+impl Estimator {
+    /// An estimator for an airframe.
+    ///
+    /// # Errors
+    /// [`SettingsError`] when a setting has no meaning.
+    pub fn new(airframe: &Airframe, settings: Settings) -> Result<Self, SettingsError> {
+        settings.check()?;
+        Ok(Self {
+            airframe: airframe.clone(),
+            settings,
+            symmetry: Symmetry::of(airframe),
+            whitened: Vec::new(),
+            assignment: Assignment::default(),
+            modes: Vec::new(),
+            components: Vec::new(),
+            posterior: Posterior::default(),
+        })
+    }
+
+    /// The airframe's symmetry: yaw is told modulo its turns.
+    pub fn symmetry(&self) -> &Symmetry {
+        &self.symmetry
+    }
+
+    /// The posterior that was estimated last.
+    pub fn posterior(&self) -> &Posterior {
+        &self.posterior
+    }
+
+    /// The posterior over all hypotheses; without a summary when none of them leads to a pose.
+    pub fn estimate(
+        &mut self,
+        observations: &[Observation],
+        hypotheses: &mut Hypotheses,
+        known: &Known,
+    ) -> &Posterior {
+        self.posterior.summary = None;
+        self.posterior.modes.clear();
+        self.posterior.log_evidence = f64::NEG_INFINITY;
+        self.find_modes(observations, hypotheses, known);
+        let nats = |mode: &Refined| mode.normal.nats;
+        let best = (0..self.modes.len()).min_by(|&a, &b| nats(&self.modes[a]).total_cmp(&nats(&self.modes[b])));
+        let Some(best) = best.filter(|&best| nats(&self.modes[best]).is_finite()) else {
+            return &self.posterior;
+        };
+        self.posterior.markers.clear();
+        self.posterior.markers.extend_from_slice(hypotheses.markers(best));
+        let limit = nats(&self.modes[best]) + HOPELESS_NATS;
+        self.components.clear();
+        for index in 0..self.modes.len() {
+            let mode = self.modes[index];
+            let twin = |other: &Refined| is_same(other, &mode);
+            let same = |other: usize| hypotheses.markers(other) == hypotheses.markers(index);
+            if nats(&mode) > limit || (0..index).any(|other| same(other) && twin(&self.modes[other])) {
+                continue;
+            }
+            let problem = problem(&self.airframe, &self.settings, observations, &self.whitened, known)
+                .assigned(hypotheses.markers(index));
+            if index == best {
+                let misfit = |(spot, marker)| problem.misfit(&mode.pose, spot, marker);
+                self.posterior.worst_sigma = problem.used().map(misfit).fold(0.0, f64::max).sqrt();
+            }
+            let first = self.components.len();
+            along_yaw::spread(&problem, &mode, index, &mut self.components);
+            self.turn_by_signals(first, observations, hypotheses.markers(index));
+        }
+        self.tell(observations, known);
+        &self.posterior
+    }
+
+    fn find_modes(&mut self, observations: &[Observation], hypotheses: &mut Hypotheses, known: &Known) {
+        self.modes.clear();
+        for index in 0..hypotheses.len() {
+            let start = hypotheses.start(index).pose;
+            if index == 0 {
+                let angle_rad = self.settings.marker_sigma_m / start.position_m.norm();
+                self.whitened.clear();
+                self.whitened.extend(observations.iter().map(|seen| Whitened::of(seen, angle_rad * angle_rad)));
+            }
+            let problem = problem(&self.airframe, &self.settings, observations, &self.whitened, known);
+            let mode = if hypotheses.is_loose(index) {
+                let markers = hypotheses.markers_mut(index);
+                settle(&problem, start, markers, &mut self.assignment)
+            } else {
+                refine(&problem.assigned(hypotheses.markers(index)), start)
+            };
+            self.modes.push(mode);
+        }
+    }
+
+    /// With decoded signals the turns of a symmetric airframe differ: each that fits is a mode of its own.
+    fn turn_by_signals(&mut self, first: usize, observations: &[Observation], markers: &[Option<u16>]) {
+        if observations.iter().all(|seen| seen.signal.is_none()) {
+            return;
+        }
+        let count = self.components.len() - first;
+        for turn in 0..self.symmetry.turns() {
+            let wrong = observations.iter().zip(markers).filter(|(seen, marker)| {
+                let turned = marker.map(|marker| self.symmetry.turned(turn, marker));
+                seen.signal.zip(turned).is_some_and(|(signal, marker)| {
+                    let leds = &self.airframe.markers()[usize::from(marker)].leds;
+                    leds.iter().all(|&led| self.airframe.leds()[led].signal != Some(signal))
+                })
+            });
+            let nats = WRONG_SIGNAL_NATS * wrong.count() as f64;
+            for index in first..first + count {
+                let mut component = self.components[index];
+                component.log_weight -= nats;
+                component.pose.camera_from_body =
+                    self.symmetry.attitude(&component.pose.camera_from_body, turn);
+                component.hypothesis += turn * 1000;
+                self.components.push(component);
+            }
+        }
+        self.components.drain(first..first + count);
+    }
+
+    fn tell(&mut self, observations: &[Observation], known: &Known) {
+        let Self { components, posterior, whitened, .. } = self;
+        mixture::truncate(components, &known.bounds);
+        let log_sigmas: f64 = whitened.iter().map(|seen| seen.log_sigmas).sum();
+        posterior.log_evidence = mixture::log_evidence(components) - log_sigmas;
+        if !mixture::normalise(components) {
+            return;
+        }
+        let anonymous = observations.iter().all(|seen| seen.signal.is_none());
+        let turns = if anonymous { self.symmetry.turns() } else { 1 };
+        posterior.summary = mixture::summarise(components, turns);
+        mixture::modes(components, turns, &mut posterior.modes);
+    }
+}
+
+fn problem<'a>(
+    airframe: &'a Airframe,
+    settings: &'a Settings,
+    observations: &'a [Observation],
+    whitened: &'a [Whitened],
+    known: &Known,
+) -> Problem<'a> {
+    Problem {
+        airframe,
+        settings,
+        observations,
+        whitened,
+        markers: &[],
+        up: known.up,
+        size: known.size,
+        faintest_light: known.faintest_light,
+    }
+}
+
+/// Assigns spots to the nearest markers and refines the pose in turns, until nothing changes.
+fn settle(
+    problem: &Problem<'_>,
+    start: Pose,
+    markers: &mut [Option<u16>],
+    assignment: &mut Assignment,
+) -> Refined {
+    let mut pose = start;
+    for _ in 0..MOST_ROUNDS {
+        if !assignment.assign(problem.airframe, &pose, problem.observations, markers) {
+            break;
+        }
+        pose = refine(&problem.assigned(markers), pose).pose;
+    }
+    Refined::at(&problem.assigned(markers), pose)
+}
+
+impl<'a> Problem<'a> {
+    fn assigned<'b>(&self, markers: &'b [Option<u16>]) -> Problem<'b>
+    where
+        'a: 'b,
+    {
+        Problem { markers, ..*self }
+    }
+}
+
+/// Whether two searches ended in one mode.
+fn is_same(a: &Refined, b: &Refined) -> bool {
+    let moved = (a.pose.position_m - b.pose.position_m).norm() / a.pose.position_m.norm();
+    let turn = (a.pose.camera_from_body.matrix() - b.pose.camera_from_body.matrix()).norm();
+    moved < 1e-2 && turn < 3e-2
+}

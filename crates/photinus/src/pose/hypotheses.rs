@@ -1,0 +1,99 @@
+//! Which markers the spots may be, with a first guess of the pose of each assignment.
+
+use super::problem::Pose;
+
+/// Most hypotheses about one neighbour: the time of a neighbour is bounded.
+const MOST: usize = 16;
+
+/// The branch of starts whose assignment is not settled.
+const LOOSE: u8 = u8::MAX;
+
+/// Assignments of the spots of one neighbour to markers.
+#[derive(Clone, Debug, Default)]
+pub struct Hypotheses {
+    spots: usize,
+    starts: Vec<Start>,
+    markers: Vec<Option<u16>>,
+}
+
+/// Where the search for a mode starts.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Start {
+    pub(super) pose: Pose,
+    /// What the guess costs, nats.
+    nats: f64,
+    /// Keeps apart modes of one assignment.
+    branch: u8,
+}
+
+impl Hypotheses {
+    /// Forgets all hypotheses; the next are about so many spots.
+    pub fn begin(&mut self, spots: usize) {
+        self.spots = spots;
+        self.starts.clear();
+        self.markers.clear();
+    }
+
+    /// Offers an assignment, the marker of each spot, that costs `nats` by a first look. Of one assignment and branch the
+    /// cheapest is kept, of all the cheapest sixteen.
+    pub fn offer(&mut self, markers: &[Option<u16>], pose: Pose, nats: f64, branch: u8) {
+        let start = Start { pose, nats, branch };
+        let same = (0..self.starts.len())
+            .find(|&index| self.starts[index].branch == branch && self.markers(index) == markers);
+        let place = if let Some(same) = same {
+            same
+        } else if self.starts.len() < MOST {
+            self.starts.push(Start { nats: f64::INFINITY, ..start });
+            self.markers.extend_from_slice(markers);
+            self.starts.len() - 1
+        } else {
+            let worst = (0..MOST).max_by(|&a, &b| self.starts[a].nats.total_cmp(&self.starts[b].nats));
+            worst.unwrap_or(0)
+        };
+        if nats < self.starts[place].nats {
+            self.starts[place] = start;
+            let from = place * self.spots;
+            self.markers[from..from + self.spots].copy_from_slice(markers);
+        }
+    }
+
+    /// Offers a pose without an assignment: each spot becomes the marker that is nearest in the end.
+    pub fn offer_loose(&mut self, pose: Pose, nats: f64) {
+        if self.starts.len() == MOST {
+            let worst = (0..MOST).max_by(|&a, &b| self.starts[a].nats.total_cmp(&self.starts[b].nats));
+            let worst = worst.unwrap_or(0);
+            if nats < self.starts[worst].nats {
+                self.starts[worst] = Start { pose, nats, branch: LOOSE };
+            }
+        } else {
+            self.starts.push(Start { pose, nats, branch: LOOSE });
+            self.markers.resize(self.markers.len() + self.spots, None);
+        }
+    }
+
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        self.starts.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.starts.is_empty()
+    }
+
+    pub(super) fn start(&self, index: usize) -> &Start {
+        &self.starts[index]
+    }
+
+    pub(super) fn is_loose(&self, index: usize) -> bool {
+        self.starts[index].branch == LOOSE
+    }
+
+    pub(super) fn markers_mut(&mut self, index: usize) -> &mut [Option<u16>] {
+        &mut self.markers[index * self.spots..][..self.spots]
+    }
+
+    pub(super) fn markers(&self, index: usize) -> &[Option<u16>] {
+        &self.markers[index * self.spots..][..self.spots]
+    }
+}

@@ -1,0 +1,123 @@
+//! What brightness says: two markers' ratio tells yaw, and what should shine and is not seen tells against a pose.
+
+use nalgebra::Vector6;
+
+use super::problem::{Normal, Pose, Problem};
+
+/// An intensity is known to no better than this, 1 being one LED straight ahead: lobes are not exactly cosines.
+const LOBE_ERROR: f64 = 0.02;
+/// A marker that shines with less than this towards the camera shines away.
+const DARK: f64 = 0.01;
+/// How often a marker that must show does not: dead, occluded, merged with another.
+const MISSED: f64 = 0.0005;
+/// How sharply finding falls off around the faintest light, as a power of light.
+const STEEPNESS: f64 = 8.0;
+/// Light at which a marker is found half of the time when nothing tells what is faintest, 1 being one LED straight ahead.
+const FAINTEST_SHARE: f64 = 0.15;
+
+/// The light of the spots in use against that of their markers.
+pub(super) struct Light {
+    weight: f64,
+    first: f64,
+    second: f64,
+    slope: Vector6<f64>,
+    /// Sums of w r a and of w a a', before the power of the LEDs is solved for.
+    normal: Normal,
+    log_sigmas: f64,
+}
+
+impl Light {
+    pub(super) fn of(problem: &Problem<'_>, pose: &Pose) -> Self {
+        let mut light = Self {
+            weight: 0.0,
+            first: 0.0,
+            second: 0.0,
+            slope: Vector6::zeros(),
+            normal: Normal::zero(),
+            log_sigmas: 0.0,
+        };
+        let camera_in_body_m = pose.camera_in_body_m();
+        let camera_from_body = pose.camera_from_body.matrix();
+        let distance_m = pose.position_m.norm();
+        for (spot, marker) in problem.used() {
+            let Some(seen) = problem.observations[spot].log_light else { continue };
+            let (intensity, gradient) =
+                problem.airframe.intensity_with_gradient(marker, &camera_in_body_m);
+            let shines = intensity.max(DARK);
+            let arm_m = problem.airframe.markers()[marker].position_m;
+            let from_marker_m = camera_in_body_m - arm_m;
+            let range2_m2 = from_marker_m.norm_squared();
+            // By the camera's place in the body frame, of ln I - 2 ln range.
+            let mut by_camera = from_marker_m * (-2.0 / range2_m2);
+            if intensity > DARK {
+                by_camera += gradient / intensity;
+            }
+            let lobe = LOBE_ERROR / shines;
+            let unit = problem.settings.unit_sigma;
+            let variance = seen.sigma * seen.sigma + unit * unit + lobe * lobe;
+            light.log_sigmas += 0.5 * libm::log(variance / (unit * unit));
+            // The camera in the body frame moves by -R' distance delta, and by c x omega.
+            let by_delta = camera_from_body * by_camera * -distance_m;
+            let by_omega = by_camera.cross(&camera_in_body_m);
+            let expected = libm::log(shines) - libm::log(range2_m2);
+            let row = Vector6::new(
+                -by_delta.x, -by_delta.y, -by_delta.z, -by_omega.x, -by_omega.y, -by_omega.z,
+            );
+            light.add(1.0 / variance, seen.value - expected, &row);
+        }
+        light
+    }
+
+    fn add(&mut self, weight: f64, residual: f64, row: &Vector6<f64>) {
+        self.weight += weight;
+        self.first += weight * residual;
+        self.second += weight * residual * residual;
+        self.slope += weight * row;
+        self.normal.add_weighted(weight, residual, row);
+    }
+
+    /// Logarithm of the light of an LED of intensity 1 at 1 m that fits best; `None` where no spot has a light.
+    pub(super) fn log_power(&self) -> Option<f64> {
+        (self.weight > 0.0).then(|| self.first / self.weight)
+    }
+
+    /// Adds what is left when the power of the LEDs is solved for.
+    pub(super) fn add_to(&self, normal: &mut Normal) {
+        let Some(power) = self.log_power() else { return };
+        normal.nats += 0.5 * (self.second - self.first * power) + self.log_sigmas;
+        normal.gradient += self.normal.gradient - self.slope * power;
+        for column in 0..6 {
+            for line in 0..=column {
+                normal.information[(line, column)] += self.normal.information[(line, column)]
+                    - self.slope[line] * self.slope[column] / self.weight;
+            }
+        }
+    }
+}
+
+impl Problem<'_> {
+    /// What it costs, nats, that these markers are seen and the others are not.
+    pub(super) fn visibility_nats(&self, pose: &Pose) -> f64 {
+        let camera_in_body_m = pose.camera_in_body_m();
+        let power = if self.settings.use_brightness && self.faintest_light > 0.0 {
+            Light::of(self, pose).log_power().map(libm::exp)
+        } else {
+            None
+        };
+        let half = match power {
+            // The intensity at which a marker at the origin's distance gives the faintest light.
+            Some(power) => {
+                (self.faintest_light * camera_in_body_m.norm_squared() / power).clamp(0.02, FAINTEST_SHARE * 4.0)
+            }
+            None => FAINTEST_SHARE,
+        };
+        let nats = |marker: usize| {
+            let intensity = self.airframe.intensity(marker, &camera_in_body_m);
+            let odds = libm::pow(intensity.max(1e-3) / half, STEEPNESS);
+            let found = (1.0 - MISSED) * odds / (1.0 + odds);
+            let is_seen = self.markers.contains(&u16::try_from(marker).ok());
+            -libm::log(if is_seen { found.max(1e-9) } else { 1.0 - found })
+        };
+        (0..self.airframe.markers().len()).map(nats).sum()
+    }
+}

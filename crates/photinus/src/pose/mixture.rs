@@ -1,0 +1,202 @@
+//! Normal distributions with weights -> what is told: modes, mean and covariance, distance, all within the strict bounds.
+
+use nalgebra::{Matrix3, Rotation3, Vector3};
+
+use super::problem::Pose;
+use crate::ranging::{Estimate, Interval};
+
+/// Most slices that one mode stands for: their valley is straight over so short a stretch.
+const SLICES_PER_MODE: usize = 3;
+/// Modes with less weight are not told.
+const NEGLIGIBLE: f64 = 1e-3;
+
+/// A part of the posterior, normal.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Component {
+    pub(super) log_weight: f64,
+    pub(super) pose: Pose,
+    pub(super) position_covariance_m2: Matrix3<f64>,
+    /// Of a rotation in the body frame.
+    pub(super) orientation_covariance_rad2: Matrix3<f64>,
+    pub(super) hypothesis: usize,
+    /// From the mode that it belongs to.
+    pub(super) yaw_rad: f64,
+}
+
+/// One way in which the spots can be this airframe.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mode {
+    /// Its share of the posterior, 0 to 1.
+    pub weight: f64,
+    /// Where and how turned.
+    pub pose: Pose,
+    /// Covariance of the position, camera frame, m^2.
+    pub position_covariance_m2: Matrix3<f64>,
+    /// Covariance of the attitude as a small rotation in the body frame, rad^2.
+    pub orientation_covariance_rad2: Matrix3<f64>,
+}
+
+/// The whole posterior in a few numbers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Summary {
+    /// Mean position; mean attitude, yaw modulo the airframe's symmetry.
+    pub pose: Pose,
+    /// Covariance of the position, over all modes, camera frame, m^2.
+    pub position_covariance_m2: Matrix3<f64>,
+    /// Covariance of the attitude as a small rotation in the body frame, rad^2, yaw modulo the airframe's symmetry.
+    pub orientation_covariance_rad2: Matrix3<f64>,
+    /// Mean and standard deviation of distance.
+    pub distance: Estimate,
+}
+
+/// Cuts each component off at the bounds on distance: truth is never beyond. What is left of each is taken as normal again.
+pub(super) fn truncate(components: &mut [Component], bounds: &Interval) {
+    for component in components {
+        let distance_m = component.pose.position_m.norm();
+        let ahead = component.pose.position_m / distance_m;
+        let covariance = &component.position_covariance_m2;
+        let along = covariance * ahead;
+        let variance_m2 = ahead.dot(&along);
+        let sigma_m = variance_m2.sqrt().max(1e-9);
+        let low = (bounds.min_m() - distance_m) / sigma_m;
+        let high = (bounds.max_m() - distance_m) / sigma_m;
+        if low < -5.0 && high > 5.0 {
+            continue;
+        }
+        let Truncated { log_mass, shift, variance } = truncated(low, high);
+        component.log_weight += log_mass;
+        // The other directions follow the distance as far as they are correlated with it.
+        let gain = along / variance_m2.max(1e-18);
+        component.pose.position_m += gain * (shift * sigma_m);
+        component.position_covariance_m2 -= gain * gain.transpose() * (variance_m2 * (1.0 - variance));
+    }
+}
+
+/// What is left of a standard normal distribution between two limits.
+struct Truncated {
+    log_mass: f64,
+    shift: f64,
+    variance: f64,
+}
+
+fn truncated(low: f64, high: f64) -> Truncated {
+    // Far in a tail the rest is close to exponential, at the nearer limit.
+    if low > 5.0 {
+        return Truncated { log_mass: -0.5 * low * low - libm::log(low), shift: (low + 1.0 / low).min(high), variance: (1.0 / (low * low)).min((high - low) * (high - low)) };
+    }
+    if high < -5.0 {
+        let Truncated { log_mass, shift, variance } = truncated(-high, -low);
+        return Truncated { log_mass, shift: -shift, variance };
+    }
+    const SQRT_2: f64 = core::f64::consts::SQRT_2;
+    let below = |x: f64| 0.5 * libm::erfc(-x / SQRT_2);
+    let density = |x: f64| if x.is_finite() { libm::exp(-0.5 * x * x) / (core::f64::consts::TAU).sqrt() } else { 0.0 };
+    let moment = |x: f64| if x.is_finite() { x * density(x) } else { 0.0 };
+    let mass = (below(high) - below(low)).max(1e-12);
+    let shift = ((density(low) - density(high)) / mass).clamp(low, high);
+    let variance = (1.0 + (moment(low) - moment(high)) / mass - shift * shift).clamp(1e-6, 1.0);
+    Truncated { log_mass: libm::log(mass), shift, variance }
+}
+
+/// Scales weights so that they add up to 1; `false` when there is no weight.
+pub(super) fn normalise(components: &mut [Component]) -> bool {
+    let best = components.iter().map(|component| component.log_weight).fold(f64::NEG_INFINITY, f64::max);
+    if !best.is_finite() {
+        return false;
+    }
+    let total: f64 = components.iter().map(|component| libm::exp(component.log_weight - best)).sum();
+    let log_total = best + libm::log(total);
+    for component in components.iter_mut() {
+        component.log_weight -= log_total;
+    }
+    true
+}
+
+/// The logarithm of the sum of all weights.
+pub(super) fn log_evidence(components: &[Component]) -> f64 {
+    let best = components.iter().map(|component| component.log_weight).fold(f64::NEG_INFINITY, f64::max);
+    if !best.is_finite() {
+        return f64::NEG_INFINITY;
+    }
+    let total: f64 = components.iter().map(|component| libm::exp(component.log_weight - best)).sum();
+    best + libm::log(total)
+}
+
+/// The mean and covariance of normalised components. `turns` is how many turns about the body's z axis leave it the same.
+pub(super) fn summarise(components: &[Component], turns: usize) -> Option<Summary> {
+    let heaviest = components.iter().max_by(|a, b| a.log_weight.total_cmp(&b.log_weight))?;
+    Some(moments(components, &heaviest.pose.camera_from_body, turns))
+}
+
+/// Puts neighbouring slices together into modes, the heaviest first.
+pub(super) fn modes(components: &mut [Component], turns: usize, modes: &mut Vec<Mode>) {
+    modes.clear();
+    components.sort_unstable_by(|a, b| {
+        a.hypothesis.cmp(&b.hypothesis).then(a.yaw_rad.total_cmp(&b.yaw_rad))
+    });
+    for hypothesis in components.chunk_by(|a, b| a.hypothesis == b.hypothesis) {
+        for slices in hypothesis.chunks(SLICES_PER_MODE) {
+            let weight: f64 = slices.iter().map(|slice| libm::exp(slice.log_weight)).sum();
+            if weight < NEGLIGIBLE {
+                continue;
+            }
+            let Some(Summary { pose, position_covariance_m2, orientation_covariance_rad2, .. }) =
+                summarise(slices, turns)
+            else {
+                continue;
+            };
+            modes.push(Mode { weight, pose, position_covariance_m2, orientation_covariance_rad2 });
+        }
+    }
+    modes.sort_unstable_by(|a, b| b.weight.total_cmp(&a.weight));
+    let total: f64 = modes.iter().map(|mode| mode.weight).sum();
+    for mode in modes {
+        mode.weight /= total;
+    }
+}
+
+fn moments(components: &[Component], reference: &Rotation3<f64>, turns: usize) -> Summary {
+    let mut total = 0.0;
+    let (mut first_m, mut second_m2) = (Vector3::zeros(), Matrix3::zeros());
+    let (mut turn, mut turn2) = (Vector3::zeros(), Matrix3::zeros());
+    let (mut distance_m, mut distance2_m2) = (0.0, 0.0);
+    for component in components {
+        let weight = libm::exp(component.log_weight);
+        let position_m = component.pose.position_m;
+        let away_m = position_m.norm();
+        let ahead = position_m / away_m;
+        let covariance = component.position_covariance_m2;
+        total += weight;
+        first_m += weight * position_m;
+        second_m2 += weight * (covariance + position_m * position_m.transpose());
+        distance_m += weight * away_m;
+        distance2_m2 += weight * (ahead.dot(&(covariance * ahead)) + away_m * away_m);
+        let off = nearest_turn(reference, &component.pose.camera_from_body, turns);
+        turn += weight * off;
+        turn2 += weight * (component.orientation_covariance_rad2 + off * off.transpose());
+    }
+    let (mean_m, turn) = (first_m / total, turn / total);
+    let distance_m = distance_m / total;
+    Summary {
+        pose: Pose { position_m: mean_m, camera_from_body: reference * Rotation3::new(turn) },
+        position_covariance_m2: second_m2 / total - mean_m * mean_m.transpose(),
+        orientation_covariance_rad2: turn2 / total - turn * turn.transpose(),
+        distance: Estimate {
+            distance_m,
+            sigma_m: (distance2_m2 / total - distance_m * distance_m).max(0.0).sqrt(),
+        },
+    }
+}
+
+/// The rotation from one attitude to another, in the body frame, with the yaw between them the least that symmetry allows.
+fn nearest_turn(from: &Rotation3<f64>, to: &Rotation3<f64>, turns: usize) -> Vector3<f64> {
+    let between = from.inverse() * to;
+    if turns == 1 {
+        return between.scaled_axis();
+    }
+    let sector_rad = core::f64::consts::TAU / turns as f64;
+    let matrix = between.matrix();
+    let yaw_rad = libm::atan2(matrix.m21 - matrix.m12, matrix.m11 + matrix.m22);
+    let back_rad = -(yaw_rad / sector_rad).round() * sector_rad;
+    (between * Rotation3::from_axis_angle(&Vector3::z_axis(), back_rad)).scaled_axis()
+}

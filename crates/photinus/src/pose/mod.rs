@@ -1,0 +1,43 @@
+//! Markers -> position and attitude: every way in which the spots of one neighbour can be its airframe, and how sure.
+//!
+//! In: bearings with their covariances and light, which markers they may be, gravity and bounds where known. Out: the
+//! posterior, as a mixture of modes and as one mean with covariance. The flow:
+//!
+//! ```text
+//! hypotheses    which spot may be which marker, with a first guess of the pose
+//! problem       what a pose costs: bearings, light, tilt; with its derivatives
+//! refine        downhill to the mode of each hypothesis                      (p3p, pnp: closed forms)
+//! along_yaw     slices along the valley where the yaw is uncertain
+//! mixture       weights, truncation to the strict bounds, moments, modes
+//! ```
+//!
+//! The prior prefers no direction, no yaw and no scale (even over the logarithm of distance): of all priors it is the one
+//! under which a mean and covariance are as good at every range. Where gravity is known the body is upright but for a tilt;
+//! where it is not, a camera well above or below the body's horizon is the less likely.
+
+mod along_yaw;
+mod assignment;
+mod estimator;
+mod hypotheses;
+mod light;
+mod mixture;
+mod observation;
+mod p3p;
+mod pnp;
+mod problem;
+mod refine;
+mod settings;
+mod symmetry;
+#[cfg(test)]
+mod tests;
+
+pub use estimator::{Estimator, Known, Posterior};
+pub use hypotheses::Hypotheses;
+pub use mixture::{Mode, Summary};
+pub use observation::{LogLight, Observation};
+pub use p3p::{P3pSolutions, p3p};
+pub use pnp::pnp;
+pub(crate) use problem::STRANGER_LOG_DENSITY;
+pub use problem::{LogDistance, Pose};
+pub use settings::{Settings, SettingsError};
+pub use symmetry::Symmetry;

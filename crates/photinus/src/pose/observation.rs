@@ -1,0 +1,83 @@
+//! A spot as the estimator takes it: a direction, whitened, and how brightly it shines.
+
+use nalgebra::{Matrix2x3, Matrix3, Vector3};
+
+use crate::camera::Bearing;
+
+/// What one spot says about a marker.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Observation {
+    /// Direction in the camera frame.
+    pub bearing: Bearing,
+    /// Covariance of the direction, rad^2, tangent to the sphere.
+    pub covariance_rad2: Matrix3<f64>,
+    /// Logarithm of its light, in units of any kind that are the same for all spots of the frame; `None` where unknown.
+    pub log_light: Option<LogLight>,
+    /// Which of the airframe's signals it was seen to blink, where that was decoded.
+    pub signal: Option<u32>,
+}
+
+/// A logarithm of light, and how far its measurement can be off.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LogLight {
+    /// Natural logarithm.
+    pub value: f64,
+    /// Standard deviation of the measurement alone.
+    pub sigma: f64,
+}
+
+/// A direction with the map that makes its error one of unit covariance: e = map (u - direction).
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Whitened {
+    pub(super) direction: Vector3<f64>,
+    pub(super) map: Matrix2x3<f64>,
+    /// Logarithm of the density's normaliser, up to a constant: half the logarithm of the covariance's determinant.
+    pub(super) log_sigmas: f64,
+}
+
+impl Whitened {
+    /// `extra_rad2` is what is added to the variance along both axes.
+    pub(super) fn of(observation: &Observation, extra_rad2: f64) -> Self {
+        let direction = *observation.bearing.vector();
+        let [across, along] = tangent_basis(&direction);
+        let covariance = &observation.covariance_rad2;
+        // Nothing is known to better than a millionth of a radian.
+        let extra_rad2 = extra_rad2 + 1e-12;
+        let xx = across.dot(&(covariance * across)) + extra_rad2;
+        let xy = across.dot(&(covariance * along));
+        let yy = along.dot(&(covariance * along)) + extra_rad2;
+        // The inverse of the Cholesky factor of [[xx, xy], [xy, yy]].
+        let first = xx.sqrt();
+        let below = xy / first;
+        let second = (yy - below * below).max(1e-3 * yy).sqrt();
+        let row = across / first;
+        let map = Matrix2x3::from_rows(&[row.transpose(), ((along - row * below) / second).transpose()]);
+        Self { direction, map, log_sigmas: libm::log(first * second) }
+    }
+}
+
+/// Two unit vectors that span the plane across a direction.
+fn tangent_basis(direction: &Vector3<f64>) -> [Vector3<f64>; 2] {
+    let aside = if direction.x.abs() < 0.7 { Vector3::x() } else { Vector3::y() };
+    let across = direction.cross(&aside).normalize();
+    [across, direction.cross(&across)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn whitening_makes_the_covariance_one() {
+        let bearing = Bearing::new(Vector3::new(0.3, -0.5, 0.4)).unwrap();
+        let [across, along] = tangent_basis(bearing.vector());
+        let jacobian = nalgebra::Matrix3x2::from_columns(&[across + 0.5 * along, 0.3 * along]) * 1e-3;
+        let covariance_rad2 = jacobian * jacobian.transpose();
+        let observation = Observation { bearing, covariance_rad2, log_light: None, signal: None };
+        let whitened = Whitened::of(&observation, 0.0);
+        let white = whitened.map * covariance_rad2 * whitened.map.transpose();
+        assert!((white - nalgebra::Matrix2::identity()).norm() < 1e-4, "{white}");
+        assert!((whitened.map * bearing.vector()).norm() < 1e-9);
+        assert!((whitened.log_sigmas - libm::log(0.3e-6)).abs() < 1e-4);
+    }
+}

@@ -1,0 +1,88 @@
+//! Downhill from a start to the nearest mode: Levenberg-Marquardt, and Gauss-Newton with the yaw held.
+
+use nalgebra::{Matrix5, Vector5, Vector6};
+
+use super::problem::{Normal, Pose, Problem};
+
+/// Most steps towards a mode.
+const MOST_STEPS: usize = 20;
+/// A step that would gain less than this, nats, is the last.
+const SMALL_GAIN: f64 = 1e-4;
+/// Longest step of the position, in distances, and of the attitude, rad.
+const LONGEST: f64 = 0.5;
+
+/// A pose with its cost and normal equations.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Refined {
+    pub(super) pose: Pose,
+    pub(super) normal: Normal,
+}
+
+impl Refined {
+    pub(super) fn at(problem: &Problem<'_>, pose: Pose) -> Self {
+        Self { pose, normal: problem.normal(&pose) }
+    }
+}
+
+/// The mode downhill from `start`.
+pub(super) fn refine(problem: &Problem<'_>, start: Pose) -> Refined {
+    let mut here = Refined::at(problem, start);
+    let mut damping = 1e-4;
+    for _ in 0..MOST_STEPS {
+        let Normal { nats, gradient, mut information } = here.normal;
+        for axis in 0..6 {
+            information[(axis, axis)] += damping * information[(axis, axis)] + 1e-9;
+        }
+        let Some(factor) = information.cholesky() else {
+            damping = damping.max(1e-6) * 10.0;
+            continue;
+        };
+        let step = shortened(-factor.solve(&gradient));
+        let gain = -gradient.dot(&step);
+        if !(gain > SMALL_GAIN) {
+            break;
+        }
+        let there = Refined::at(problem, here.pose.stepped(&step));
+        if there.normal.nats < nats {
+            damping = (damping * 0.1).max(1e-9);
+            here = there;
+        } else {
+            damping = damping.max(1e-4) * 10.0;
+        }
+    }
+    here
+}
+
+fn shortened(step: Vector6<f64>) -> Vector6<f64> {
+    let longest = step.amax();
+    if longest > LONGEST { step * (LONGEST / longest) } else { step }
+}
+
+/// The information of all but yaw, and its coupling with yaw.
+pub(super) fn without_yaw(normal: &Normal) -> (Matrix5<f64>, Vector5<f64>) {
+    let all = &normal.information;
+    (all.fixed_view::<5, 5>(0, 0).into_owned(), all.fixed_view::<5, 1>(0, 5).into_owned())
+}
+
+/// The pose that costs least beside `here` with the yaw turned by `yaw_rad`.
+pub(super) fn turned(problem: &Problem<'_>, here: &Refined, yaw_rad: f64) -> Option<Refined> {
+    let (information, coupling) = without_yaw(&here.normal);
+    let predicted = information.cholesky()?.solve(&(coupling * -yaw_rad));
+    let mut step = predicted.push(yaw_rad);
+    let mut there = Refined::at(problem, here.pose.stepped(&shortened(step)));
+    for _ in 0..4 {
+        let (information, _) = without_yaw(&there.normal);
+        let gradient = there.normal.gradient.fixed_rows::<5>(0).into_owned();
+        let rest = -information.cholesky()?.solve(&gradient);
+        if !(-gradient.dot(&rest) > 1e-2) {
+            break;
+        }
+        step = shortened(rest.push(0.0));
+        let next = Refined::at(problem, there.pose.stepped(&step));
+        if next.normal.nats > there.normal.nats {
+            break;
+        }
+        there = next;
+    }
+    Some(there)
+}

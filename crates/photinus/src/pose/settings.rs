@@ -1,0 +1,53 @@
+//! What is believed of neighbours before a frame tells.
+
+/// Priors and tolerances of the estimator.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings {
+    /// Standard deviation of a neighbour's tilt against the vertical, per axis, with the error of the known gravity, rad.
+    /// Default 5 deg.
+    pub tilt_sigma_rad: f64,
+    /// How far markers are from where the airframe's file says, m, per axis. Default 1 mm, a hand-built airframe.
+    pub marker_sigma_m: f64,
+    /// Spread of power between LEDs of one kind: sigma of its natural logarithm. Default 0.12.
+    pub unit_sigma: f64,
+    /// Whether brightness counts. Default yes.
+    pub use_brightness: bool,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            tilt_sigma_rad: 5.0 * core::f64::consts::PI / 180.0,
+            marker_sigma_m: 0.001,
+            unit_sigma: 0.12,
+            use_brightness: true,
+        }
+    }
+}
+
+/// A prior or tolerance that has no meaning.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{name} is {value}, it must be {must}")]
+pub struct SettingsError {
+    /// Which setting.
+    pub name: &'static str,
+    /// What was given.
+    pub value: f64,
+    /// What it must be.
+    pub must: &'static str,
+}
+
+impl Settings {
+    /// Checks every number.
+    ///
+    /// # Errors
+    /// [`SettingsError`] names the first setting that has no meaning.
+    pub fn check(&self) -> Result<(), SettingsError> {
+        let need =
+            |ok: bool, name, value, must| if ok { Ok(()) } else { Err(SettingsError { name, value, must }) };
+        let Self { tilt_sigma_rad, marker_sigma_m, unit_sigma, .. } = *self;
+        need((1e-4..=3.2).contains(&tilt_sigma_rad), "the tilt's sigma", tilt_sigma_rad, "0.0001 to 3.2 rad")?;
+        need((0.0..=1.0).contains(&marker_sigma_m), "the markers' sigma", marker_sigma_m, "0 to 1 m")?;
+        need((1e-3..=10.0).contains(&unit_sigma), "the spread of power", unit_sigma, "0.001 to 10")
+    }
+}

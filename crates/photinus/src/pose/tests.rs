@@ -1,0 +1,99 @@
+use nalgebra::{Matrix3, Rotation3, Unit, Vector3, Vector6};
+use proptest::prelude::*;
+
+use super::observation::Whitened;
+use super::problem::Problem;
+use super::*;
+use crate::airframe::{Airframe, Ring};
+use crate::camera::Bearing;
+
+fn hexarotor() -> Airframe {
+    let ring = Ring { arms: 6, radius_m: 0.4, leds_per_arm: 1, splay_rad: 0.0 };
+    Airframe::from_ring("hexarotor", ring).unwrap()
+}
+
+fn quadrotor() -> Airframe {
+    let ring = Ring { arms: 4, radius_m: 0.245, leds_per_arm: 2, splay_rad: core::f64::consts::FRAC_PI_2 };
+    Airframe::from_ring("quadrotor", ring).unwrap()
+}
+
+/// Upright, a camera along the horizon.
+fn level() -> Rotation3<f64> {
+    Rotation3::from_basis_unchecked(&[Vector3::z(), -Vector3::x(), -Vector3::y()])
+}
+
+fn observation(direction: Vector3<f64>, sigma_rad: f64, light: f64) -> Observation {
+    let bearing = Bearing::new(direction).unwrap();
+    let across = Matrix3::identity() - bearing.vector() * bearing.vector().transpose();
+    Observation {
+        bearing,
+        covariance_rad2: across * (sigma_rad * sigma_rad),
+        log_light: Some(LogLight { value: libm::log(light), sigma: 0.05 }),
+        signal: None,
+    }
+}
+
+proptest! {
+    #[test]
+    fn derivatives_agree_with_finite_differences(
+        place in prop::array::uniform3(-3.0f64..3.0), turn in prop::array::uniform3(-0.6f64..0.6),
+        yaw in 0.0f64..6.28, noise in prop::array::uniform6(-0.003f64..0.003), with_up in any::<bool>(), quad in any::<bool>(),
+    ) {
+        let airframe = if quad { quadrotor() } else { hexarotor() };
+        let pose = Pose {
+            position_m: Vector3::from(place) + Vector3::z() * 4.0,
+            camera_from_body: Rotation3::new(Vector3::from(turn)) * level() * Rotation3::new(Vector3::z() * yaw),
+        };
+        prop_assume!(pose.position_m.norm() > 1.0);
+        let camera = pose.camera_in_body_m();
+        let seen: Vec<u16> = airframe.visible(camera).filter(|&m| airframe.intensity(m, &camera) > 0.1).map(|m| m as u16).collect();
+        prop_assume!(seen.len() >= 2);
+        let observations: Vec<Observation> = seen.iter().enumerate().map(|(index, &marker)| {
+            let off = Vector3::new(noise[index % 6], noise[(index + 1) % 6], noise[(index + 2) % 6]);
+            let place = pose.camera_from_body * airframe.markers()[usize::from(marker)].position_m + pose.position_m;
+            observation(place.normalize() + off, 2e-3, 1.0 + 300.0 * noise[index % 6].abs())
+        }).collect();
+        let whitened: Vec<Whitened> = observations.iter().map(|seen| Whitened::of(seen, 0.0)).collect();
+        let markers: Vec<Option<u16>> = seen.into_iter().map(Some).collect();
+        let settings = Settings::default();
+        let problem = Problem {
+            airframe: &airframe, settings: &settings, observations: &observations, whitened: &whitened, markers: &markers,
+            up: with_up.then(|| Unit::new_normalize(Vector3::new(0.05, -1.0, 0.02))),
+            size: Some(LogDistance { mean: 1.0, sigma: 0.5 }), faintest_light: 0.0,
+        };
+        let normal = problem.normal(&pose);
+        prop_assert!((normal.information - normal.information.transpose()).norm() == 0.0);
+        // The light's variance moves with the pose and is held in a step, so that it is left out of the comparison.
+        let held = Settings { use_brightness: false, ..settings };
+        let problem = Problem { settings: &held, ..problem };
+        let normal = problem.normal(&pose);
+        for axis in 0..6 {
+            let mut step = Vector6::zeros();
+            step[axis] = 1e-6;
+            let ahead = problem.normal(&pose.stepped(&step));
+            let behind = problem.normal(&pose.stepped(&-step));
+            let numeric = (ahead.nats - behind.nats) / 2e-6;
+            let scale = 1.0 + normal.information[(axis, axis)].sqrt();
+            prop_assert!((numeric - normal.gradient[axis]).abs() < 2e-4 * scale, "axis {axis}: {numeric} {}", normal.gradient[axis]);
+        }
+    }
+
+    #[test]
+    fn slopes_of_light_agree_with_finite_differences(
+        place in prop::array::uniform3(-3.0f64..3.0), yaw in 0.0f64..6.28, quad in any::<bool>(),
+    ) {
+        let airframe = if quad { quadrotor() } else { hexarotor() };
+        let camera = Vector3::from(place) + Rotation3::new(Vector3::z() * yaw) * Vector3::x() * 3.0;
+        for marker in 0..airframe.markers().len() {
+            let (intensity, gradient) = airframe.intensity_with_gradient(marker, &camera);
+            prop_assert_eq!(intensity, airframe.intensity(marker, &camera));
+            let step = 1e-6;
+            let numeric = Vector3::from_fn(|axis, _| {
+                let mut off = Vector3::zeros();
+                off[axis] = step;
+                (airframe.intensity(marker, &(camera + off)) - airframe.intensity(marker, &(camera - off))) / (2.0 * step)
+            });
+            prop_assert!(intensity < 1e-5 || (numeric - gradient).norm() < 1e-5, "{numeric} {gradient}");
+        }
+    }
+}

@@ -114,7 +114,7 @@ fn rows(
             "largest bearing error, Photinus (mrad)",
             1e3 * own.iter().map(|marker| marker.error_rad).fold(0.0, f64::max),
             Tolerance::None,
-            "two markers that merge into one spot are the worst",
+            "out to 14.5 m",
         ),
     ]
 }

@@ -278,7 +278,7 @@ mod tests {
     #[test]
     fn swaps_are_counted_through_noise() {
         let wave = |time_s: f64| 0.5 - 0.5 * libm::cos(core::f64::consts::TAU * time_s);
-        let noise = |step: u32| if step % 2 == 0 { 0.4 } else { -0.4 };
+        let noise = |step: u32| if step.is_multiple_of(2) { 0.4 } else { -0.4 };
         let shares: Vec<(f64, f64)> = (0..500)
             .map(|step| (0.01 * f64::from(step), wave(0.01 * f64::from(step)) + noise(step)))
             .collect();

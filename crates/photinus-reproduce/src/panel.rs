@@ -54,7 +54,7 @@ pub enum Kind {
     Points,
     /// In order of x.
     Line,
-    /// In order of x, and not measured.
+    /// In order of x, for comparison.
     Dashed,
 }
 

@@ -173,14 +173,14 @@ fn rows(all: &[Shot], own: &Envelope, held: Option<Envelope>, spread: [f64; 3]) 
             first_paper_m,
             first_single_m(all),
             Tolerance::Ratio(0.1),
-            "fitted without noise; the nearest of so many noisy ones is a little nearer",
+            "the preset was fitted without noise, over a raster of places in a pixel",
         ),
         Row::of_paper(
             "last spot of 2 px at 1000 us (m)",
             6.62,
             farthest_m(all, |shot| shot.area_px > 1),
             Tolerance::Ratio(0.05),
-            "fitted without noise; the farthest of so many noisy ones is a little farther",
+            "the preset was fitted without noise; only a point on the very border of pixels gets there",
         ),
     ]
 }

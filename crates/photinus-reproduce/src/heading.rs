@@ -129,7 +129,7 @@ mod tests {
         let rendered = Simulator::new(rig.scene(), 0).unwrap().frame(700);
         let mut seen = Observer::new(&rig, &[]).unwrap().look(&rendered).unwrap();
         let (bearing, bounds) = (Bearing::new(seen.position_m).unwrap(), Interval::new(0.0, 9.0).unwrap());
-        seen.own.neighbour = Some(OwnNeighbour { bearing, estimate_m: None, bounds });
+        seen.own.neighbour = Some(OwnNeighbour { bearing, estimate_m: None, bounds, paper_m: None });
         assert!(error_rad(&rig, &seen, Vector3::zeros()).unwrap().abs() < 1e-9);
         let north_rad = error_rad(&rig, &seen, Vector3::y()).unwrap();
         assert!((north_rad - 1.0 / seen.distance_m()).abs() < 0.02, "{north_rad}, to the left is positive");

@@ -62,6 +62,8 @@ pub(crate) struct OwnNeighbour {
     pub(crate) estimate_m: Option<f64>,
     /// Strict bounds.
     pub(crate) bounds: Interval,
+    /// The paper's l_A and l_B from centroids, m, where two neighbouring markers are seen.
+    pub(crate) paper_m: Option<(f64, f64)>,
 }
 
 /// What Photinus sees.
@@ -89,6 +91,12 @@ pub(crate) struct Seen {
 }
 
 impl Seen {
+    /// Whether the truth lies between l_B and l_A from centroids; `None` without a pair.
+    pub(crate) fn is_between_centroids(&self) -> Option<bool> {
+        let (perpendicular_m, inline_m) = self.own.neighbour?.paper_m?;
+        Some(inline_m <= self.distance_m() && self.distance_m() <= perpendicular_m)
+    }
+
     /// True distance of the target, m.
     pub(crate) fn distance_m(&self) -> f64 {
         self.position_m.norm()
@@ -152,6 +160,7 @@ impl<'a> Observer<'a> {
             bearing: found.bearing,
             estimate_m: found.distance.estimate.map(|estimate| estimate.distance_m),
             bounds: found.distance.bounds,
+            paper_m: found.distance.perpendicular_m.zip(found.distance.inline_m),
         });
         Some(Seen {
             time_s: rendered.truth.time_s,

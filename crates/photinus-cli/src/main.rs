@@ -6,6 +6,7 @@
 //! simulate: a scene -> frames with truth
 //! evaluate: results against the truth of a dataset
 //! demo: all of it on a flight that the program carries along
+//! reproduce: the experiments of the founding paper, each number beside the paper's
 //! ```
 
 mod aligned;
@@ -22,6 +23,9 @@ mod kind;
 mod locate;
 mod output;
 mod overlay;
+mod page;
+mod plots;
+mod reproduce;
 mod run;
 mod simulate;
 mod spot_options;
@@ -50,6 +54,7 @@ Examples:
   photinus locate recording --out results.jsonl --overlay seen
   photinus simulate scene.toml --out recording frames with truth, where there is no recording
   photinus evaluate recording results.jsonl    how well that went, where the truth is known
+  photinus reproduce                           every figure of the founding paper, in simulation
 
 Every command explains itself: photinus locate --help
 
@@ -64,6 +69,7 @@ enum Command {
     Simulate(simulate::Args),
     Evaluate(evaluate::Args),
     Demo(demo::Args),
+    Reproduce(reproduce::Args),
 }
 
 fn main() -> ExitCode {
@@ -73,6 +79,7 @@ fn main() -> ExitCode {
         Command::Detect(args) => args.quiet(),
         Command::Simulate(args) => args.quiet(),
         Command::Evaluate(args) => args.quiet(),
+        Command::Reproduce(args) => args.quiet(),
         Command::Info(_) | Command::Convert(_) | Command::Demo(_) => false,
     };
     let mut terminal = Terminal::new(quiet);
@@ -84,6 +91,7 @@ fn main() -> ExitCode {
         Command::Simulate(args) => simulate::run(&args, &mut terminal),
         Command::Evaluate(args) => evaluate::run(&args, &terminal),
         Command::Demo(args) => demo::run(&args, &mut terminal),
+        Command::Reproduce(args) => reproduce::run(&args, &mut terminal),
     };
     let Err(failure) = done else { return ExitCode::SUCCESS };
     if let Some(message) = failure.message() {

@@ -89,7 +89,7 @@ impl Outputs {
         }
         if let Some(overlay) = &self.overlay {
             let image = entry.image.as_ref().map(|image| image.view());
-            overlay.draw(&entry.record, image, entry.gravity.as_ref()).map_err(Failure::running)?;
+            overlay.draw(&entry.record, image, entry.gravity.as_ref(), &[]).map_err(Failure::running)?;
         }
         Ok(())
     }
@@ -128,6 +128,18 @@ pub(crate) fn refuse_to_replace(path: &Path, read: &[PathBuf]) -> Result<(), Fai
         Some(_) => Err(Failure::Input(format!(
             "{}: this file is an input, it would be replaced; write elsewhere",
             path.display()
+        ))),
+    }
+}
+
+/// Files of somebody else, or of another run, are left alone.
+pub(crate) fn refuse_to_mix(folder: &Path) -> Result<(), Failure> {
+    let is_empty = |mut entries: std::fs::ReadDir| entries.next().is_none();
+    match folder.exists() && !std::fs::read_dir(folder).is_ok_and(is_empty) {
+        false => Ok(()),
+        true => Err(Failure::Input(format!(
+            "{}: it is there already; remove it, or name another folder with --out",
+            folder.display()
         ))),
     }
 }

@@ -19,7 +19,7 @@ const FILES: [(&str, &str); 3] = [
 ///
 /// # Errors
 /// [`Error`] when the folder cannot be made or written to.
-pub(super) fn unpack(folder: &Path) -> Result<Scene> {
+pub(crate) fn unpack(folder: &Path) -> Result<Scene> {
     for (name, text) in FILES {
         let path = folder.join(name);
         let written = path.parent().map_or(Ok(()), std::fs::create_dir_all);

@@ -4,13 +4,11 @@
 //! ```text
 //! carried  the scene and the files it names
 //! pace     which frames are drawn
-//! page     pictures and figure on a page that a browser plays
 //! told     what came out, in lines to read
 //! ```
 
-mod carried;
-mod pace;
-mod page;
+pub(crate) mod carried;
+pub(crate) mod pace;
 mod told;
 
 use std::fs::File;
@@ -24,6 +22,7 @@ use photinus_io::dataset::TruthFrame;
 use photinus_io::frames::Frame;
 use photinus_io::results::{FrameRecord, ResultsWriter};
 use photinus_io::{Error, Result};
+use photinus_sim::scene::Target;
 use photinus_sim::{Rendered, Scene, Simulator};
 
 use crate::clock::Clock;
@@ -31,8 +30,9 @@ use crate::evaluate::PlotFolder;
 use crate::failure::Failure;
 use crate::input::Entry;
 use crate::locate;
-use crate::output::create;
-use crate::overlay::Overlay;
+use crate::output::{create, refuse_to_mix};
+use crate::overlay::{self, Overlay};
+use crate::page::Page;
 use crate::simulate::write_truth;
 use crate::terminal::Terminal;
 use pace::Pace;
@@ -76,7 +76,7 @@ pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> std::result::Result<(
     let figures = PlotFolder::create(&args.out.join(FIGURES)).map_err(Failure::running)?;
     figures.draw(&evaluation, &flown.truth).map_err(Failure::running)?;
     let told = told::lines(&scene, &flown.truth, &evaluation.scores);
-    page::write(&args.out, &scene, &flown.drawn, &told).map_err(Failure::running)?;
+    page(&scene, &flown.drawn, &told).write(&args.out).map_err(Failure::running)?;
     let out = args.out.display();
     terminal.result(told)?;
     terminal.result(format_args!(
@@ -86,15 +86,23 @@ pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> std::result::Result<(
     ))
 }
 
-/// Files of somebody else, or of another run, are left alone.
-fn refuse_to_mix(folder: &Path) -> std::result::Result<(), Failure> {
-    let is_empty = |mut entries: std::fs::ReadDir| entries.next().is_none();
-    match folder.exists() && !std::fs::read_dir(folder).is_ok_and(is_empty) {
-        false => Ok(()),
-        true => Err(Failure::Input(format!(
-            "{}: it is there already; remove it, or name another folder with --out",
-            folder.display()
-        ))),
+/// The pictures and the figure of every neighbour, on a page.
+fn page<'a>(scene: &Scene, drawn: &[u64], told: &'a str) -> Page<'a> {
+    let figure = |target: &Target| {
+        let name = format!("{FIGURES}/distance-over-time-{}.svg", target.id);
+        (name, format!("Distance of neighbour {} over time", target.id))
+    };
+    Page {
+        title: "Photinus: a flight of two robots",
+        told,
+        caption: "Left: the frame, brightened, with what was found in it. Right: the same from above. Pictures stand 5 s \
+                  apart, and 0.2 s apart while the neighbour spins.",
+        pictures: drawn.iter().map(|&frame| format!("{PICTURES}/{}", overlay::file_name(frame))).collect(),
+        about_figures: (
+            "Distance over time",
+            "The strict bounds as a band, the two estimates of the paper, l_A and l_B, the estimate, and truth.",
+        ),
+        figures: scene.targets.iter().map(figure).collect(),
     }
 }
 
@@ -121,7 +129,7 @@ fn fly(scene: &Scene, out: &Path, terminal: &mut Terminal) -> std::result::Resul
         results.write(&entry.record)?;
         if pace.is_due(truth.time_s) {
             let image = entry.image.as_ref().map(|image| image.view());
-            overlay.draw(&entry.record, image, entry.gravity.as_ref())?;
+            overlay.draw(&entry.record, image, entry.gravity.as_ref(), &[])?;
             flown.drawn.push(truth.frame);
         }
         flown.truth.push(truth);
@@ -136,7 +144,7 @@ fn fly(scene: &Scene, out: &Path, terminal: &mut Terminal) -> std::result::Resul
 }
 
 /// What was there, and what a locator is given.
-fn apart(rendered: Rendered) -> (TruthFrame, Entry) {
+pub(crate) fn apart(rendered: Rendered) -> (TruthFrame, Entry) {
     let Rendered { image, truth, gravity } = rendered;
     let frame = Frame {
         index: truth.frame,

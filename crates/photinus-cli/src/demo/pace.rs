@@ -9,14 +9,14 @@ const FLYING_S: f64 = 5.0;
 const SPINNING_S: f64 = 0.2;
 
 /// Tells frame by frame whether to draw it.
-pub(super) struct Pace {
+pub(crate) struct Pace {
     spins: Vec<Spin>,
     last_s: Option<f64>,
 }
 
 impl Pace {
     /// For the spins of a scene's targets.
-    pub(super) fn of(scene: &Scene) -> Self {
+    pub(crate) fn of(scene: &Scene) -> Self {
         let spins = scene.targets.iter().flat_map(|target| match &target.motion {
             Motion::Flown(flight) => flight.spins.as_slice(),
             Motion::Recorded(_) => &[],
@@ -25,7 +25,7 @@ impl Pace {
     }
 
     /// Whether the next frame, taken at this time, is to be drawn.
-    pub(super) fn is_due(&mut self, time_s: f64) -> bool {
+    pub(crate) fn is_due(&mut self, time_s: f64) -> bool {
         let spinning = |spin: &Spin| (spin.start_s..=spin.start_s + spin.duration_s).contains(&time_s);
         let interval_s = if self.spins.iter().any(spinning) { SPINNING_S } else { FLYING_S };
         let is_due = self.last_s.is_none_or(|last_s| time_s - last_s >= interval_s);

@@ -114,6 +114,12 @@ impl<'f> Canvas<'f> {
         }
     }
 
+    /// A square about a point, of twice `half` a side.
+    pub(super) fn square(&mut self, centre: Point, half: f32, pen: Pen) {
+        let corners = [(half, half), (-half, half), (-half, -half), (half, -half)];
+        self.outline(&corners.map(|(dx, dy)| Point::from_xy(centre.x + dx, centre.y + dy)), pen);
+    }
+
     /// A filled polygon.
     pub(super) fn polygon(&mut self, points: &[Point], colour: Colour) {
         if let Some(path) = path_through(points, true) {

@@ -1,5 +1,6 @@
 //! The frame with what was found in it.
 
+use photinus::camera::Pixel;
 use photinus::frame::FrameView;
 use photinus_io::results::{Distance, FrameRecord, NeighbourRecord, RejectedRecord, SpotRecord};
 use tiny_skia::{ColorU8 as Colour, Point, Rect};
@@ -48,6 +49,15 @@ impl FramePanel {
         for rejected in &record.rejected {
             self.rejected(canvas, &mut labels, rejected);
         }
+    }
+
+    /// A square where a neighbour truly is.
+    pub(super) fn truth(&self, canvas: &mut Canvas<'_>, place: Pixel) {
+        canvas.square(
+            self.at(place.u, place.v),
+            7.0 * self.unit,
+            Pen::new(colours::PAPER, 1.8 * self.unit).on(colours::SHADE),
+        );
     }
 
     fn neighbour(

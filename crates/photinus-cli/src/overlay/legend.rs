@@ -13,6 +13,14 @@ enum Mark {
     Neighbour,
     Bounds,
     Estimate,
+    Truth,
+}
+
+/// Which marks there are besides those of spots.
+#[derive(Clone, Copy)]
+pub(super) struct Kinds {
+    pub(super) neighbours: bool,
+    pub(super) truth: bool,
 }
 
 const MARKS: [(Mark, &str); 2] = [(Mark::Spot, "spot"), (Mark::Rejected, "rejected, and why")];
@@ -25,10 +33,11 @@ const NEIGHBOUR_MARKS: [(Mark, &str); 5] = [
 ];
 
 /// Draws the legend to the right of `at`, through its middle; that of neighbours where they are looked for.
-pub(super) fn draw(canvas: &mut Canvas<'_>, at: Point, has_neighbours: bool, unit: f32) {
-    let marks = if has_neighbours { &NEIGHBOUR_MARKS[..] } else { &MARKS };
+pub(super) fn draw(canvas: &mut Canvas<'_>, at: Point, kinds: Kinds, unit: f32) {
+    let marks = if kinds.neighbours { &NEIGHBOUR_MARKS[..] } else { &MARKS };
+    let truth = kinds.truth.then_some((Mark::Truth, "truth"));
     let mut x = at.x;
-    for &(mark, text) in marks {
+    for (mark, text) in marks.iter().copied().chain(truth) {
         let width = mark.draw(canvas, Point::from_xy(x, at.y), unit);
         let words = Words { text, size: 13.0 * unit, colour: colours::INK, halo: None };
         let begin = x + width + 7.0 * unit;
@@ -53,6 +62,10 @@ impl Mark {
                 let diamond = [(r, 0.0), (0.0, r), (-r, 0.0), (0.0, -r)]
                     .map(|(dx, dy)| Point::from_xy(centre.x + dx, centre.y + dy));
                 canvas.outline(&diamond, Pen::new(colours::REJECTED, 1.4 * unit).on(colours::SHADE));
+                14.0 * unit
+            }
+            Mark::Truth => {
+                canvas.square(x(7.0), 6.0 * unit, Pen::new(colours::INK, 1.8 * unit));
                 14.0 * unit
             }
             Mark::Neighbour => {

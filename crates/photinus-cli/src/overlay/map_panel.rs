@@ -1,6 +1,6 @@
 //! The view from above: range rings, what the camera sees, and where every neighbour can be.
 
-use nalgebra::Vector2;
+use nalgebra::{Vector2, Vector3};
 use photinus_io::results::{FrameRecord, NeighbourRecord};
 use tiny_skia::{Point, Rect};
 
@@ -192,6 +192,18 @@ impl<'a> MapPanel<'a> {
             labels.place(at, (10.0 * self.unit, 10.0 * self.unit), (canvas.width_of(words), size))
         {
             canvas.words(words, Point::from_xy(corner.x, corner.y + 0.86 * size), Align::Left);
+        }
+    }
+
+    /// A square where a neighbour truly is.
+    pub(super) fn truth(&self, canvas: &mut Canvas<'_>, place_m: &Vector3<f64>) {
+        let place_m = self.ground.of(place_m);
+        if place_m.norm() <= self.range_m {
+            canvas.square(
+                self.at(place_m),
+                7.0 * self.unit,
+                Pen::new(colours::INK, 1.8 * self.unit).on(colours::PAPER),
+            );
         }
     }
 

@@ -19,7 +19,7 @@ mod text;
 use std::path::{Path, PathBuf};
 
 use nalgebra::{Unit, Vector3};
-use photinus::camera::Camera;
+use photinus::camera::{Bearing, Camera};
 use photinus::frame::FrameView;
 use photinus_io::results::FrameRecord;
 use photinus_io::{Error, Result};
@@ -57,7 +57,8 @@ impl Overlay {
         Ok(Self { folder: folder.to_owned(), camera, font })
     }
 
-    /// Writes the picture of a frame; without pixels, spots stand on black.
+    /// Writes the picture of a frame; without pixels, spots stand on black. `truth_m` is where neighbours are, camera frame, m,
+    /// where that is known and to be shown.
     ///
     /// # Errors
     /// [`Error`] when it cannot be drawn or written.
@@ -66,6 +67,7 @@ impl Overlay {
         record: &FrameRecord,
         frame: Option<FrameView<'_>>,
         gravity: Option<&Unit<Vector3<f64>>>,
+        truth_m: &[Vector3<f64>],
     ) -> Result<()> {
         let path = self.folder.join(file_name(record.frame.unwrap_or_default()));
         let layout = Layout::new(self.size(record, frame), self.camera.is_some());
@@ -73,12 +75,19 @@ impl Overlay {
             .ok_or_else(|| Error::format(&path, "no memory for a picture of this size"))?;
         layout.heading(&mut canvas, record);
         layout.frame.draw(&mut canvas, record, frame);
+        let seen = |place_m: &Vector3<f64>| {
+            Bearing::new(*place_m).and_then(|bearing| self.camera.as_ref()?.pixel(&bearing))
+        };
+        truth_m.iter().filter_map(seen).for_each(|place| layout.frame.truth(&mut canvas, place));
         if let (Some(camera), Some(area)) = (&self.camera, layout.map) {
             let ground = Ground::new(gravity);
             let field = ground.field(camera);
-            MapPanel::new(area, ground, &field, record, layout.unit).draw(&mut canvas, record);
+            let map = MapPanel::new(area, ground, &field, record, layout.unit);
+            map.draw(&mut canvas, record);
+            truth_m.iter().for_each(|place_m| map.truth(&mut canvas, place_m));
         }
-        legend::draw(&mut canvas, layout.legend, self.camera.is_some(), layout.unit);
+        let kinds = legend::Kinds { neighbours: self.camera.is_some(), truth: !truth_m.is_empty() };
+        legend::draw(&mut canvas, layout.legend, kinds, layout.unit);
         let bytes = canvas.png().map_err(|reason| Error::format(&path, reason))?;
         std::fs::write(&path, bytes).map_err(|error| Error::io(&path, error))
     }

@@ -115,7 +115,7 @@ fn picture(
     camera: Option<Camera>,
 ) -> GreyImage {
     let overlay = Overlay::create(&folder.0, camera).unwrap();
-    overlay.draw(record, frame, None).unwrap();
+    overlay.draw(record, frame, None, &[]).unwrap();
     read_image(folder.0.join("overlay-000017.png")).unwrap().image
 }
 

@@ -11,5 +11,6 @@ mod commands;
 mod demo;
 mod evaluate;
 mod real_photos;
+mod reproduce;
 mod simulate;
 mod stage;

@@ -58,6 +58,17 @@ impl Recorded {
         Ok(Self { rows })
     }
 
+    /// Poses world_from_body, each held for nine tenths of `period_s`, the first from time 0; `None` without a pose, or for a
+    /// period that is not positive.
+    pub fn held(poses: impl IntoIterator<Item = Isometry3<f64>>, period_s: f64) -> Option<Self> {
+        let hold = |(number, pose): (usize, Isometry3<f64>)| {
+            let from_s = number as f64 * period_s;
+            [(from_s, pose), (from_s + 0.9 * period_s, pose)]
+        };
+        let rows: Vec<_> = poses.into_iter().enumerate().flat_map(hold).collect();
+        (!rows.is_empty() && period_s.is_finite() && period_s > 0.0).then_some(Self { rows })
+    }
+
     /// The pose world_from_body at a time.
     pub fn pose(&self, time_s: f64) -> Isometry3<f64> {
         let next = self.rows.partition_point(|row| row.0 <= time_s);

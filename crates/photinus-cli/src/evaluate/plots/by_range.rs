@@ -5,7 +5,7 @@ use kuva::prelude::Plot;
 use photinus_evaluate::{Bin, Evaluation, Pair, Scores};
 
 use super::Figure;
-use super::style::{
+use crate::plots::style::{
     BOUNDS, ESTIMATE, FAINT, INLINE, PERPENDICULAR, TRUTH, WRONG, axes, band, level, line, points,
 };
 

@@ -3,12 +3,10 @@
 //! ```text
 //! by_range   a number over distance: recall, centre, bearing, distance, bounds, NEES, l_A and l_B
 //! over_time  the distance of one neighbour: truth, estimate, bounds, l_A and l_B
-//! style      colours, sizes, marks
 //! ```
 
 mod by_range;
 mod over_time;
-mod style;
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -17,9 +15,6 @@ use kuva::prelude::{Layout, Plot};
 use photinus_evaluate::Evaluation;
 use photinus_io::dataset::TruthFrame;
 use photinus_io::{Error, Result};
-
-/// Pixels of a PNG for one of the SVG: sharp at the width of a column in print.
-const PNG_SCALE: f32 = 2.5;
 
 /// A figure: what is drawn, and on which axes.
 struct Figure {
@@ -56,16 +51,6 @@ impl PlotFolder {
 
     fn write(&self, figure: Figure) -> Result<()> {
         let scene = kuva::render::render::render_multiple(figure.plots, figure.layout);
-        let svg = kuva::backend::svg::SvgBackend::new().render_scene(&scene);
-        self.save(&format!("{}.svg", figure.name), svg.as_bytes())?;
-        let name = format!("{}.png", figure.name);
-        let png = kuva::RasterBackend::new().with_scale(PNG_SCALE).render_scene(&scene);
-        let png = png.map_err(|reason| Error::format(self.0.join(&name), reason))?;
-        self.save(&name, &png)
-    }
-
-    fn save(&self, name: &str, bytes: &[u8]) -> Result<()> {
-        let path = self.0.join(name);
-        std::fs::write(&path, bytes).map_err(|error| Error::io(&path, error))
+        crate::plots::save(&self.0, &figure.name, &scene)
     }
 }

@@ -1,0 +1,70 @@
+//! Figure 17: frames of the flight with what was found in them, and the same from above, with truth as a square.
+
+use std::path::Path;
+
+use nalgebra::Vector3;
+use photinus::locator::{Locator, Settings};
+use photinus_reproduce::Effort;
+use photinus_sim::{Scene, Simulator};
+
+use crate::clock::Clock;
+use crate::demo::apart;
+use crate::demo::pace::Pace;
+use crate::failure::Failure;
+use crate::locate;
+use crate::overlay::{self, Overlay};
+use crate::page::Page;
+use crate::terminal::Terminal;
+
+const PICTURES: &str = "figure-17";
+/// Pictures of a quick run.
+const QUICK: usize = 4;
+
+/// Numbers of the frames that are drawn: few while the target flies, more while it spins.
+pub(super) fn numbers(scene: &Scene, effort: Effort) -> Vec<u64> {
+    let mut pace = Pace::of(scene);
+    let due = (0..scene.frames).filter(|&number| pace.is_due(number as f64 / scene.rate_hz));
+    match effort {
+        Effort::Full => due.collect(),
+        Effort::Quick => due.take(QUICK).collect(),
+    }
+}
+
+/// Draws the frames and writes the page that plays them.
+pub(super) fn save(
+    folder: &Path,
+    scene: &Scene,
+    numbers: &[u64],
+    terminal: &Terminal,
+) -> Result<(), Failure> {
+    let lacks = || Failure::Running("the scene has no camera or no target".to_owned());
+    let mut simulator = Simulator::new(scene, 0).ok_or_else(lacks)?;
+    let airframe = &scene.targets.first().ok_or_else(lacks)?.airframe;
+    let camera = scene.cameras[0].camera.clone();
+    let overlay = Overlay::create(&folder.join(PICTURES), Some(camera.clone())).map_err(Failure::running)?;
+    let mut locator = Locator::new(camera, airframe, None, Settings::default())
+        .map_err(|error| Failure::Running(error.to_string()))?;
+    let mut clock = Clock::new();
+    for &number in numbers {
+        let (truth, mut entry) = apart(simulator.frame(number));
+        locate::fill(&mut entry, &mut locator, airframe.name(), &mut clock).map_err(Failure::running)?;
+        let places_m: Vec<Vector3<f64>> =
+            truth.neighbours.iter().map(|neighbour| Vector3::from(neighbour.position_m)).collect();
+        let image = entry.image.as_ref().map(|image| image.view());
+        overlay.draw(&entry.record, image, entry.gravity.as_ref(), &places_m).map_err(Failure::running)?;
+        terminal.frame_done();
+    }
+    page(numbers).write(folder).map_err(Failure::running)
+}
+
+fn page(numbers: &[u64]) -> Page<'static> {
+    Page {
+        title: "Figure 17: where the neighbour can be",
+        told: "The outdoor flight of two robots, as one of them sees the other: each frame by itself, no radio, no track.",
+        caption: "Left: the frame, brightened. Right: the same from above: the strict bounds as a bar, the estimate as a disc, \
+                  truth as a square. Pictures stand 5 s apart, and 0.2 s apart while the neighbour spins.",
+        pictures: numbers.iter().map(|&frame| format!("{PICTURES}/{}", overlay::file_name(frame))).collect(),
+        about_figures: ("All of the flight", "Where the neighbour was and where it was found."),
+        figures: vec![("figure-17.svg".to_owned(), "The flight from above".to_owned())],
+    }
+}

@@ -84,7 +84,7 @@ fn locate_prints_writes_and_draws() {
     let stage = Stage::new("locate");
     let printed = stage.run(LOCATE);
     assert!(printed.out.starts_with("frame     0  hexa") && printed.out.contains("left"), "{}", printed.out);
-    for stage_name in ["reading", "spots", "bearings", "grouping", "ranging", "writing"] {
+    for stage_name in ["reading", "spots", "bearings", "grouping", "posing", "writing"] {
         assert!(printed.err.contains(&format!("\n  {stage_name} ")), "{stage_name}: {}", printed.err);
     }
     let done = stage.run(&format!("{LOCATE} --csv r.csv --out - --overlay seen --gravity 0,1,0"));

@@ -20,7 +20,7 @@ const WIDEST_STEP_RAD: f64 = 5.0 * PI / 180.0;
 /// ... and this share of the yaw's sigma: sums over a normal distribution in such steps are exact to a part in 10^5.
 const STEP_SIGMAS: f64 = 1.2;
 /// A slice this much worse than the best, nats, is one of two that end the walk.
-const LITTLE_NATS: f64 = 5.5;
+const LITTLE_NATS: f64 = 5.0;
 /// Most slices on one side.
 const MOST_SLICES: usize = 36;
 

@@ -45,9 +45,10 @@ pub(super) struct Matcher {
 impl Matcher {
     pub(super) fn new(airframe: &Airframe, max_tilt_rad: f64) -> Self {
         let grid_rad = ELEVATION_STEP_RAD / 2.0;
+        let symmetry = Symmetry::of(airframe);
         Self {
-            views: Views::of(airframe),
-            symmetry: Symmetry::of(airframe),
+            views: Views::of(airframe, &symmetry),
+            symmetry,
             bounds: DistanceBounds::new(airframe, max_tilt_rad),
             // The tilt limit is taken for two sigma; the grid of views adds half a step.
             tilt_sigma_rad: libm::hypot(max_tilt_rad / 2.0, grid_rad),
@@ -168,16 +169,12 @@ impl Matcher {
                 if nats > best.nats + POOR_NATS {
                     continue;
                 }
-                let markers = arrangement.markers.map(|marker| marker as u16);
-                let symmetry = &self.symmetry;
-                let canonical = symmetry.canonical_turn(&markers[..group.len()]);
-                let named = markers.map(|marker| Some(symmetry.turned(canonical, marker)));
                 // With gravity the tilt tells above from below; without it both are ways to look.
                 let branch = u8::from(gravity.is_none() && arrangement.elevation_rad < 0.0);
-                hypotheses.offer(&named[..group.len()], f64::from(nats), branch, || {
+                hypotheses.offer(&arrangement.markers[..group.len()], f64::from(nats), branch, || {
                     let (place_m, turn) = seen.place(arrangement, &image);
                     let pose = image.pose(&place_m, turn, arrangement.yaw_rad, arrangement.elevation_rad);
-                    let camera_from_body = symmetry.attitude(&pose.camera_from_body, canonical);
+                    let camera_from_body = self.symmetry.attitude(&pose.camera_from_body, arrangement.turn);
                     Pose { camera_from_body, ..pose }
                 });
             }

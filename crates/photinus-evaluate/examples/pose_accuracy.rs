@@ -35,7 +35,9 @@ fn main() {
     let hexarotor = Ring { arms: 6, radius_m: 0.4, leds_per_arm: 1, splay_rad: 0.0 };
     let quadrotor = Ring { arms: 4, radius_m: 0.245, leds_per_arm: 2, splay_rad: FRAC_PI_2 };
     println!("pixel sigma {sigma_px} px, {count} neighbours per range");
-    println!("airframe   range spots     n  distance RMSE    bound  ratio  bias    NEES(3)  in 95 %   yaw NEES  bounds");
+    println!(
+        "airframe   range spots     n  distance RMSE    bound  ratio  bias    NEES(3)  in 95 %   yaw NEES  bounds"
+    );
     for (name, ring) in [("hexarotor", hexarotor), ("quadrotor", quadrotor)] {
         let airframe = Airframe::from_ring(name, ring).expect("a ring");
         for distance_m in [2.0, 5.0, 10.0, 15.0] {
@@ -46,7 +48,9 @@ fn main() {
 
 fn camera(sigma_px: f64) -> Camera {
     if sigma_px == 0.0 {
-        return scene("time_s,x_m,y_m,z_m,qx,qy,qz,qw\n0,9,0,0,0,0,0,1\n", "hexarotor-0.4", 0).cameras[0].camera.clone();
+        return scene("time_s,x_m,y_m,z_m,qx,qy,qz,qw\n0,9,0,0,0,0,0,1\n", "hexarotor-0.4", 0).cameras[0]
+            .camera
+            .clone();
     }
     let lens =
         Ideal::new(IdealLaw::Equidistant, [1.0 / 3.7673e-3; 2], Pixel::new(375.5, 239.5)).expect("a lens");
@@ -101,18 +105,60 @@ fn row(airframe: &Airframe, distance_m: f64, sigma_px: f64, count: usize) {
         }
         let bound_m2 = view.bound_m2(airframe, &markers);
         let of_most = located.neighbours.iter().max_by_key(|neighbour| located.members(neighbour).len());
-        if let Some((view, _)) = &rendered { if std::env::var("SPOTS").is_ok() {
-            for (i, s) in located.sightings.iter().enumerate() {
-                let at = |m: &usize| camera.pixel(&Bearing::new(view.camera_from_body * airframe.markers()[*m].position_m + view.position_m).unwrap()).unwrap();
-                let gap = |m: &usize| { let p = at(m); (p.u - s.spot.centre.u).hypot(p.v - s.spot.centre.v) };
-                let m = (0..airframe.markers().len()).min_by(|a, b| gap(a).total_cmp(&gap(b))).unwrap();
-                let p = at(&m);
-                let near = located.sightings.iter().enumerate().filter(|(j, _)| *j != i).map(|(_, o)| ((o.spot.centre.u - s.spot.centre.u).hypot(o.spot.centre.v - s.spot.centre.v), o.spot.flux / s.spot.flux)).min_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((99.0, 0.0));
-                let c = -(view.camera_from_body.inverse() * view.position_m);
-                let light = airframe.intensity(m, &c) / (c - airframe.markers()[m].position_m).norm_squared();
-                eprintln!("S,{distance_m},{},{},{},{:.4},{:.4},{:.4},{:.2},{:.3},{:.1},{:.1},{:.6},{:.6}", s.spot.area_px, s.spot.peak, s.spot.saturated_px, s.spot.centre.u - p.u, s.spot.centre.v - p.v, s.spot.sigma_px(), near.0, near.1, s.spot.flux, s.spot.background, light, airframe.intensity(m, &c));
+        if let Some((view, _)) = &rendered {
+            if std::env::var("SPOTS").is_ok() {
+                for (i, s) in located.sightings.iter().enumerate() {
+                    let at = |m: &usize| {
+                        camera
+                            .pixel(
+                                &Bearing::new(
+                                    view.camera_from_body * airframe.markers()[*m].position_m
+                                        + view.position_m,
+                                )
+                                .unwrap(),
+                            )
+                            .unwrap()
+                    };
+                    let gap = |m: &usize| {
+                        let p = at(m);
+                        (p.u - s.spot.centre.u).hypot(p.v - s.spot.centre.v)
+                    };
+                    let m = (0..airframe.markers().len()).min_by(|a, b| gap(a).total_cmp(&gap(b))).unwrap();
+                    let p = at(&m);
+                    let near = located
+                        .sightings
+                        .iter()
+                        .enumerate()
+                        .filter(|(j, _)| *j != i)
+                        .map(|(_, o)| {
+                            (
+                                (o.spot.centre.u - s.spot.centre.u).hypot(o.spot.centre.v - s.spot.centre.v),
+                                o.spot.flux / s.spot.flux,
+                            )
+                        })
+                        .min_by(|a, b| a.0.total_cmp(&b.0))
+                        .unwrap_or((99.0, 0.0));
+                    let c = -(view.camera_from_body.inverse() * view.position_m);
+                    let light =
+                        airframe.intensity(m, &c) / (c - airframe.markers()[m].position_m).norm_squared();
+                    eprintln!(
+                        "S,{distance_m},{},{},{},{:.4},{:.4},{:.4},{:.2},{:.3},{:.1},{:.1},{:.6},{:.6}",
+                        s.spot.area_px,
+                        s.spot.peak,
+                        s.spot.saturated_px,
+                        s.spot.centre.u - p.u,
+                        s.spot.centre.v - p.v,
+                        s.spot.sigma_px(),
+                        near.0,
+                        near.1,
+                        s.spot.flux,
+                        s.spot.background,
+                        light,
+                        airframe.intensity(m, &c)
+                    );
+                }
             }
-        } }
+        }
         let neighbour = of_most.expect("no view without an answer");
         let used = located.members(neighbour).len();
         let (Some(estimate), Some(position), Some(orientation)) =
@@ -122,38 +168,95 @@ fn row(airframe: &Airframe, distance_m: f64, sigma_px: f64, count: usize) {
         };
         let tally = &mut tallies[used];
         let off = position.mean_m - view.position_m;
-        let nees = position
-            .covariance_m2
-            .cholesky()
-            .map_or(f64::INFINITY, |factor| off.dot(&factor.solve(&off)));
+        let nees =
+            position.covariance_m2.cholesky().map_or(f64::INFINITY, |factor| off.dot(&factor.solve(&off)));
         tally.count += 1.0;
         if std::env::var("DBG").is_ok() && used == 2 && tally.count < 12.0 {
-            eprintln!("true {:.3} est {:.3} sigma {:.3}", view.position_m.norm(), estimate.distance_m, estimate.sigma_m);
+            eprintln!(
+                "true {:.3} est {:.3} sigma {:.3}",
+                view.position_m.norm(),
+                estimate.distance_m,
+                estimate.sigma_m
+            );
             for m in located.modes(neighbour) {
                 let a = m.pose.position_m.normalize();
-                eprintln!("   w {:.4} d {:.3} sd {:.4} yaw sd {:.3}", m.weight, m.pose.position_m.norm(), (a.dot(&(m.position_covariance_m2 * a))).sqrt(), m.orientation_covariance_rad2[(2,2)].sqrt());
+                eprintln!(
+                    "   w {:.4} d {:.3} sd {:.4} yaw sd {:.3}",
+                    m.weight,
+                    m.pose.position_m.norm(),
+                    (a.dot(&(m.position_covariance_m2 * a))).sqrt(),
+                    m.orientation_covariance_rad2[(2, 2)].sqrt()
+                );
             }
         }
         if std::env::var("OUT").is_ok() && nees > 25.0 {
-            eprintln!("nees {nees:.0} spots {used} of {} true {:.3} est {:.3} sigma {:.3} bound {:.3}", located.sightings.len(), view.position_m.norm(), estimate.distance_m, estimate.sigma_m, bound_m2.sqrt());
+            eprintln!(
+                "nees {nees:.0} spots {used} of {} true {:.3} est {:.3} sigma {:.3} bound {:.3}",
+                located.sightings.len(),
+                view.position_m.norm(),
+                estimate.distance_m,
+                estimate.sigma_m,
+                bound_m2.sqrt()
+            );
             let camera_m = -(view.camera_from_body.inverse() * view.position_m);
             for s in &located.sightings {
-                let gap = |m: &usize| s.bearing.angle_to(&Bearing::new(view.camera_from_body * airframe.markers()[*m].position_m + view.position_m).unwrap());
+                let gap = |m: &usize| {
+                    s.bearing.angle_to(
+                        &Bearing::new(
+                            view.camera_from_body * airframe.markers()[*m].position_m + view.position_m,
+                        )
+                        .unwrap(),
+                    )
+                };
                 let m = (0..airframe.markers().len()).min_by(|a, b| gap(a).total_cmp(&gap(b))).unwrap();
-                let truth = camera.pixel(&Bearing::new(view.camera_from_body * airframe.markers()[m].position_m + view.position_m).unwrap()).unwrap();
-                eprintln!("  at {:.3} {:.3} truth {:.3} {:.3}", s.spot.centre.u, s.spot.centre.v, truth.u, truth.v);
-                if let Some((_, image)) = &rendered { let f = image.view();
+                let truth = camera
+                    .pixel(
+                        &Bearing::new(
+                            view.camera_from_body * airframe.markers()[m].position_m + view.position_m,
+                        )
+                        .unwrap(),
+                    )
+                    .unwrap();
+                eprintln!(
+                    "  at {:.3} {:.3} truth {:.3} {:.3}",
+                    s.spot.centre.u, s.spot.centre.v, truth.u, truth.v
+                );
+                if let Some((_, image)) = &rendered {
+                    let f = image.view();
                     for v in (truth.v.round() as usize - 4)..=(truth.v.round() as usize + 4) {
-                        let row: Vec<_> = ((truth.u.round() as usize - 4)..=(truth.u.round() as usize + 4)).map(|u| f.row(v)[u]).collect();
+                        let row: Vec<_> = ((truth.u.round() as usize - 4)..=(truth.u.round() as usize + 4))
+                            .map(|u| f.row(v)[u])
+                            .collect();
                         eprintln!("      {row:?}");
-                    } }
-                eprintln!("   spot area {} peak {} sat {} flux {:.0} sigma {:.3} px; marker {m} I {:.3} off {:.2} sigma", s.spot.area_px, s.spot.peak, s.spot.saturated_px, s.spot.flux, s.spot.sigma_px(), airframe.intensity(m, &camera_m), gap(&m) / (s.covariance_rad2.trace()/2.0).sqrt());
+                    }
+                }
+                eprintln!(
+                    "   spot area {} peak {} sat {} flux {:.0} sigma {:.3} px; marker {m} I {:.3} off {:.2} sigma",
+                    s.spot.area_px,
+                    s.spot.peak,
+                    s.spot.saturated_px,
+                    s.spot.flux,
+                    s.spot.sigma_px(),
+                    airframe.intensity(m, &camera_m),
+                    gap(&m) / (s.covariance_rad2.trace() / 2.0).sqrt()
+                );
             }
-            for m in 0..airframe.markers().len() { eprint!(" I{m}={:.3}", airframe.intensity(m, &camera_m)); }
-            eprintln!(" rejected {:?}", located.rejected.iter().map(|r| (r.reason, r.peak)).collect::<Vec<_>>());
+            for m in 0..airframe.markers().len() {
+                eprint!(" I{m}={:.3}", airframe.intensity(m, &camera_m));
+            }
+            eprintln!(
+                " rejected {:?}",
+                located.rejected.iter().map(|r| (r.reason, r.peak)).collect::<Vec<_>>()
+            );
             for m in located.modes(neighbour).iter().take(3) {
                 let a = m.pose.position_m.normalize();
-                eprintln!("   w {:.4} d {:.3} sd {:.4} yaw sd {:.3}", m.weight, m.pose.position_m.norm(), (a.dot(&(m.position_covariance_m2 * a))).sqrt(), m.orientation_covariance_rad2[(2,2)].sqrt());
+                eprintln!(
+                    "   w {:.4} d {:.3} sd {:.4} yaw sd {:.3}",
+                    m.weight,
+                    m.pose.position_m.norm(),
+                    (a.dot(&(m.position_covariance_m2 * a))).sqrt(),
+                    m.orientation_covariance_rad2[(2, 2)].sqrt()
+                );
             }
         }
         let distance_off = estimate.distance_m - view.position_m.norm();
@@ -215,7 +318,8 @@ fn scene(poses: &str, airframe: &str, seed: u64) -> Scene {
         "#
     );
     let mut scene = Scene::parse(&text, folder.join("poses.toml")).expect("a scene");
-    scene.targets[0].motion = Motion::Recorded(Recorded::parse(poses, Path::new("poses.csv")).expect("poses"));
+    scene.targets[0].motion =
+        Motion::Recorded(Recorded::parse(poses, Path::new("poses.csv")).expect("poses"));
     scene
 }
 
@@ -274,7 +378,13 @@ impl View {
         }
     }
 
-    fn spots(&self, airframe: &Airframe, camera: &Camera, sigma_px: f64, rng: &mut Pcg64) -> (Vec<Spot>, Vec<(usize, f64)>) {
+    fn spots(
+        &self,
+        airframe: &Airframe,
+        camera: &Camera,
+        sigma_px: f64,
+        rng: &mut Pcg64,
+    ) -> (Vec<Spot>, Vec<(usize, f64)>) {
         let camera_m = -(self.camera_from_body.inverse() * self.position_m);
         let (mut spots, mut markers) = (Vec::new(), Vec::new());
         for marker in 0..airframe.markers().len() {
@@ -285,7 +395,9 @@ impl View {
                 continue;
             }
             let place = self.camera_from_body * arm_m + self.position_m;
-            let Some(pixel) = Bearing::new(place).and_then(|bearing| camera.pixel(&bearing)) else { continue };
+            let Some(pixel) = Bearing::new(place).and_then(|bearing| camera.pixel(&bearing)) else {
+                continue;
+            };
             let centre = Pixel::new(pixel.u + sigma_px * normal(rng), pixel.v + sigma_px * normal(rng));
             let (u, v) = (pixel.u.round() as u32, pixel.v.round() as u32);
             let extent = Extent { left: u.max(1) - 1, top: v.max(1) - 1, right: u + 1, bottom: v + 1 };

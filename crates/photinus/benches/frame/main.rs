@@ -10,8 +10,8 @@ mod frames;
 
 use std::hint::black_box;
 
-use nalgebra::Vector3;
 use contest::Contest;
+use nalgebra::Vector3;
 use photinus::airframe::{Airframe, Ring};
 use photinus::camera::{Camera, Ideal, IdealLaw, Model, Pixel};
 use photinus::frame::FrameView;
@@ -100,9 +100,12 @@ fn posing() {
     let mut contest = Contest::new("Posing one hexarotor, anonymous", "three spots at 5 m");
     let (camera, airframe) = (camera(), hexarotor());
     let gravity = Vector3::y_axis();
-    for (name, yaw_rad, distance_m) in
-        [("three spots at 5 m", 0.1, 5.0), ("two spots at 5 m", 0.5, 5.0), ("three spots at 10 m", 0.1, 10.0), ("two spots at 10 m", 0.5, 10.0)]
-    {
+    for (name, yaw_rad, distance_m) in [
+        ("three spots at 5 m", 0.5, 5.0),
+        ("two spots at 5 m", 0.1, 5.0),
+        ("three spots at 10 m", 0.5, 10.0),
+        ("two spots at 10 m", 0.1, 10.0),
+    ] {
         let spots = frames::spots(&camera, &airframe, yaw_rad, distance_m);
         let mut locator =
             Locator::new(camera.clone(), &airframe, None, locator::Settings::default()).expect("a locator");

@@ -195,10 +195,7 @@ impl Located {
 
     /// The ways in which this neighbour's spots can be its airframe, the likeliest first.
     pub fn modes(&self, neighbour: &Neighbour) -> &[Mode] {
-        self.modes
-            .get(neighbour.first_mode..)
-            .and_then(|rest| rest.get(..neighbour.modes))
-            .unwrap_or(&[])
+        self.modes.get(neighbour.first_mode..).and_then(|rest| rest.get(..neighbour.modes)).unwrap_or(&[])
     }
 }
 

@@ -110,7 +110,9 @@ impl Poser {
         let mut without = std::mem::take(&mut self.without);
         for stranger in 0..group.len() {
             without.clear();
-            without.extend(group.iter().enumerate().filter(|(index, _)| *index != stranger).map(|(_, &spot)| spot));
+            without.extend(
+                group.iter().enumerate().filter(|(index, _)| *index != stranger).map(|(_, &spot)| spot),
+            );
             self.estimate(sightings, &without, gravity, matcher);
             let log_evidence = self.estimator.posterior().log_evidence + pose::STRANGER_LOG_DENSITY;
             if log_evidence > best.0 {
@@ -164,7 +166,8 @@ impl Poser {
             first_mode: 0,
             modes: 0,
         };
-        let Some(Summary { pose, position_covariance_m2, orientation_covariance_rad2, mut distance }) = *summary
+        let Some(Summary { pose, position_covariance_m2, orientation_covariance_rad2, mut distance }) =
+            *summary
         else {
             return (neighbour, &[]);
         };

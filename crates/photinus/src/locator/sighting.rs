@@ -17,8 +17,7 @@ pub(super) fn sight(camera: &Camera, curve: Option<&SpotCurve>, spot: &Spot) -> 
         rad_per_px,
         bearing,
         covariance_rad2: jacobian * spot.covariance_px2 * jacobian.transpose(),
-        bound_rad: (farthest_px(spot) * rad_per_px * SCALE_CHANGE)
-            .min(std::f64::consts::PI),
+        bound_rad: (farthest_px(spot) * rad_per_px * SCALE_CHANGE).min(std::f64::consts::PI),
         range: curve.and_then(|curve| curve.distances(spot.area_px.max(1))),
     })
 }

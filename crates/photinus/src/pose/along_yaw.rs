@@ -25,7 +25,12 @@ const LITTLE_NATS: f64 = 5.0;
 const MOST_SLICES: usize = 36;
 
 /// Adds the components that stand for the posterior around a mode.
-pub(super) fn spread(problem: &Problem<'_>, mode: &Refined, hypothesis: usize, components: &mut Vec<Component>) {
+pub(super) fn spread(
+    problem: &Problem<'_>,
+    mode: &Refined,
+    hypothesis: usize,
+    components: &mut Vec<Component>,
+) {
     let (information, coupling) = without_yaw(&mode.normal);
     let Some(factor) = information.cholesky() else { return };
     let yaw_information = mode.normal.information[(5, 5)] - coupling.dot(&factor.solve(&coupling));

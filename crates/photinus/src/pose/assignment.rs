@@ -39,8 +39,7 @@ impl Assignment {
         self.taken.resize(airframe.markers().len() + observations.len(), false);
         let mut changed = false;
         for &(_, spot, marker) in &self.pairs {
-            let (of_marker, of_spot) =
-                (usize::from(marker), airframe.markers().len() + usize::from(spot));
+            let (of_marker, of_spot) = (usize::from(marker), airframe.markers().len() + usize::from(spot));
             if self.taken[of_marker] || self.taken[of_spot] {
                 continue;
             }

@@ -142,7 +142,8 @@ impl Estimator {
             if index == 0 {
                 let angle_rad = self.settings.marker_sigma_m / start.position_m.norm();
                 self.whitened.clear();
-                self.whitened.extend(observations.iter().map(|seen| Whitened::of(seen, angle_rad * angle_rad)));
+                self.whitened
+                    .extend(observations.iter().map(|seen| Whitened::of(seen, angle_rad * angle_rad)));
             }
             let problem = problem(&self.airframe, &self.settings, observations, &self.whitened, known);
             let mode = if hypotheses.is_loose(index) {

@@ -36,13 +36,7 @@ impl Hypotheses {
 
     /// Offers an assignment, the marker of each spot, that costs `nats` by a first look; `pose` is asked only if it is kept.
     /// Of one assignment and branch the cheapest is kept, of all the cheapest few.
-    pub fn offer(
-        &mut self,
-        markers: &[Option<u16>],
-        nats: f64,
-        branch: u8,
-        pose: impl FnOnce() -> Pose,
-    ) {
+    pub fn offer(&mut self, markers: &[Option<u16>], nats: f64, branch: u8, pose: impl FnOnce() -> Pose) {
         let same = (0..self.starts.len())
             .find(|&index| self.starts[index].branch == branch && self.markers(index) == markers);
         let place = same.or_else(|| self.dearest());

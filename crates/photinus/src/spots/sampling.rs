@@ -72,7 +72,8 @@ mod tests {
             for step in -9..=9 {
                 let centre = f64::from(step) / 20.0;
                 let shares = [-1.0, 0.0, 1.0].map(|column| share(column, centre, sigma_px));
-                let measured = (-4..=4).map(|c| f64::from(c) * share(f64::from(c), centre, sigma_px)).sum::<f64>();
+                let measured =
+                    (-4..=4).map(|c| f64::from(c) * share(f64::from(c), centre, sigma_px)).sum::<f64>();
                 let (phase, variance) = unfold_axis(measured, &shares);
                 let (before, after) = ((measured - centre).abs(), (phase - centre).abs());
                 assert!(after < (0.65 * before).max(0.012), "{sigma_px} {centre}: {before} {after}");

@@ -185,7 +185,8 @@ impl Matcher {
 /// What the outline of all spots costs, nats, and the distance at which it fits best, m.
 fn outlined_nats(views: &Views, image: &Image<'_>, tilt_sigma_rad: f64) -> Option<(f64, f64)> {
     let spread = Spread::of(image.places.iter().copied());
-    let fits = || views.outlines.iter().filter_map(|outline| overlay(&spread, outline, image, tilt_sigma_rad));
+    let fits =
+        || views.outlines.iter().filter_map(|outline| overlay(&spread, outline, image, tilt_sigma_rad));
     let best = fits().min_by(|a, b| a.nats.total_cmp(&b.nats))?;
     let weight: f64 = fits().map(|fit| libm::exp(best.nats - fit.nats)).sum();
     Some((best.nats - libm::log(weight), best.place_m.norm()))

@@ -5,11 +5,13 @@
 //! info, convert: what a file holds, and the same in another format
 //! simulate: a scene -> frames with truth
 //! evaluate: results against the truth of a dataset
+//! calibrate: photos of a grid -> a camera whose errors are known
 //! demo: all of it on a flight that the program carries along
 //! ```
 
 mod aligned;
 mod beforehand;
+mod calibrate;
 mod clock;
 mod convert;
 mod demo;
@@ -64,6 +66,7 @@ enum Command {
     Simulate(simulate::Args),
     Evaluate(evaluate::Args),
     Demo(demo::Args),
+    Calibrate(calibrate::Args),
 }
 
 fn main() -> ExitCode {
@@ -73,6 +76,7 @@ fn main() -> ExitCode {
         Command::Detect(args) => args.quiet(),
         Command::Simulate(args) => args.quiet(),
         Command::Evaluate(args) => args.quiet(),
+        Command::Calibrate(args) => args.quiet(),
         Command::Info(_) | Command::Convert(_) | Command::Demo(_) => false,
     };
     let mut terminal = Terminal::new(quiet);
@@ -84,6 +88,7 @@ fn main() -> ExitCode {
         Command::Simulate(args) => simulate::run(&args, &mut terminal),
         Command::Evaluate(args) => evaluate::run(&args, &terminal),
         Command::Demo(args) => demo::run(&args, &mut terminal),
+        Command::Calibrate(args) => calibrate::run(&args, &mut terminal),
     };
     let Err(failure) = done else { return ExitCode::SUCCESS };
     if let Some(message) = failure.message() {

@@ -26,7 +26,8 @@ pub(super) fn fit(spots: &[Sample], median: &Envelope) -> Option<Envelope> {
     let steps = SHIFTS as f64;
     let tried = (0..=SHIFTS).filter_map(|step| curve(most_m * (2.0 * step as f64 / steps - 1.0)));
     let best = tried.min_by(|a, b| a.1.total_cmp(&b.1))?;
-    let (mut low_m, mut high_m) = (best.0.shift_m - 2.0 * most_m / steps, best.0.shift_m + 2.0 * most_m / steps);
+    let (mut low_m, mut high_m) =
+        (best.0.shift_m - 2.0 * most_m / steps, best.0.shift_m + 2.0 * most_m / steps);
     let height = |found: &Option<(Envelope, f64)>| found.map_or(f64::INFINITY, |(_, height)| height);
     // Golden section: the mean height has one valley near its best step.
     let share = (5f64.sqrt() - 1.0) / 2.0;

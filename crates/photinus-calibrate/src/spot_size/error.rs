@@ -24,7 +24,9 @@ pub enum SpotSizeError {
         spots: usize,
     },
     /// All from about one distance.
-    #[error("the distances go from {nearest_m:.2} m to {farthest_m:.2} m: the farthest must be {LEAST_SPAN} times the nearest")]
+    #[error(
+        "the distances go from {nearest_m:.2} m to {farthest_m:.2} m: the farthest must be {LEAST_SPAN} times the nearest"
+    )]
     Span {
         /// Nearest, m.
         nearest_m: f64,
@@ -55,7 +57,8 @@ pub(super) fn check_spots(spots: &[Sample]) -> Result<(), SpotSizeError> {
         return Err(SpotSizeError::TooFew { spots: spots.len() });
     }
     let distances_m = || spots.iter().map(|spot| spot.distance_m);
-    let (nearest_m, farthest_m) = (distances_m().fold(f64::INFINITY, f64::min), distances_m().fold(0.0, f64::max));
+    let (nearest_m, farthest_m) =
+        (distances_m().fold(f64::INFINITY, f64::min), distances_m().fold(0.0, f64::max));
     match farthest_m >= LEAST_SPAN * nearest_m {
         true => Ok(()),
         false => Err(SpotSizeError::Span { nearest_m, farthest_m }),

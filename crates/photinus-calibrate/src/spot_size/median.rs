@@ -17,7 +17,8 @@ const LEAST_SIGMA: f64 = 0.5;
 /// when areas do not fall with distance.
 pub(super) fn fit(spots: &[Sample]) -> Option<Envelope> {
     // The middle of area times squared distance is a scale for which offset and shift hardly matter.
-    let mut scales: Vec<f64> = spots.iter().map(|s| f64::from(s.area_px) * s.distance_m * s.distance_m).collect();
+    let mut scales: Vec<f64> =
+        spots.iter().map(|s| f64::from(s.area_px) * s.distance_m * s.distance_m).collect();
     scales.sort_unstable_by(f64::total_cmp);
     let scale_px_m2 = *scales.get(scales.len() / 4)?;
     refit(spots, &Envelope { offset_px: 0.5, scale_px_m2, shift_m: 0.0 })
@@ -29,7 +30,8 @@ pub(super) fn refit(spots: &[Sample], start: &Envelope) -> Option<Envelope> {
     let mut curve = *start;
     for _ in 0..PASSES {
         let next = step(spots, &curve, MOST_SHIFT * nearest_m)?;
-        let change = (next.scale_px_m2 / curve.scale_px_m2 - 1.0).abs() + (next.offset_px - curve.offset_px).abs();
+        let change =
+            (next.scale_px_m2 / curve.scale_px_m2 - 1.0).abs() + (next.offset_px - curve.offset_px).abs();
         curve = next;
         if change < 1e-6 {
             break;

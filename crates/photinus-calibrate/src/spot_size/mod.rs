@@ -91,8 +91,10 @@ pub fn calibrate(samples: &[Sample], brighter: f64) -> Result<SpotSize, SpotSize
     let spots: Vec<Sample> = seen.iter().map(|&index| samples[index]).collect();
     let rough = median::fit(&spots).ok_or(SpotSizeError::NotFalling)?;
     let is_outlier = median::outliers(&spots, &rough);
-    let outliers: Vec<usize> = seen.iter().zip(&is_outlier).filter(|(_, out)| **out).map(|(&i, _)| i).collect();
-    let kept: Vec<Sample> = spots.iter().zip(&is_outlier).filter(|(_, out)| !**out).map(|(&s, _)| s).collect();
+    let outliers: Vec<usize> =
+        seen.iter().zip(&is_outlier).filter(|(_, out)| **out).map(|(&i, _)| i).collect();
+    let kept: Vec<Sample> =
+        spots.iter().zip(&is_outlier).filter(|(_, out)| !**out).map(|(&s, _)| s).collect();
     error::check_spots(&kept)?;
 
     let middle = median::fit(&kept).ok_or(SpotSizeError::NotFalling)?;
@@ -101,7 +103,8 @@ pub fn calibrate(samples: &[Sample], brighter: f64) -> Result<SpotSize, SpotSize
     let curve = raised(&upper, margin, brighter).ok_or(SpotSizeError::NotFalling)?;
     let above = spots.iter().filter(|spot| spot.area_px > curve.max_area_px(spot.distance_m)).count();
     let several = |spot: &&Sample| spot.area_px > 1;
-    let distances = |of: fn(&Sample) -> bool| kept.iter().filter(move |spot| of(spot)).map(|spot| spot.distance_m);
+    let distances =
+        |of: fn(&Sample) -> bool| kept.iter().filter(move |spot| of(spot)).map(|spot| spot.distance_m);
     Ok(SpotSize {
         curve,
         envelope: Fit {

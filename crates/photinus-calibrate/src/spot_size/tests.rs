@@ -57,7 +57,8 @@ fn spots_of_something_else_do_not_raise_the_curve() {
 #[test]
 fn brighter_leds_raise_the_scale_alone() {
     let samples = recording(2.0, 30.0, 500);
-    let (same, brighter) = (calibrate(&samples, 0.0).unwrap().curve, calibrate(&samples, 0.25).unwrap().curve);
+    let (same, brighter) =
+        (calibrate(&samples, 0.0).unwrap().curve, calibrate(&samples, 0.25).unwrap().curve);
     assert!((brighter.upper().scale_px_m2 / same.upper().scale_px_m2 - 1.25).abs() < 1e-12);
     assert!((brighter.upper().offset_px - same.upper().offset_px).abs() < 1e-12);
 }

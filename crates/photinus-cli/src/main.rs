@@ -18,6 +18,7 @@ mod demo;
 mod detect;
 mod evaluate;
 mod failure;
+mod figure;
 mod info;
 mod input;
 mod kind;

@@ -2,6 +2,7 @@
 
 mod camera;
 mod coverage;
+mod spot_size;
 
 use clap::Subcommand;
 
@@ -20,6 +21,7 @@ pub(crate) struct Args {
 enum What {
     Camera(camera::Args),
     Coverage(coverage::Args),
+    SpotSize(spot_size::Args),
 }
 
 impl Args {
@@ -28,6 +30,7 @@ impl Args {
         match &self.what {
             What::Camera(args) => args.quiet(),
             What::Coverage(_) => false,
+            What::SpotSize(args) => args.quiet(),
         }
     }
 }
@@ -37,5 +40,6 @@ pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> Result<(), Failure> {
     match &args.what {
         What::Camera(args) => camera::run(args, terminal),
         What::Coverage(args) => coverage::run(args, terminal),
+        What::SpotSize(args) => spot_size::run(args, terminal),
     }
 }

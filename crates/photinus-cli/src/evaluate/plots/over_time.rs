@@ -7,8 +7,10 @@ use kuva::prelude::Plot;
 use photinus_evaluate::{Evaluation, Pair};
 use photinus_io::dataset::TruthFrame;
 
-use super::Figure;
-use super::style::{BOUNDS, ESTIMATE, INLINE, PERPENDICULAR, TRUTH, axes, band, line, points, thinned};
+use crate::figure::Figure;
+use crate::figure::style::{
+    BOUNDS, ESTIMATE, INLINE, PERPENDICULAR, TRUTH, axes, band, line, points, thinned,
+};
 
 /// The axis ends at so many times the farthest truth: bounds are cut there, and estimates beyond it are not drawn.
 const HEADROOM: f64 = 1.4;

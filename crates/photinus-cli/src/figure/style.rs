@@ -4,19 +4,19 @@ use kuva::plot::legend::{LegendEntry, LegendShape};
 use kuva::plot::scatter::MarkerShape;
 use kuva::prelude::{BandPlot, Layout, LegendPosition, LinePlot, Plot, ReferenceLine, ScatterPlot, Theme};
 
-pub(super) const TRUTH: &str = "#000000";
-pub(super) const ESTIMATE: &str = "#0072B2";
-pub(super) const BOUNDS: &str = "#56B4E9";
-pub(super) const PERPENDICULAR: &str = "#E69F00";
-pub(super) const INLINE: &str = "#009E73";
-pub(super) const WRONG: &str = "#D55E00";
-pub(super) const FAINT: &str = "#666666";
+pub(crate) const TRUTH: &str = "#000000";
+pub(crate) const ESTIMATE: &str = "#0072B2";
+pub(crate) const BOUNDS: &str = "#56B4E9";
+pub(crate) const PERPENDICULAR: &str = "#E69F00";
+pub(crate) const INLINE: &str = "#009E73";
+pub(crate) const WRONG: &str = "#D55E00";
+pub(crate) const FAINT: &str = "#666666";
 
 /// So many points of a kind are drawn at most: more only make the file large.
 const MOST_POINTS: usize = 4000;
 
 /// Axes of a figure, with room for the legend below.
-pub(super) fn axes(plots: &[Plot], x_label: &str, y_label: &str) -> Layout {
+pub(crate) fn axes(plots: &[Plot], x_label: &str, y_label: &str) -> Layout {
     Layout::auto_from_plots(plots)
         .with_width(640.0)
         .with_height(400.0)
@@ -40,13 +40,13 @@ fn entry(plot: &Plot) -> Option<LegendEntry> {
 }
 
 /// Every n-th, so that no more than a figure can show are left.
-pub(super) fn thinned<T>(points: Vec<T>) -> Vec<T> {
+pub(crate) fn thinned<T>(points: Vec<T>) -> Vec<T> {
     let step = points.len().div_ceil(MOST_POINTS).max(1);
     points.into_iter().step_by(step).collect()
 }
 
 /// Points without a line.
-pub(super) fn points(data: Vec<(f64, f64)>, colour: &str, marker: MarkerShape, legend: &str) -> ScatterPlot {
+pub(crate) fn points(data: Vec<(f64, f64)>, colour: &str, marker: MarkerShape, legend: &str) -> ScatterPlot {
     ScatterPlot::new()
         .with_data(thinned(data))
         .with_color(colour)
@@ -57,12 +57,12 @@ pub(super) fn points(data: Vec<(f64, f64)>, colour: &str, marker: MarkerShape, l
 }
 
 /// A line.
-pub(super) fn line(data: Vec<(f64, f64)>, colour: &str) -> LinePlot {
+pub(crate) fn line(data: Vec<(f64, f64)>, colour: &str) -> LinePlot {
     LinePlot::new().with_data(data).with_color(colour).with_stroke_width(1.8)
 }
 
 /// An area between two lines, of points (x, lower, upper).
-pub(super) fn band(data: &[(f64, f64, f64)], colour: &str) -> BandPlot {
+pub(crate) fn band(data: &[(f64, f64, f64)], colour: &str) -> BandPlot {
     let column = |of: fn(&(f64, f64, f64)) -> f64| data.iter().map(of).collect::<Vec<f64>>();
     BandPlot::new(column(|point| point.0), column(|point| point.1), column(|point| point.2))
         .with_color(colour)
@@ -70,6 +70,6 @@ pub(super) fn band(data: &[(f64, f64, f64)], colour: &str) -> BandPlot {
 }
 
 /// A dashed line across, for what a value should be.
-pub(super) fn level(value: f64) -> ReferenceLine {
+pub(crate) fn level(value: f64) -> ReferenceLine {
     ReferenceLine::horizontal(value).with_color(FAINT)
 }

@@ -9,6 +9,8 @@ use super::Sample;
 use super::median::MOST_SHIFT;
 
 const SHIFTS: usize = 24;
+/// Where a point falls in its pixel changes an area by about so much: height below it hardly matters to a range.
+const GRAIN_PX: f64 = 2.0;
 
 /// The least that the curve must reach for a spot: a curve is rounded before it is compared.
 pub(super) fn least_px(spot: &Sample) -> f64 {
@@ -39,7 +41,7 @@ pub(super) fn fit(spots: &[Sample], median: &Envelope) -> Option<Envelope> {
     Some(last.filter(|last| last.1 < best.1).unwrap_or(best).0)
 }
 
-/// One over the median curve, over the spots within a tenth of the distance (the list is sorted).
+/// One over the median curve and the grain, over the spots within a tenth of the distance (the list is sorted).
 fn weights(sorted: &[Sample], median: &Envelope) -> Vec<f64> {
     let (mut first, mut last) = (0, 0);
     sorted
@@ -51,7 +53,7 @@ fn weights(sorted: &[Sample], median: &Envelope) -> Vec<f64> {
             while last < sorted.len() && sorted[last].distance_m > spot.distance_m / 1.1 {
                 last += 1;
             }
-            1.0 / (median.area_px(spot.distance_m).max(0.5) * (last - first).max(1) as f64)
+            1.0 / ((median.area_px(spot.distance_m) + GRAIN_PX) * (last - first).max(1) as f64)
         })
         .collect()
 }

@@ -39,5 +39,9 @@ pub(super) fn figure(recording: &Recording, found: &SpotSize) -> Figure {
     let exposure = recording.exposure_us.map_or(String::new(), |us| format!("-{us}us"));
     let title = recording.exposure_us.map_or("spot size".to_owned(), |us| format!("spot size at {us} us"));
     let layout = axes(&plots, "distance (m)", "area (px)").with_title(title).with_log_x().with_log_y();
+    let layout = layout
+        .with_x_axis_min(0.8 * found.nearest_m)
+        .with_x_axis_max(1.25 * found.farthest_seen_m)
+        .with_y_axis_min(0.5);
     Figure { name: format!("spot-size{exposure}"), plots, layout }
 }

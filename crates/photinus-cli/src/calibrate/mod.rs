@@ -2,11 +2,17 @@
 
 mod camera;
 mod coverage;
+mod mounting;
 mod spot_size;
 
+use std::io::Write;
+use std::path::Path;
+
 use clap::Subcommand;
+use photinus_io::Error;
 
 use crate::failure::Failure;
+use crate::output::create;
 use crate::terminal::Terminal;
 
 /// Calibrate: from photos and recordings to a camera whose errors are known
@@ -22,6 +28,7 @@ enum What {
     Camera(camera::Args),
     Coverage(coverage::Args),
     SpotSize(spot_size::Args),
+    Mounting(mounting::Args),
 }
 
 impl Args {
@@ -31,6 +38,7 @@ impl Args {
             What::Camera(args) => args.quiet(),
             What::Coverage(_) => false,
             What::SpotSize(args) => args.quiet(),
+            What::Mounting(args) => args.quiet(),
         }
     }
 }
@@ -41,5 +49,11 @@ pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> Result<(), Failure> {
         What::Camera(args) => camera::run(args, terminal),
         What::Coverage(args) => coverage::run(args, terminal),
         What::SpotSize(args) => spot_size::run(args, terminal),
+        What::Mounting(args) => mounting::run(args, terminal),
     }
+}
+
+/// Writes a file of text, or says why it cannot be.
+fn write(path: &Path, text: &str) -> Result<(), Failure> {
+    create(path)?.write_all(text.as_bytes()).map_err(|error| Failure::running(Error::io(path, error)))
 }

@@ -10,15 +10,15 @@ mod plot;
 mod recordings;
 mod report;
 
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use photinus_calibrate::spot_size::{SpotSizeError, calibrate};
 use photinus_io::Error;
 
+use super::write;
 use crate::failure::Failure;
 use crate::figure::FigureFolder;
-use crate::output::{create, refuse_to_replace};
+use crate::output::refuse_to_replace;
 use crate::spot_options::SpotArgs;
 use crate::terminal::Terminal;
 use recordings::Recording;
@@ -106,10 +106,6 @@ pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> Result<(), Failure> {
         write(path, &format!("{:#}\n", serde_json::Value::from(reports)))?;
     }
     Ok(())
-}
-
-fn write(path: &Path, text: &str) -> Result<(), Failure> {
-    create(path)?.write_all(text.as_bytes()).map_err(|error| Failure::running(Error::io(path, error)))
 }
 
 fn refuse(input: &Path, recording: &Recording, error: SpotSizeError) -> Failure {

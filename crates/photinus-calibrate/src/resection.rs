@@ -46,7 +46,7 @@ pub(crate) struct Refined {
     pub(crate) information: Matrix6<f64>,
 }
 
-const PASSES: usize = 60;
+const PASSES: usize = 40;
 
 impl Pose {
     /// From what was seen to what this pose predicts, in sigmas along the image's axes, with the derivative by (turn about the
@@ -91,7 +91,7 @@ pub(crate) fn refine(observations: &[Observation], start: Pose, free: Free, loss
                 pose = next;
                 (cost, information, gradient) = after;
                 damping = f64::max(damping * 0.2, 1e-12);
-                if gain < 1e-12 * cost {
+                if gain < 1e-10 * cost {
                     break;
                 }
             }

@@ -19,6 +19,7 @@ use crate::resection::{Free, Pose, Refined, refine};
 pub use crate::resection::{Known, Observation};
 use crate::robust::{self, Loss};
 pub use error::MountingError;
+pub(crate) use start::nearest_rotation;
 
 /// How a camera sits on its vehicle.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,5 +1,6 @@
 //! `photinus calibrate`: photos and recordings -> what Photinus must know beforehand, each with its uncertainty.
 
+mod airframe;
 mod camera;
 mod coverage;
 mod mounting;
@@ -29,6 +30,7 @@ enum What {
     Coverage(coverage::Args),
     SpotSize(spot_size::Args),
     Mounting(mounting::Args),
+    Airframe(airframe::Args),
 }
 
 impl Args {
@@ -39,6 +41,7 @@ impl Args {
             What::Coverage(_) => false,
             What::SpotSize(args) => args.quiet(),
             What::Mounting(args) => args.quiet(),
+            What::Airframe(args) => args.quiet(),
         }
     }
 }
@@ -50,6 +53,7 @@ pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> Result<(), Failure> {
         What::Coverage(args) => coverage::run(args, terminal),
         What::SpotSize(args) => spot_size::run(args, terminal),
         What::Mounting(args) => mounting::run(args, terminal),
+        What::Airframe(args) => airframe::run(args, terminal),
     }
 }
 

@@ -5,7 +5,7 @@
 
 use nalgebra::Vector3;
 
-use crate::adjust::{Adjusted, FreeBoard, Loss, Scene, Task, View, all_of};
+use crate::adjust::{FreeBoard, Loss, Scene, Task, View, all_of};
 use crate::grid::Grid;
 use crate::labels::{Agreement, agreement, turn_view};
 use crate::lens::{AFFINE, LensModel};
@@ -37,10 +37,6 @@ pub(crate) fn from_nothing(
     let first = start(views, &grid.nominal_m(), size_px)?;
     let affine = [AFFINE, AFFINE + 1];
     let centre_sigma_px = 0.05 * size_px[0].max(size_px[1]) as f64;
-    if model == LensModel::EQUIDISTANT {
-        let centred = flat(views, &first, &affine, Some(centre_sigma_px), ROUGH)?.scene;
-        return climb(views, &centred);
-    }
     let middle_model = LensModel::kannala_brandt(2)?;
     let curved = Scene { lens: first.lens.in_model(middle_model, reach_rad(views, &first)), ..first };
     let centred = flat(views, &curved, &affine, Some(centre_sigma_px), ROUGH)?.scene;
@@ -53,12 +49,7 @@ pub(crate) fn from_nothing(
 fn climb(views: &[View], near: &Scene) -> Option<Scene> {
     let folded = best_folds(views, near, ROUGH);
     let all = flat(views, &folded, &[], None, ROUGH)?.scene;
-    flat_again(views, &all).map(|adjusted| adjusted.scene)
-}
-
-/// The last step with the board as it is: the loss follows the residuals.
-pub(crate) fn flat_again(views: &[View], near: &Scene) -> Option<Adjusted> {
-    flat(views, near, &[], None, loss_for(views, None, near))
+    flat(views, &all, &[], None, loss_for(views, None, &all)).map(|adjusted| adjusted.scene)
 }
 
 /// The same scene with a lens of another model.
@@ -103,20 +94,29 @@ pub(crate) fn last_step<'a>(
     }
 }
 
-/// Lens, poses and board together, from a scene that is near; the loss follows the residuals.
-pub(crate) fn with_board(
+/// Adjusts a scene that is near with all parameters free, the loss following the residuals.
+pub(crate) fn settle(views: &[View], near: &Scene, grid: &Grid, board: Board) -> Option<Scene> {
+    let flat = climb(views, near)?;
+    match board {
+        Board::Flat => Some(flat),
+        Board::Solved => {
+            let first = refit(views, None, &flat, grid, board, loss_for(views, None, &flat))?;
+            refit(views, None, &first, grid, board, loss_for(views, None, &first))
+        }
+    }
+}
+
+/// Adjusts a scene that is near with all parameters free; each view counts as often as its weight says.
+pub(crate) fn refit(
     views: &[View],
     weights: Option<&[f64]>,
     near: &Scene,
     grid: &Grid,
+    board: Board,
+    loss: Loss,
 ) -> Option<Scene> {
     let nominal_m = grid.nominal_m();
-    let rough = loss_for(views, weights, near);
-    let first = last_step(views, weights, near, &nominal_m, grid, Board::Solved, rough).adjust(near)?.scene;
-    let fine = loss_for(views, weights, &first);
-    last_step(views, weights, &first, &nominal_m, grid, Board::Solved, fine)
-        .adjust(&first)
-        .map(|done| done.scene)
+    last_step(views, weights, near, &nominal_m, grid, board, loss).adjust(near).map(|adjusted| adjusted.scene)
 }
 
 /// A loss that takes ordinary residuals as they are and lets go of the others.

@@ -3,8 +3,6 @@
 /// What a residual of length r costs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Loss {
-    /// r^2 / 2.
-    Squares,
     /// Grows like r past this length, px.
     SoftL1(f64),
     /// Grows like ln r past this length, px.
@@ -15,7 +13,6 @@ impl Loss {
     /// The cost of a squared residual, and the weight that makes its square follow the cost.
     pub(crate) fn cost_and_weight(self, squared_px2: f64) -> (f64, f64) {
         match self {
-            Self::Squares => (0.5 * squared_px2, 1.0),
             Self::SoftL1(scale) => {
                 let root = (1.0 + squared_px2 / (scale * scale)).sqrt();
                 (scale * scale * (root - 1.0), 1.0 / root)

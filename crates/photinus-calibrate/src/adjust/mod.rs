@@ -17,7 +17,7 @@ use crate::lens::{Lens, MOST_PARAMETERS};
 
 pub(crate) use cholesky::Cholesky;
 pub(crate) use loss::Loss;
-pub(crate) use normal::{Normal, PhotoShare};
+pub(crate) use normal::{Normal, hold};
 pub(crate) use pose::{fit_pose, pose_cost};
 
 /// Where a photo shows an LED of the board.

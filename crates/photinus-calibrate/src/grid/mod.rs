@@ -133,8 +133,19 @@ pub enum OrderError {
         /// The least that is taken.
         needed: usize,
     },
+    /// A label that came with the spots and is not of the grid, or comes twice.
+    #[error("the label column {column}, row {row} is not of the grid, or comes twice")]
+    Label {
+        /// Column given.
+        column: usize,
+        /// Row given.
+        row: usize,
+    },
+    /// Labels that came with the spots and run the wrong way round.
+    #[error("the labels are mirrored: their columns and rows turn the other way than those of the photo")]
+    Mirrored,
     /// A lattice of another size.
-    #[error("the spots form a lattice of {columns}x{rows}, which does not fit the grid")]
+    #[error("the spots form a full lattice of {columns}x{rows}, not the grid that was said")]
     OtherSize {
         /// Spots along its longer side.
         columns: usize,

@@ -36,20 +36,17 @@ pub(super) fn place(
             }
         }
     }
+    let covered = best.first().map_or(0, |reading| reading.observations.len());
+    if let Some((columns, rows)) = other_size(lattice, grid, covered) {
+        return Err(OrderError::OtherSize { columns, rows });
+    }
+    if covered < needed || 10 * covered < 8 * lattice.len() {
+        return Err(OrderError::NoLattice { found: spots.len(), lattice: covered, needed });
+    }
+    // an oblique reading of as many spots bends far more than the upright one
     let roughness = |reading: &Reading| super::smooth::mean_off_spacings(&reading.observations, grid);
     let rough: Vec<f64> = best.iter().map(roughness).collect();
     let least = rough.iter().copied().fold(f64::INFINITY, f64::min);
-    let covered = best.first().map_or(0, |reading| reading.observations.len());
-    if covered < needed || 10 * covered < 8 * lattice.len() {
-        let (columns, rows) = extent(lattice);
-        let fits = columns <= grid.columns().max(grid.rows()) && rows <= grid.columns().min(grid.rows());
-        return Err(if fits || covered == 0 {
-            OrderError::NoLattice { found: spots.len(), lattice: lattice.len(), needed }
-        } else {
-            OrderError::OtherSize { columns, rows }
-        });
-    }
-    // an oblique reading of as many spots bends far more than the upright one
     let mut alike: Vec<Reading> = best
         .into_iter()
         .zip(&rough)
@@ -60,6 +57,14 @@ pub(super) fn place(
         Some(reading) if alike.is_empty() => Ok(reading.observations),
         _ => Err(OrderError::Ambiguous { ways: alike.len() + 1 }),
     }
+}
+
+/// The size of a lattice that is full and not the grid's; `covered` is what the grid covers of it.
+fn other_size(lattice: &Lattice, grid: &Grid, covered: usize) -> Option<(usize, usize)> {
+    let (columns, rows) = extent(lattice);
+    let is_full = 100 * lattice.len() >= 97 * columns * rows && columns >= 3 && rows >= 3;
+    let is_other = (columns, rows) != (grid.columns().max(grid.rows()), grid.columns().min(grid.rows()));
+    (is_full && is_other && covered < grid.leds().max(lattice.len())).then_some((columns, rows))
 }
 
 /// The readings of an upright lattice that cover most spots, unmirrored, each once for all turns of the grid.

@@ -11,6 +11,7 @@
 pub mod airframe;
 pub mod blink;
 pub mod camera;
+pub mod corners;
 pub mod dataset;
 mod error;
 pub mod frames;

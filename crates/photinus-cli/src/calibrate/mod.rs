@@ -1,7 +1,11 @@
 //! `photinus calibrate`: photos and recordings -> what Photinus must know beforehand, each with its uncertainty.
 
+mod advice;
 mod camera;
 mod coverage;
+mod photos;
+mod report;
+mod table;
 
 use clap::Subcommand;
 

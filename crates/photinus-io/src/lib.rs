@@ -13,6 +13,7 @@ pub mod airframe;
 pub mod blink;
 pub mod calibration;
 pub mod camera;
+pub mod corners;
 pub mod dataset;
 mod error;
 pub mod frames;

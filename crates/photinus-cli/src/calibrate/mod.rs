@@ -1,10 +1,14 @@
 //! `photinus calibrate`: photos and recordings -> what Photinus must know beforehand, each with its uncertainty.
 
+mod advice;
 mod airframe;
 mod camera;
 mod coverage;
 mod mounting;
+mod photos;
+mod report;
 mod spot_size;
+mod table;
 
 use std::io::Write;
 use std::path::Path;

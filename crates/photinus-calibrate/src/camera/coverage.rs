@@ -12,7 +12,7 @@ pub struct Part {
 }
 
 /// How wide the strips along the edges are, as a share of the image.
-const STRIP: f64 = 0.22;
+pub const STRIP: f64 = 0.22;
 /// A part is seen by a photo that shows this many LEDs in it.
 const LEDS: usize = 3;
 

@@ -30,7 +30,7 @@ use crate::solve::{Board, from_nothing, resolve_labels};
 
 pub use bearings::{Difference, Field, RING_RAD, Ring};
 pub use covariance::Inflation;
-pub use coverage::{Coverage, Lack, Part};
+pub use coverage::{Coverage, Lack, Part, STRIP};
 pub use error::CalibrateError;
 pub use export::{ExportError, OcamExport};
 pub use misfits::{Misfit, MisfitReason};

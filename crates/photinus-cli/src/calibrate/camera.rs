@@ -10,7 +10,7 @@ use photinus_io::camera::{CalibrationSummary, write_calibrated_camera_toml, writ
 
 use super::photos::{PhotoArgs, side_by_side};
 use super::report::{CameraReport, Repeats};
-use super::{advice, table};
+use super::{advice, page, table};
 use crate::failure::Failure;
 use crate::output::{create, refuse_to_replace};
 use crate::terminal::Terminal;
@@ -179,6 +179,7 @@ fn write_report(folder: &Path, report: &CameraReport, terminal: &Terminal) -> Re
     let text = serde_json::to_string_pretty(report)
         .map_err(|error| Failure::Running(format!("{}: {error}", path.display())))?;
     std::fs::write(&path, text).map_err(|error| Failure::running(Error::io(&path, error)))?;
-    terminal.summary(format_args!("{}: written", path.display()));
+    page::write(folder, report).map_err(Failure::running)?;
+    terminal.summary(format_args!("{}: written, with a page to look at, index.html", path.display()));
     Ok(())
 }

@@ -5,6 +5,7 @@ mod airframe;
 mod camera;
 mod coverage;
 mod mounting;
+mod page;
 mod photos;
 mod report;
 mod spot_size;

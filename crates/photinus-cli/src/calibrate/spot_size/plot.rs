@@ -8,7 +8,7 @@ use photinus_calibrate::spot_size::SpotSize;
 
 use super::recordings::Recording;
 use crate::figure::Figure;
-use crate::figure::style::{BOUNDS, ESTIMATE, FAINT, WRONG, axes, line, points};
+use crate::figure::style::{BOUNDS, ESTIMATE, FAINT, WRONG, axes, line, plain, points};
 
 const STEPS: usize = 200;
 
@@ -42,6 +42,8 @@ pub(super) fn figure(recording: &Recording, found: &SpotSize) -> Figure {
     let layout = layout
         .with_x_axis_min(0.8 * found.nearest_m)
         .with_x_axis_max(1.25 * found.farthest_seen_m)
-        .with_y_axis_min(0.5);
+        .with_y_axis_min(0.5)
+        .with_x_tick_format(plain())
+        .with_y_tick_format(plain());
     Figure { name: format!("spot-size{exposure}"), plots, layout }
 }

@@ -174,6 +174,9 @@ fn finish(
     let squared = lengths.iter().map(|length| length * length).sum::<f64>();
     let freedom = usable::freedom(adjustment.sightings(), adjustment.distances());
     let variance = squared / freedom as f64;
+    if !variance.is_finite() {
+        return Err(LayoutError::DoNotFit { outliers: lengths.len(), sightings: lengths.len() });
+    }
     adjustment.weigh_distances(variance.sqrt().max(LEAST_SIGMA));
     adjustment.refine(Loss::Squares);
 

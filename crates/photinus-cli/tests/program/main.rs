@@ -7,6 +7,9 @@
 )]
 
 mod bad_input;
+mod calibrate_airframe;
+mod calibrate_mounting;
+mod calibrate_spot_size;
 mod commands;
 mod demo;
 mod evaluate;

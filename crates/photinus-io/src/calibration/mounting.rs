@@ -109,5 +109,7 @@ fn rows(matrix: &Matrix3<f64>) -> [[f64; 3]; 3] {
 fn is_covariance(matrix: &Matrix3<f64>) -> bool {
     let scale = matrix.amax();
     let is_symmetric = (matrix - matrix.transpose()).amax() <= 1e-9 * scale;
-    scale.is_finite() && is_symmetric && (0..3).all(|axis| matrix[(axis, axis)] >= 0.0)
+    // the largest entry and a comparison pass over NaN: every entry is looked at
+    let is_finite = matrix.iter().all(|entry| entry.is_finite());
+    is_finite && is_symmetric && (0..3).all(|axis| matrix[(axis, axis)] >= 0.0)
 }

@@ -100,6 +100,10 @@ fn a_mounting_that_is_none_is_refused_with_its_key() {
             good.replace("1e-6, 0.0, 0.0]", "-1e-6, 0.0, 0.0]"),
             "m.toml, `rotation_covariance_rad2`: this is no covariance",
         ),
+        (
+            good.replace("0.0, 1e-6]]", "nan, 1e-6]]"),
+            "m.toml, `rotation_covariance_rad2`: this is no covariance",
+        ),
         (format!("{good}position_m = [inf, 0.0, 0.0]\n"), "m.toml, `position_m`: a coordinate is not finite"),
         (format!("{good}position = [0.0, 0.0, 0.0]\n"), "m.toml, line 3: unknown key `position`"),
     ] {

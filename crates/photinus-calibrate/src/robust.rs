@@ -36,6 +36,5 @@ pub(crate) fn sigma(lengths: impl Iterator<Item = f64>) -> f64 {
 
 /// Whether a residual of this length is an outlier among those of this sigma.
 pub(crate) fn is_outlier(length: f64, sigma: f64) -> bool {
-    // NaN is one
-    !(length <= OUTLIER * sigma)
+    length.is_nan() || length > OUTLIER * sigma
 }

@@ -106,7 +106,7 @@ pub(super) fn check_placed(
     let worst =
         (0..placed.len()).map(|place| (placed[place], sigma_m(place))).max_by(|a, b| a.1.total_cmp(&b.1));
     match worst {
-        Some((led, sigma_m)) if !(sigma_m <= MOST_SIGMA * size_m) => {
+        Some((led, sigma_m)) if sigma_m.is_nan() || sigma_m > MOST_SIGMA * size_m => {
             Err(LayoutError::Undetermined { led, sigma_m })
         }
         _ => Ok(()),

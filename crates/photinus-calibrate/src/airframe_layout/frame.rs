@@ -27,7 +27,7 @@ pub(super) fn align(
     let scale = if has_scale { 1.0 } else { (rotation.inverse().matrix() * product).trace() / square };
     let turn = UnitQuaternion::from_rotation_matrix(&rotation);
     let lay = |position_m: &mut Vector3<f64>| {
-        *position_m = nominal_mean_m + turn * (*position_m - found_mean_m) * scale
+        *position_m = nominal_mean_m + turn * (*position_m - found_mean_m) * scale;
     };
     adjustment.leds_m.iter_mut().for_each(lay);
     for pose in adjustment.poses.iter_mut().flatten() {

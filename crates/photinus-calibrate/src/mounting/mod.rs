@@ -109,11 +109,11 @@ fn finish(
     let rotation: Matrix3<f64> = covariance.fixed_view::<3, 3>(0, 0).into();
     let place: Matrix3<f64> = covariance.fixed_view::<3, 3>(3, 3).into();
     let turn_rad = largest_sigma(&rotation);
-    if !(turn_rad <= MOST_TURN_RAD) {
+    if turn_rad.is_nan() || turn_rad > MOST_TURN_RAD {
         return Err(MountingError::Alike { turn_rad });
     }
     let place_m = largest_sigma(&place);
-    if free == Free::RotationAndCentre && !(place_m <= MOST_PLACE_M) {
+    if free == Free::RotationAndCentre && (place_m.is_nan() || place_m > MOST_PLACE_M) {
         return Err(MountingError::PlaceUnknown { place_m });
     }
     Ok(Mounting {

@@ -81,5 +81,6 @@ fn line_above(sorted: &[Sample], weights: &[f64], shift_m: f64) -> Option<(Envel
     let through_zero = || hull.iter().map(|point| point.1 / point.0).fold(0.0, f64::max);
     let (offset_px, scale_px_m2) = if offset_px >= 0.0 { (offset_px, slope) } else { (0.0, through_zero()) };
     let is_falling = scale_px_m2.is_finite() && scale_px_m2 > 1e-9;
-    is_falling.then(|| (Envelope { offset_px, scale_px_m2, shift_m }, offset_px + scale_px_m2 * mean))
+    let height = offset_px + scale_px_m2 * mean;
+    is_falling.then_some((Envelope { offset_px, scale_px_m2, shift_m }, height))
 }

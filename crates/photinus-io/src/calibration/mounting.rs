@@ -52,8 +52,9 @@ pub fn parse_mounting(text: &str, path: impl AsRef<Path>) -> Result<MountingFile
     };
     let [x, y, z, w] = table.body_from_camera_xyzw;
     let quaternion = Quaternion::new(w, x, y, z);
-    // NaN is no length near 1 either
-    if !((quaternion.norm() - 1.0).abs() < 0.01) {
+    // false for NaN, too
+    let is_turn = (quaternion.norm() - 1.0).abs() < 0.01;
+    if !is_turn {
         return refuse("body_from_camera_xyzw", "this is no unit quaternion", "give x, y, z, w of length 1");
     }
     let covariances = [

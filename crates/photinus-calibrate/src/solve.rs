@@ -5,10 +5,10 @@
 
 use nalgebra::Vector3;
 
-use crate::adjust::{FreeBoard, Loss, Scene, Task, View, all_of};
+use crate::adjust::{FreeBoard, Loss, Pull, Scene, Task, View, all_of};
 use crate::grid::Grid;
 use crate::labels::{Agreement, agreement, turn_view};
-use crate::lens::{AFFINE, LensModel};
+use crate::lens::{AFFINE, CENTRE, LensModel};
 use crate::start::{ROUGH, best_folds, flat, start};
 
 /// Whether the LEDs are taken to be where the drawing says.
@@ -21,7 +21,7 @@ pub enum Board {
 }
 
 /// How far an LED of a hand-made board may be from its place, in pitches: the pull that fixes the board's freedom to move.
-const BOARD_SIGMA_PITCHES: f64 = 0.04;
+const BOARD_SIGMA_PITCHES: f64 = 0.1;
 /// Residuals longer than this count less at the end, px, at least.
 const LEAST_LOSS_PX: f64 = 0.1;
 /// The same in standard deviations of the residuals.
@@ -36,20 +36,43 @@ pub(crate) fn from_nothing(
 ) -> Option<Scene> {
     let first = start(views, &grid.nominal_m(), size_px)?;
     let affine = [AFFINE, AFFINE + 1];
-    let centre_sigma_px = 0.05 * size_px[0].max(size_px[1]) as f64;
+    let about = |scene: &Scene| {
+        let sigma_px = 0.05 * size_px[0].max(size_px[1]) as f64;
+        let centre = scene.lens.centre_px();
+        let pull =
+            |axis: usize| Pull { parameter: CENTRE + axis, to: centre[axis], px_per_unit: 1.0 / sigma_px };
+        vec![pull(0), pull(1)]
+    };
     let middle_model = LensModel::kannala_brandt(2)?;
     let curved = Scene { lens: first.lens.in_model(middle_model, reach_rad(views, &first)), ..first };
-    let centred = flat(views, &curved, &affine, Some(centre_sigma_px), ROUGH)?.scene;
+    let centred = flat(views, &curved, &affine, about(&curved), ROUGH)?.scene;
     let folded = best_folds(views, &centred, ROUGH);
-    let curved = flat(views, &folded, &affine, None, ROUGH)?.scene;
+    let curved = flat(views, &folded, &affine, Vec::new(), ROUGH)?.scene;
     climb(views, &in_model(views, &curved, model))
 }
 
 /// All parameters free, from a scene that is near.
 fn climb(views: &[View], near: &Scene) -> Option<Scene> {
     let folded = best_folds(views, near, ROUGH);
-    let all = flat(views, &folded, &[], None, ROUGH)?.scene;
-    flat(views, &all, &[], None, loss_for(views, None, &all)).map(|adjusted| adjusted.scene)
+    let all = flat(views, &folded, &[], square(views, &folded), ROUGH)?.scene;
+    flat(views, &all, &[], square(views, &all), loss_for(views, None, &all)).map(|adjusted| adjusted.scene)
+}
+
+/// Pixels are square to within this, unless the photos clearly say otherwise.
+const SQUARE: f64 = 0.0003;
+
+/// What holds c near 1 and d near 0 where they already are: photos that all hold the board upright cannot tell a wide
+/// board from wide pixels.
+fn square(views: &[View], near: &Scene) -> Vec<Pull> {
+    let p = near.lens.all_parameters();
+    let px_per_unit = sigma_px(views, None, near) / SQUARE;
+    let values = [(AFFINE, 1.0), (AFFINE + 1, 0.0)];
+    let near_enough = |&(parameter, to): &(usize, f64)| (p[parameter] - to).abs() < 5.0 * SQUARE;
+    values
+        .into_iter()
+        .filter(near_enough)
+        .map(|(parameter, to)| Pull { parameter, to, px_per_unit })
+        .collect()
 }
 
 /// The same scene with a lens of another model.
@@ -87,7 +110,7 @@ pub(crate) fn last_step<'a>(
         views,
         weights,
         free: all_of(&near.lens),
-        centre_sigma_px: None,
+        pulls: square(views, near),
         board: free_board,
         loss,
         most_steps: 40,

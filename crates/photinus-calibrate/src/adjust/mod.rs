@@ -58,8 +58,8 @@ pub(crate) struct Task<'a> {
     pub(crate) weights: Option<&'a [f64]>,
     /// Which parameters of the lens are free.
     pub(crate) free: [bool; MOST_PARAMETERS],
-    /// Standard deviation of the centre about the first guess, px.
-    pub(crate) centre_sigma_px: Option<f64>,
+    /// What holds parameters of the lens near a value.
+    pub(crate) pulls: Vec<Pull>,
     /// Nominal places of the LEDs, m, where the board is free.
     pub(crate) board: Option<FreeBoard<'a>>,
     pub(crate) loss: Loss,
@@ -72,6 +72,17 @@ pub(crate) struct FreeBoard<'a> {
     pub(crate) nominal_m: &'a [Vector3<f64>],
     /// What a metre off the nominal place costs, px: far less than any observation.
     pub(crate) pull_px_per_m: f64,
+}
+
+/// What holds a parameter of the lens near a value, as one more residual does.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Pull {
+    /// Which parameter.
+    pub(crate) parameter: usize,
+    /// The value.
+    pub(crate) to: f64,
+    /// What a unit off the value costs, px.
+    pub(crate) px_per_unit: f64,
 }
 
 /// What an adjustment came to.
@@ -98,8 +109,8 @@ impl Task<'_> {
     }
 
     /// The cost of a scene; `None` where a point has no image.
-    pub(crate) fn cost(&self, scene: &Scene, first: &Scene) -> Option<f64> {
-        let mut cost = self.pulls(scene, first);
+    pub(crate) fn cost(&self, scene: &Scene) -> Option<f64> {
+        let mut cost = self.pulled(scene);
         for (index, (view, pose)) in self.views.iter().zip(&scene.camera_from_board).enumerate() {
             let weight = self.weight(index);
             if weight > 0.0 {
@@ -109,16 +120,15 @@ impl Task<'_> {
         cost.is_finite().then_some(cost)
     }
 
-    fn pulls(&self, scene: &Scene, first: &Scene) -> f64 {
-        let centre = self
-            .centre_sigma_px
-            .map_or(0.0, |sigma| ((scene.lens.centre_px() - first.lens.centre_px()) / sigma).norm_squared());
+    fn pulled(&self, scene: &Scene) -> f64 {
+        let off = |pull: &Pull| pull.px_per_unit * (scene.lens.all_parameters()[pull.parameter] - pull.to);
+        let lens: f64 = self.pulls.iter().map(|pull| off(pull) * off(pull)).sum();
         let board = self.board.map_or(0.0, |board| {
             let off: f64 =
                 board.nominal_m.iter().zip(&scene.board_m).map(|(a, b)| (a - b).norm_squared()).sum();
             board.pull_px_per_m * board.pull_px_per_m * off
         });
-        0.5 * (centre + board)
+        0.5 * (lens + board)
     }
 }
 

@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector, Isometry3, Matrix2x3, Matrix3, Matrix6, SMatrix, Vector6};
 
 use super::{Loss, Scene, Task, View};
-use crate::lens::{CENTRE, MOST_PARAMETERS};
+use crate::lens::MOST_PARAMETERS;
 
 /// What one photo says about what all photos share, and about its own pose.
 pub(crate) struct PhotoShare {
@@ -148,8 +148,8 @@ impl PhotoShare {
 }
 
 impl Normal {
-    /// The normal equations of `task` at `scene`; `first` is what the pulls pull to.
-    pub(crate) fn of(task: &Task<'_>, scene: &Scene, first: &Scene) -> Option<Self> {
+    /// The normal equations of `task` at `scene`.
+    pub(crate) fn of(task: &Task<'_>, scene: &Scene) -> Option<Self> {
         let shared = task.shared();
         let mut normal = Self {
             shared: DMatrix::zeros(shared, shared),
@@ -168,17 +168,16 @@ impl Normal {
             }
             normal.photos.push(share);
         }
-        normal.add_pulls(task, scene, first);
+        normal.add_pulls(task, scene);
         Some(normal)
     }
 
-    fn add_pulls(&mut self, task: &Task<'_>, scene: &Scene, first: &Scene) {
-        if let Some(sigma) = task.centre_sigma_px {
-            let off = first.lens.centre_px() - scene.lens.centre_px();
-            for k in 0..2 {
-                self.shared[(CENTRE + k, CENTRE + k)] += 1.0 / (sigma * sigma);
-                self.gradient[CENTRE + k] += off[k] / (sigma * sigma);
-            }
+    fn add_pulls(&mut self, task: &Task<'_>, scene: &Scene) {
+        for pull in &task.pulls {
+            let weight = pull.px_per_unit * pull.px_per_unit;
+            let k = pull.parameter;
+            self.shared[(k, k)] += weight;
+            self.gradient[k] += weight * (pull.to - scene.lens.all_parameters()[k]);
         }
         if let Some(board) = task.board {
             let weight = board.pull_px_per_m * board.pull_px_per_m;

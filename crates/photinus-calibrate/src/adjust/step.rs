@@ -12,11 +12,11 @@ const SMALL_GAIN: f64 = 1e-9;
 
 pub(super) fn descend(task: &Task<'_>, first: &Scene) -> Option<Adjusted> {
     let mut scene = first.clone();
-    let mut cost = task.cost(&scene, first)?;
+    let mut cost = task.cost(&scene)?;
     let mut damping = 1e-3;
     for _ in 0..task.most_steps {
-        let normal = Normal::of(task, &scene, first)?;
-        let Some((next, next_cost)) = better(task, &normal, &scene, first, cost, &mut damping) else { break };
+        let normal = Normal::of(task, &scene)?;
+        let Some((next, next_cost)) = better(task, &normal, &scene, cost, &mut damping) else { break };
         let gain = cost - next_cost;
         (scene, cost) = (next, next_cost);
         if gain <= SMALL_GAIN * cost {
@@ -31,13 +31,12 @@ fn better(
     task: &Task<'_>,
     normal: &Normal,
     scene: &Scene,
-    first: &Scene,
     cost: f64,
     damping: &mut f64,
 ) -> Option<(Scene, f64)> {
     while *damping < 1e9 {
         if let Some(next) = moved(task, normal, scene, *damping)
-            && let Some(next_cost) = task.cost(&next, first).filter(|next| *next < cost)
+            && let Some(next_cost) = task.cost(&next).filter(|next| *next < cost)
         {
             *damping = (*damping * 0.1).max(1e-12);
             return Some((next, next_cost));

@@ -70,7 +70,7 @@ struct Unknown {
 
 impl Unknown {
     fn of(task: &Task<'_>, scene: &Scene) -> Option<Self> {
-        let normal = Normal::of(task, scene, scene)?;
+        let normal = Normal::of(task, scene)?;
         let (matrix, _) = normal.reduced(task, 0.0)?;
         let all = Cholesky::new(&matrix)?;
         let independent = all.inverse_block(MOST_PARAMETERS) * variance_px2(task, scene);

@@ -66,7 +66,7 @@ pub(super) fn model_of(lens: &Lens) -> Result<(Model, DMatrix<f64>), CameraError
 }
 
 /// An OCam polynomial this near is not worth another degree, rad.
-const GOOD_ENOUGH_RAD: f64 = 1e-5;
+const GOOD_ENOUGH_RAD: f64 = 5e-5;
 /// Degrees that are tried: programs in the field accept 63.
 const DEGREES: [usize; 7] = [4, 6, 8, 10, 12, 14, 16];
 /// Places along the radius at which the two are compared.

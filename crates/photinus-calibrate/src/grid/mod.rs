@@ -192,7 +192,7 @@ pub fn order(spots: &[Vector2<f64>], grid: &Grid) -> Result<Ordered, OrderError>
         return Err(OrderError::NoLattice { found: spots.len(), lattice: lattice.len(), needed });
     }
     let observations = window::place(&spots, &lattice, grid, needed)?;
-    let observations = smooth::without_strangers(observations, grid)?;
+    let observations = smooth::without_strangers(observations, &spots, grid)?;
     if observations.len() < needed {
         return Err(OrderError::NoLattice { found: spots.len(), lattice: observations.len(), needed });
     }

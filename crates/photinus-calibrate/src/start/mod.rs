@@ -8,7 +8,7 @@ mod planar;
 
 use nalgebra::{Isometry3, Vector3};
 
-use crate::adjust::{Loss, Scene, Task, View, all_of, fit_pose};
+use crate::adjust::{Loss, Pull, Scene, Task, View, all_of, fit_pose};
 use crate::lens::{AFFINE, CENTRE, Lens};
 
 pub(crate) use planar::{other_fold, planar_pose};
@@ -40,9 +40,9 @@ pub(crate) fn start(views: &[View], nominal_m: &[Vector3<f64>], size_px: [usize;
         .collect();
     tried.sort_by(|a, b| a.0.total_cmp(&b.0));
     let adjusted = tried.iter().take(KEPT).filter_map(|(_, scene)| {
-        let adjusted = flat(views, scene, &[CENTRE, CENTRE + 1, AFFINE, AFFINE + 1], None, ROUGH)?;
+        let adjusted = flat(views, scene, &[CENTRE, CENTRE + 1, AFFINE, AFFINE + 1], Vec::new(), ROUGH)?;
         let folded = best_folds(views, &adjusted.scene, ROUGH);
-        flat(views, &folded, &[CENTRE, CENTRE + 1, AFFINE, AFFINE + 1], None, ROUGH)
+        flat(views, &folded, &[CENTRE, CENTRE + 1, AFFINE, AFFINE + 1], Vec::new(), ROUGH)
     });
     adjusted.min_by(|a, b| a.cost.total_cmp(&b.cost)).map(|adjusted| adjusted.scene)
 }
@@ -52,14 +52,14 @@ pub(crate) fn flat(
     views: &[View],
     scene: &Scene,
     held: &[usize],
-    centre_sigma_px: Option<f64>,
+    pulls: Vec<Pull>,
     loss: Loss,
 ) -> Option<crate::adjust::Adjusted> {
     let mut free = all_of(&scene.lens);
     for &k in held {
         free[k] = false;
     }
-    let task = Task { views, weights: None, free, centre_sigma_px, board: None, loss, most_steps: 60 };
+    let task = Task { views, weights: None, free, pulls, board: None, loss, most_steps: 60 };
     task.adjust(scene)
 }
 

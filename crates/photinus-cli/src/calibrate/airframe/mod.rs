@@ -26,9 +26,11 @@ const EXAMPLES: &str = "\
 Examples:
   photinus calibrate airframe seen.csv --camera camera.toml --nominal quad.toml --distance 0-3=0.8 --out measured.toml
 
-The table has the columns photo,led,u_px,v_px and, if known, sigma_px: where each LED is in each photo. LEDs are counted as in
-the nominal airframe, which may be off by centimetres: from it come the axes and lobes of the LEDs, the body frame, and without
---distance the scale. Take a dozen photos or more from all around and from above, with four LEDs or more in each.";
+The table has the columns photo,led,u_px,v_px and, if known, sigma_px: where each LED is in
+each photo. LEDs are counted as in the nominal airframe, which may be off by centimetres:
+from it come the axes and lobes of the LEDs, the body frame, and without --distance the
+scale. Take a dozen photos or more from all around and from above, with four LEDs or more in
+each.";
 
 /// Standard deviation of a place that says none, px: only its ratio to others matters.
 const SIGMA_PX: f64 = 1.0;

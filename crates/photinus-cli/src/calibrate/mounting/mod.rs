@@ -21,10 +21,11 @@ const EXAMPLES: &str = "\
 Examples:
   photinus calibrate mounting seen.csv --camera camera.toml --out mounting.toml
 
-The table has the columns u_px,v_px and x,y,z: the direction in the body frame (x forward, y left, z up) in which a marker
-stood, for markers so far away that the camera's place does not matter. With x_m,y_m,z_m in their place, positions in the body
-frame, the camera's place is found as well. A column sigma_px may say how sure each row is. Spread the markers over the image;
-ten or more, of which a few may be wrong.";
+The table has the columns u_px,v_px and x,y,z: the direction in the body frame (x forward, y
+left, z up) in which a marker stood, for markers so far away that the camera's place does
+not matter. With x_m,y_m,z_m in their place, positions in the body frame, the camera's place
+is found as well. A column sigma_px may say how sure each row is. Spread the markers over
+the image; ten or more, of which a few may be wrong.";
 
 /// Standard deviation of a place that says none, px: only its ratio to others matters.
 const SIGMA_PX: f64 = 1.0;

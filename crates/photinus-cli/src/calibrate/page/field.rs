@@ -10,7 +10,7 @@ use super::Shown;
 use super::image::{arrows, over_image};
 use crate::calibrate::report::{CameraReport, RingReport};
 use crate::figure::Figure;
-use crate::figure::style::{BOUNDS, ESTIMATE, INLINE, PERPENDICULAR, WRONG, axes, line, points};
+use crate::figure::style::{BOUNDS, ESTIMATE, INLINE, PERPENDICULAR, axes, line, points};
 
 /// All figures of the field.
 pub(super) fn figures(report: &CameraReport) -> Vec<Shown> {
@@ -129,12 +129,11 @@ fn coverage(report: &CameraReport) -> Shown {
     let middle = [0.5 * STRIP, 0.5, 1.0 - 0.5 * STRIP];
     for part in &report.coverage {
         let (x, y) = (middle[part.column] * width, -middle[part.row] * height);
-        let (text, colour) = match part.more_wanted {
-            0 => (format!("{}", part.photos), "#000000"),
-            more => (format!("{}: take {more} more", part.photos), WRONG),
+        let text = match part.more_wanted {
+            0 => part.photos.to_string(),
+            more => format!("{}: take {more} more", part.photos),
         };
-        layout =
-            layout.with_annotation(TextAnnotation::new(text, x, y).with_color(colour).with_font_size(15));
+        layout = layout.with_annotation(TextAnnotation::new(text, x, y).with_font_size(15));
     }
     let wanted = report.coverage.iter().map(|part| part.more_wanted).sum::<usize>();
     Shown {

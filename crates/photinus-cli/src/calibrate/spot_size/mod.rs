@@ -30,9 +30,10 @@ Examples:
   photinus simulate scenes/receding-led.toml --out recording     where there is no recording
   photinus locate flight --threshold 200 --spot-curve spots.toml
 
-A recording is a dataset folder with truth.jsonl and one LED in sight; a table has the columns distance_m,area_px and, for
-several exposures, exposure_us (docs/file-formats.md). Let the LED face the camera, move it through all distances that
-matter, and let it sway, so that it is seen at every place within a pixel.";
+A recording is a dataset folder with truth.jsonl and one LED in sight; a table has the
+columns distance_m,area_px and, for several exposures, exposure_us (docs/file-formats.md).
+Let the LED face the camera, move it through all distances that matter, and let it sway, so
+that it is seen at every place within a pixel.";
 
 /// Calibrate how large the spot of an LED can be at a distance
 #[derive(Debug, clap::Args)]

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use photinus::spots::Brightness;
-use photinus_calibrate::spot_size::{Bin, Fit, SpotSize};
+use photinus_calibrate::spot_size::{Bin, Fit, SpotSize, UNSEEN_PX};
 use photinus_io::spot_curve::{SpotCurveFile, text};
 use serde_json::{Value, json};
 
@@ -37,8 +37,8 @@ impl fmt::Display for Told<'_> {
         fit(f, "envelope", &found.envelope)?;
         writeln!(
             f,
-            "  bound     the envelope and {:.1} %, by which areas left out of a fit lay above it, and {brighter_percent} % of \
-             scale for brighter LEDs",
+            "  bound     the envelope, {:.1} % by which areas left out of a fit lay above it, {UNSEEN_PX} px for places in a pixel not \
+             seen, and {brighter_percent} % of scale for brighter LEDs",
             100.0 * found.margin
         )?;
         writeln!(f, "  above it  {:.2} % of the spots", 100.0 * found.share_above)?;
@@ -98,8 +98,8 @@ pub(super) fn curve_file(recording: &Recording, found: &SpotSize, brighter_perce
     let [_, scale, _] = found.envelope.sigma;
     format!(
         "# photinus calibrate spot-size: {}, {:.2} m to {:.2} m.\n\
-         # Raised by {:.1} % over the areas measured (scale {:.3} +- {scale:.3} px m^2), and by {brighter_percent} % of scale for \
-         brighter LEDs.\n{}",
+         # Raised by {:.1} % and {UNSEEN_PX} px over the areas measured (scale {:.3} +- {scale:.3} px m^2), and by {brighter_percent} % of \
+         scale for brighter LEDs.\n{}",
         conditions(recording),
         found.nearest_m,
         found.farthest_seen_m,

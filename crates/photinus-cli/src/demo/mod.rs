@@ -27,9 +27,8 @@ use photinus_io::{Error, Result};
 use photinus_sim::{Rendered, Scene, Simulator};
 
 use crate::clock::Clock;
-use crate::evaluate::draw;
+use crate::evaluate::PlotFolder;
 use crate::failure::Failure;
-use crate::figure::FigureFolder;
 use crate::input::Entry;
 use crate::locate;
 use crate::output::create;
@@ -74,8 +73,8 @@ pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> std::result::Result<(
         photinus_evaluate::Settings { time_tolerance_s: 0.5 / scene.rate_hz, ..Default::default() };
     let evaluation = evaluate(&flown.truth, &flown.records, &settings)
         .map_err(|error| Failure::Running(error.to_string()))?;
-    let figures = FigureFolder::create(&args.out.join(FIGURES)).map_err(Failure::running)?;
-    draw(&figures, &evaluation, &flown.truth).map_err(Failure::running)?;
+    let figures = PlotFolder::create(&args.out.join(FIGURES)).map_err(Failure::running)?;
+    figures.draw(&evaluation, &flown.truth).map_err(Failure::running)?;
     let told = told::lines(&scene, &flown.truth, &evaluation.scores);
     page::write(&args.out, &scene, &flown.drawn, &told).map_err(Failure::running)?;
     let out = args.out.display();

@@ -17,10 +17,9 @@ use photinus_io::{Error, Place};
 use serde::Serialize;
 
 use crate::failure::Failure;
-use crate::figure::FigureFolder;
 use crate::output::{create, refuse_to_replace};
 use crate::terminal::Terminal;
-pub(crate) use plots::draw;
+pub(crate) use plots::PlotFolder;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -112,7 +111,7 @@ pub(crate) fn run(args: &Args, terminal: &Terminal) -> Result<(), Failure> {
     let truth = read_truth(args, &dataset)?;
     let (results, bad_lines) = read_records(args, &dataset, terminal)?;
     let json = args.json.as_deref().map(|path| JsonFile::open(path, args, &dataset)).transpose()?;
-    let plots = args.plots.as_deref().map(FigureFolder::create).transpose().map_err(Failure::input)?;
+    let plots = args.plots.as_deref().map(PlotFolder::create).transpose().map_err(Failure::input)?;
     let settings = args.settings(&dataset);
     let evaluation = evaluate(&truth, &results, &settings).map_err(|error| args.refuse(&error))?;
 
@@ -122,7 +121,7 @@ pub(crate) fn run(args: &Args, terminal: &Terminal) -> Result<(), Failure> {
         json.write(&Report { dataset, results, settings: &settings, scores }, terminal)?;
     }
     if let Some(plots) = plots {
-        draw(&plots, &evaluation, &truth).map_err(Failure::running)?;
+        plots.draw(&evaluation, &truth).map_err(Failure::running)?;
     }
     warn(&evaluation.scores, args, terminal);
     if is_for_people {

@@ -9,8 +9,8 @@ use photinus_calibrate::camera::STRIP;
 use super::Shown;
 use super::image::{arrows, over_image};
 use crate::calibrate::report::{CameraReport, RingReport};
-use crate::figure::Figure;
-use crate::figure::style::{BOUNDS, ESTIMATE, INLINE, PERPENDICULAR, axes, line, points};
+use crate::plots::Figure;
+use crate::plots::style::{BOUNDS, ESTIMATE, INLINE, PERPENDICULAR, axes, line, points};
 
 /// All figures of the field.
 pub(super) fn figures(report: &CameraReport) -> Vec<Shown> {

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use kuva::prelude::{Layout, Plot, QuiverPlot, TickFormat};
 
 use crate::calibrate::report::CameraReport;
-use crate::figure::style::axes;
+use crate::plots::style::axes;
 
 /// Width of a figure, of which the axes and a colour bar take some.
 const WIDTH: f64 = 760.0;

@@ -16,7 +16,7 @@ use std::path::Path;
 use photinus_io::{Error, Result};
 
 use super::report::CameraReport;
-use crate::figure::{Figure, FigureFolder};
+use crate::plots::{Figure, FigureFolder};
 
 /// A figure with what there is to see in it.
 struct Shown {

@@ -6,8 +6,8 @@ use kuva::prelude::{BarPlot, Heatmap, Histogram, Plot, QuiverPlot, TextAnnotatio
 use super::Shown;
 use super::image::{arrows, over_image, round_down};
 use crate::calibrate::report::{CameraReport, ModelReport};
-use crate::figure::Figure;
-use crate::figure::style::{BOUNDS, ESTIMATE, INLINE, TRUTH, WRONG, axes, line, plain, points};
+use crate::plots::Figure;
+use crate::plots::style::{BOUNDS, ESTIMATE, INLINE, TRUTH, WRONG, axes, line, plain, points};
 
 /// All figures of residuals.
 pub(super) fn figures(report: &CameraReport) -> Vec<Shown> {

@@ -17,8 +17,8 @@ use photinus_io::Error;
 
 use super::write;
 use crate::failure::Failure;
-use crate::figure::FigureFolder;
 use crate::output::refuse_to_replace;
+use crate::plots::FigureFolder;
 use crate::spot_options::SpotArgs;
 use crate::terminal::Terminal;
 use recordings::Recording;

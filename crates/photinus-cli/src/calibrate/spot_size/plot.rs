@@ -7,8 +7,8 @@ use photinus::ranging::Envelope;
 use photinus_calibrate::spot_size::SpotSize;
 
 use super::recordings::Recording;
-use crate::figure::Figure;
-use crate::figure::style::{BOUNDS, ESTIMATE, FAINT, WRONG, axes, line, plain, points};
+use crate::plots::Figure;
+use crate::plots::style::{BOUNDS, ESTIMATE, FAINT, WRONG, axes, line, plain, points};
 
 const STEPS: usize = 200;
 

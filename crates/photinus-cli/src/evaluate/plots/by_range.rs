@@ -4,8 +4,8 @@ use kuva::plot::scatter::MarkerShape;
 use kuva::prelude::Plot;
 use photinus_evaluate::{Bin, Evaluation, Pair, Scores};
 
-use crate::figure::Figure;
-use crate::figure::style::{
+use super::Figure;
+use crate::plots::style::{
     BOUNDS, ESTIMATE, FAINT, INLINE, PERPENDICULAR, TRUTH, WRONG, axes, band, level, line, points,
 };
 

@@ -7,8 +7,8 @@ use kuva::prelude::Plot;
 use photinus_evaluate::{Evaluation, Pair};
 use photinus_io::dataset::TruthFrame;
 
-use crate::figure::Figure;
-use crate::figure::style::{
+use super::Figure;
+use crate::plots::style::{
     BOUNDS, ESTIMATE, INLINE, PERPENDICULAR, TRUTH, axes, band, line, points, thinned,
 };
 

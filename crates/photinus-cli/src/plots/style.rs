@@ -34,13 +34,15 @@ pub(crate) fn axes(plots: &[Plot], x_label: &str, y_label: &str) -> Layout {
 
 /// What the legend says of a plot: the library leaves out bands.
 fn entry(plot: &Plot) -> Option<LegendEntry> {
-    let (label, color, shape) = match plot {
-        Plot::Scatter(points) => (&points.legend_label, &points.color, LegendShape::Marker(points.marker)),
-        Plot::Line(line) => (&line.legend_label, &line.color, LegendShape::Line),
-        Plot::Band(band) => (&band.legend_label, &band.color, LegendShape::Rect),
+    let (label, color, shape, dasharray) = match plot {
+        Plot::Scatter(points) => {
+            (&points.legend_label, &points.color, LegendShape::Marker(points.marker), None)
+        }
+        Plot::Line(line) => (&line.legend_label, &line.color, LegendShape::Line, line.line_style.dasharray()),
+        Plot::Band(band) => (&band.legend_label, &band.color, LegendShape::Rect, None),
         _ => return None,
     };
-    Some(LegendEntry { label: label.clone()?, color: color.clone(), shape, dasharray: None })
+    Some(LegendEntry { label: label.clone()?, color: color.clone(), shape, dasharray })
 }
 
 /// Every n-th, so that no more than a figure can show are left.

@@ -1,14 +1,11 @@
-//! Figures for a paper or a report: each a PNG and an SVG in one folder. `style` says how they look.
-
-pub(crate) mod style;
+//! A folder of figures that a page shows, too.
 
 use std::path::{Path, PathBuf};
 
 use kuva::prelude::{Layout, Plot};
 use photinus_io::{Error, Result};
 
-/// Pixels of a PNG for one of the SVG: sharp at the width of a column in print.
-const PNG_SCALE: f32 = 2.5;
+use super::save;
 
 /// A figure: what is drawn, and on which axes.
 pub(crate) struct Figure {
@@ -41,17 +38,7 @@ impl FigureFolder {
     /// [`Error`] when it cannot be drawn or written.
     pub(crate) fn write(&self, figure: Figure) -> Result<String> {
         let scene = kuva::render::render::render_multiple(figure.plots, figure.layout);
-        let svg = kuva::backend::svg::SvgBackend::new().render_scene(&scene);
-        self.save(&format!("{}.svg", figure.name), svg.as_bytes())?;
-        let name = format!("{}.png", figure.name);
-        let png = kuva::RasterBackend::new().with_scale(PNG_SCALE).render_scene(&scene);
-        let png = png.map_err(|reason| Error::format(self.0.join(&name), reason))?;
-        self.save(&name, &png)?;
-        Ok(svg)
-    }
-
-    fn save(&self, name: &str, bytes: &[u8]) -> Result<()> {
-        let path = self.0.join(name);
-        std::fs::write(&path, bytes).map_err(|error| Error::io(&path, error))
+        save(&self.0, &figure.name, &scene)?;
+        Ok(kuva::backend::svg::SvgBackend::new().render_scene(&scene))
     }
 }

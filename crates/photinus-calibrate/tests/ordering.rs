@@ -75,14 +75,14 @@ fn tried(seed: u64, trials: u32, missing: usize, foreign: usize) -> Count {
 
 #[test]
 fn a_whole_grid_is_always_ordered() {
-    let count = tried(1, 60, 0, 0);
-    assert!(count.wrong == 0 && count.right >= 60, "{count:?}");
+    let count = tried(1, 40, 0, 0);
+    assert!(count.wrong == 0 && count.right >= 40, "{count:?}");
 }
 
 #[test]
 fn missing_leds_and_foreign_spots_are_taken_in_or_refused() {
-    let count = tried(2, 100, 2, 3);
-    assert!(count.wrong <= 2 && count.right >= 96, "{count:?}");
+    let count = tried(2, 25, 2, 3);
+    assert!(count.wrong <= 1 && count.right >= 23, "{count:?}");
 }
 
 /// The same on more grids: `cargo test --release -p photinus-calibrate --test ordering -- --ignored

@@ -120,7 +120,7 @@ fn a_view_that_does_not_count_changes_nothing() {
     let normal = Normal::of(&task, &truth).unwrap();
     assert_eq!(normal.photos().count(), views.len() - 1);
     let steps = normal.pose_steps(0.0, &DVector::zeros(task.shared())).unwrap();
-    assert_eq!(steps[2].norm(), 0.0);
+    assert!(steps[2].norm() < 1e-300);
 }
 
 #[test]

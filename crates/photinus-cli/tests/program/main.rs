@@ -7,6 +7,7 @@
 )]
 
 mod bad_input;
+mod calibrate;
 mod commands;
 mod demo;
 mod evaluate;

@@ -4,6 +4,8 @@
 //! cargo run --release -p photinus-calibrate --example consistency -- 100
 //! ```
 
+#![allow(clippy::print_stdout, reason = "a program that reports")]
+
 #[path = "../tests/simulation/mod.rs"]
 mod simulation;
 

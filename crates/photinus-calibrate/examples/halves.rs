@@ -4,6 +4,8 @@
 //! cargo run --release -p photinus-calibrate --example halves -- photos/*.png
 //! ```
 
+#![allow(clippy::print_stdout, reason = "a program that reports")]
+
 use photinus::spots::Detector;
 use photinus_calibrate::adjust::View;
 use photinus_calibrate::camera::{BoardChoice, Choices, Summary, calibrate};

@@ -1,6 +1,8 @@
 //! An independent implementation ends where this one does: SciPy's least squares and OpenCV's fisheye on the same points.
 //! Skips where python3 has no SciPy.
 
+#![allow(clippy::print_stdout, reason = "a test that is skipped says so")]
+
 mod simulation;
 
 use std::io::Write;

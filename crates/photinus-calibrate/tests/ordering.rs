@@ -2,10 +2,10 @@
 
 mod simulation;
 
-use nalgebra::{Isometry3, Point3, UnitQuaternion, Vector2, Vector3};
+use nalgebra::{Point3, Vector2, Vector3};
 use photinus::camera::Bearing;
 use photinus_calibrate::grid::{Grid, order};
-use simulation::{Dice, SIZE_PX, lens};
+use simulation::{Dice, SIZE_PX, lens, pose};
 
 /// How labels came out.
 #[derive(Debug, Default)]
@@ -15,24 +15,11 @@ struct Count {
     refused: u32,
 }
 
-/// A pose whose board is all in the image and faces the camera by at least 20 deg.
-fn pose(dice: &mut Dice) -> Isometry3<f64> {
-    let (around, off_axis) =
-        (dice.between(0.0, std::f64::consts::TAU), dice.between(0.0, 70_f64.to_radians()));
-    let sight = Vector3::new(off_axis.sin() * around.cos(), off_axis.sin() * around.sin(), off_axis.cos());
-    let facing = UnitQuaternion::rotation_between(&Vector3::z(), &sight).unwrap_or_default();
-    let lean = dice.between(0.0, std::f64::consts::TAU);
-    let tilt = Vector3::new(lean.cos(), lean.sin(), 0.0) * dice.between(0.0, 70_f64.to_radians());
-    let roll = Vector3::z() * dice.between(-3.1, 3.1);
-    let rotation = facing * UnitQuaternion::from_scaled_axis(tilt) * UnitQuaternion::from_scaled_axis(roll);
-    Isometry3::from_parts((sight * dice.between(0.6, 1.6)).into(), rotation)
-}
-
 fn tried(seed: u64, trials: u32, missing: usize, foreign: usize) -> Count {
     let (grid, camera) = (Grid::new(7, 5, 0.05).expect("a grid"), lens());
     let (board_m, mut dice, mut count) = (grid.nominal_m(), Dice::new(seed), Count::default());
     while count.right + count.wrong + count.refused < trials {
-        let pose = pose(&mut dice);
+        let pose = pose(&mut dice, 70_f64.to_radians(), 70_f64.to_radians());
         let pixel = |place: &Vector3<f64>| {
             let pixel = camera.pixel(&Bearing::new((pose * Point3::from(*place)).coords)?)?;
             Some(Vector2::new(pixel.u, pixel.v))
@@ -75,14 +62,14 @@ fn tried(seed: u64, trials: u32, missing: usize, foreign: usize) -> Count {
 
 #[test]
 fn a_whole_grid_is_always_ordered() {
-    let count = tried(1, 60, 0, 0);
-    assert!(count.wrong == 0 && count.right >= 60, "{count:?}");
+    let count = tried(1, 40, 0, 0);
+    assert!(count.wrong == 0 && count.right >= 40, "{count:?}");
 }
 
 #[test]
 fn missing_leds_and_foreign_spots_are_taken_in_or_refused() {
-    let count = tried(2, 100, 2, 3);
-    assert!(count.wrong <= 2 && count.right >= 96, "{count:?}");
+    let count = tried(2, 25, 2, 3);
+    assert!(count.wrong <= 1 && count.right >= 23, "{count:?}");
 }
 
 /// The same on more grids: `cargo test --release -p photinus-calibrate --test ordering -- --ignored

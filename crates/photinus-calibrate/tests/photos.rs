@@ -1,5 +1,7 @@
 //! Real photos of an LED grid: what a calibration reaches on them. Skips without the data.
 
+#![allow(clippy::print_stdout, reason = "a test that is skipped says so")]
+
 use std::path::PathBuf;
 
 use nalgebra::Vector2;

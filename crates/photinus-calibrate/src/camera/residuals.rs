@@ -94,8 +94,10 @@ pub(super) fn without_outliers(
     for _ in 0..3 {
         let sigma_px = sigma_px(views, None, &scene);
         let limit_px = (OUTLIER_SIGMAS * sigma_px).max(OUTLIER_PX);
-        let far: Vec<Residual> =
-            all(views, &scene).into_iter().filter(|residual| !(residual.off_px.norm() <= limit_px)).collect();
+        let far: Vec<Residual> = all(views, &scene)
+            .into_iter()
+            .filter(|residual| residual.off_px.norm().total_cmp(&limit_px).is_gt())
+            .collect();
         if far.is_empty() {
             break;
         }

@@ -116,7 +116,7 @@ pub(super) fn choose_model(
     let chosen = tried
         .iter()
         .enumerate()
-        .filter(|(_, (candidate, _))| !(error(candidate) > CLOSE * best))
+        .filter(|(_, (candidate, _))| error(candidate) <= CLOSE * best)
         .min_by_key(|(_, (candidate, _))| (candidate.model.parameters(), candidate.model))
         .map(|(index, _)| index)
         .ok_or(CalibrateError::NoModel)?;

@@ -136,7 +136,7 @@ pub(super) fn of(calibration: &Calibration, photos: &[Photo]) -> Vec<Warning> {
     }
     let rings = calibration.field().claimed(calibration.camera());
     let sigma_mrad = rings.iter().take(4).map(|ring| 1e3 * ring.rms_rad).fold(0.0, f64::max);
-    if !(sigma_mrad < POOR_MRAD) {
+    if sigma_mrad >= POOR_MRAD {
         warnings.push(Warning::PoorBearings { sigma_mrad, sigma_px: calibration.sigma_px() });
     }
     let ratio = calibration.pitch_ratio();

@@ -127,7 +127,7 @@ fn spacing_px(observations: &[Observation], grid: &Grid) -> f64 {
     let mut steps = Vec::new();
     for seen in observations {
         let beside = |other: &&Observation| {
-            let right = other.led == seen.led + 1 && other.led % grid.columns() != 0;
+            let right = other.led == seen.led + 1 && !other.led.is_multiple_of(grid.columns());
             right || other.led == seen.led + grid.columns()
         };
         steps.extend(observations.iter().filter(beside).map(|other| (other.pixel - seen.pixel).norm()));

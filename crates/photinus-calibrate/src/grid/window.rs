@@ -28,10 +28,8 @@ pub(super) fn place(
     needed: usize,
 ) -> Result<Vec<Observation>, OrderError> {
     let mut read: Vec<Reading> = Vec::new();
-    for [(a, b), (c, d)] in bases() {
-        let changed: Lattice =
-            lattice.iter().map(|(&(i, j), &spot)| ((a * i + c * j, b * i + d * j), spot)).collect();
-        read.extend(readings(spots, &changed, grid));
+    for basis in bases() {
+        read.extend(readings(spots, &changed(lattice, basis), grid));
     }
     let covered = read.iter().map(|reading| reading.observations.len()).max().unwrap_or(0);
     if let Some((columns, rows)) = other_size(lattice, grid, covered) {
@@ -55,9 +53,16 @@ pub(super) fn place(
     }
 }
 
+/// The lattice in another basis.
+fn changed(lattice: &Lattice, [(a, b), (c, d)]: [Place; 2]) -> Lattice {
+    lattice.iter().map(|(&(i, j), &spot)| ((a * i + c * j, b * i + d * j), spot)).collect()
+}
+
 /// The size of a lattice that is full and not the grid's; `covered` is what the grid covers of it.
 fn other_size(lattice: &Lattice, grid: &Grid, covered: usize) -> Option<(usize, usize)> {
-    let (columns, rows) = extent(lattice);
+    let holds = |(columns, rows): &(usize, usize)| columns * rows >= lattice.len();
+    let sizes = bases().map(|basis| extent(&changed(lattice, basis))).filter(holds);
+    let (columns, rows) = sizes.min_by_key(|(columns, rows)| columns * rows)?;
     let is_full = 100 * lattice.len() >= 97 * columns * rows && columns >= 3 && rows >= 3;
     let is_other = (columns, rows) != (grid.columns().max(grid.rows()), grid.columns().min(grid.rows()));
     (is_full && is_other && covered < grid.leds().max(lattice.len())).then_some((columns, rows))

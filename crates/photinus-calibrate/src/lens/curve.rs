@@ -33,11 +33,11 @@ impl Curve<'_> {
         let focal = self.numbers[0];
         let (mut sum, mut slope, mut power) = (1.0, 1.0, 1.0);
         let mut by_numbers = [0.0; MOST_RADIAL];
-        for k in 1..self.model.radial() {
+        for (k, by) in by_numbers.iter_mut().enumerate().take(self.model.radial()).skip(1) {
             power *= squared;
             sum += self.numbers[k] * power;
             slope += (2 * k + 1) as f64 * self.numbers[k] * power;
-            by_numbers[k] = focal * angle * power;
+            *by = focal * angle * power;
         }
         by_numbers[0] = angle * sum;
         AtAngle { radius: focal * angle * sum, slope: focal * slope, by_numbers }
@@ -51,7 +51,7 @@ impl Curve<'_> {
             let (height, height_slope) = self.height(degree, radius);
             let step = (sin * height - cos * radius) / (sin * height_slope - cos);
             radius -= step;
-            if !(radius.abs() < 1e3) {
+            if radius.is_nan() || radius.abs() >= 1e3 {
                 return None;
             }
             if step.abs() <= 1e-13 * (1.0 + radius.abs()) {

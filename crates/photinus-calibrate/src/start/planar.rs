@@ -40,7 +40,7 @@ pub(crate) fn planar_pose(lens: &Lens, board_m: &[Vector3<f64>], view: &View) ->
         h = -h;
     }
     let scale = 0.5 * (h.column(0).norm() + h.column(1).norm());
-    if !(scale > 1e-9) {
+    if scale.is_nan() || scale <= 1e-9 {
         return None;
     }
     h /= scale;

@@ -41,10 +41,11 @@ pub(crate) fn lens() -> Camera {
 /// A pose of the board: its middle up to `off_axis_rad` off the axis, tilted by up to `tilt_rad`, turned at will.
 pub(crate) fn pose(dice: &mut Dice, off_axis_rad: f64, tilt_rad: f64) -> Isometry3<f64> {
     let (around, off_axis) = (dice.between(0.0, std::f64::consts::TAU), dice.between(0.0, off_axis_rad));
-    let sight = Vector3::new(off_axis.sin() * around.cos(), off_axis.sin() * around.sin(), off_axis.cos());
+    let ((y, x), (sin, cos)) = (libm::sincos(around), libm::sincos(off_axis));
+    let sight = Vector3::new(sin * x, sin * y, cos);
     let facing = UnitQuaternion::rotation_between(&Vector3::z(), &sight).unwrap_or_default();
     let lean = dice.between(0.0, std::f64::consts::TAU);
-    let tilt = Vector3::new(lean.cos(), lean.sin(), 0.0) * dice.between(0.0, tilt_rad);
+    let tilt = Vector3::new(libm::cos(lean), libm::sin(lean), 0.0) * dice.between(0.0, tilt_rad);
     let roll = Vector3::z() * dice.between(-3.1, 3.1);
     let rotation = facing * UnitQuaternion::from_scaled_axis(tilt) * UnitQuaternion::from_scaled_axis(roll);
     Isometry3::from_parts((sight * dice.between(0.45, 1.5)).into(), rotation)

@@ -111,7 +111,7 @@ pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> Result<(), Failure> {
         },
     };
     let calibration = calibrate(&searched.views, &searched.grid, searched.size_px, &choices, |stage| {
-        terminal.summary(format_args!("{stage} ..."))
+        terminal.summary(format_args!("{stage} ..."));
     })
     .map_err(|error| Failure::Input(error.to_string()))?;
     let repeats = repeat(&calibration, args, terminal);

@@ -1,6 +1,6 @@
 //! Photos of the board, or a table of corners -> their spots, read and searched side by side.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use nalgebra::Vector2;
@@ -83,7 +83,7 @@ impl PhotoArgs {
         Ok(Searched { grid, size_px, photos, views, refused })
     }
 
-    fn table(&self, path: &PathBuf) -> Result<Vec<Photo>, Failure> {
+    fn table(&self, path: &Path) -> Result<Vec<Photo>, Failure> {
         let Some(size_px) = self.size else {
             let reason = "a table of corners does not say how large the photos are; give --size, such as --size 752x480";
             return Err(Failure::Input(format!("{}: {reason}", path.display())));

@@ -7,6 +7,7 @@
 )]
 
 mod bad_input;
+mod calibrate;
 mod calibrate_airframe;
 mod calibrate_mounting;
 mod calibrate_report;

@@ -236,7 +236,7 @@ impl Locator {
             matcher: Matcher::new(airframe, settings.max_tilt_rad),
             poser: Poser::new(airframe, settings.pose, faintest_light(&settings.spots))?,
             groups: Groups::default(),
-            group: Vec::new(),
+            group: Vec::with_capacity(airframe.markers().len()),
             located: Located::default(),
         })
     }

@@ -48,11 +48,11 @@ impl Poser {
         Ok(Self {
             airframe: airframe.clone(),
             estimator: Estimator::new(airframe, settings)?,
-            hypotheses: Hypotheses::default(),
-            observations: Vec::new(),
+            hypotheses: Hypotheses::with_room(airframe.markers().len()),
+            observations: Vec::with_capacity(airframe.markers().len()),
             pairs: Pairs::new(airframe),
             faintest_light,
-            without: Vec::new(),
+            without: Vec::with_capacity(airframe.markers().len()),
         })
     }
 

@@ -24,6 +24,9 @@ const LITTLE_NATS: f64 = 5.0;
 /// Most slices on one side.
 const MOST_SLICES: usize = 36;
 
+/// Most components of one mode.
+pub(super) const MOST_COMPONENTS: usize = 2 * MOST_SLICES + 1;
+
 /// Adds the components that stand for the posterior around a mode.
 pub(super) fn spread(
     problem: &Problem<'_>,

@@ -71,16 +71,21 @@ impl Estimator {
     /// [`SettingsError`] when a setting has no meaning.
     pub fn new(airframe: &Airframe, settings: Settings) -> Result<Self, SettingsError> {
         settings.check()?;
+        let (spots, hypotheses) = (airframe.markers().len(), Hypotheses::MOST);
         Ok(Self {
             airframe: airframe.clone(),
             settings,
             symmetry: Symmetry::of(airframe),
-            whitened: Vec::new(),
-            assignment: Assignment::default(),
-            modes: Vec::new(),
-            nats: Vec::new(),
-            components: Vec::new(),
-            posterior: Posterior::default(),
+            whitened: Vec::with_capacity(spots),
+            assignment: Assignment::with_room(spots),
+            modes: Vec::with_capacity(hypotheses),
+            nats: Vec::with_capacity(hypotheses),
+            components: Vec::with_capacity(hypotheses * along_yaw::MOST_COMPONENTS),
+            posterior: Posterior {
+                modes: Vec::with_capacity(hypotheses * along_yaw::MOST_COMPONENTS),
+                markers: Vec::with_capacity(spots),
+                ..Posterior::default()
+            },
         })
     }
 

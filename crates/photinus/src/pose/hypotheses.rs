@@ -2,9 +2,6 @@
 
 use super::problem::Pose;
 
-/// Most hypotheses about one neighbour: the time of a neighbour is bounded.
-const MOST: usize = 16;
-
 /// The branch of starts whose assignment is not settled.
 const LOOSE: u8 = u8::MAX;
 
@@ -27,6 +24,15 @@ pub(super) struct Start {
 }
 
 impl Hypotheses {
+    /// Most hypotheses about one neighbour: the time of a neighbour is bounded.
+    pub const MOST: usize = 16;
+
+    /// None yet, with room for so many spots.
+    pub fn with_room(spots: usize) -> Self {
+        let (starts, markers) = (Vec::with_capacity(Self::MOST), Vec::with_capacity(Self::MOST * spots));
+        Self { spots: 0, starts, markers }
+    }
+
     /// Forgets all hypotheses; the next are about so many spots.
     pub fn begin(&mut self, spots: usize) {
         self.spots = spots;
@@ -56,7 +62,7 @@ impl Hypotheses {
     /// The one that gives way to a cheaper one; `None` while there is room for more.
     fn dearest(&self) -> Option<usize> {
         let dearer = |&a: &usize, &b: &usize| self.starts[a].nats.total_cmp(&self.starts[b].nats);
-        (self.starts.len() >= MOST).then(|| (0..MOST).max_by(dearer))?
+        (self.starts.len() >= Self::MOST).then(|| (0..Self::MOST).max_by(dearer))?
     }
 
     /// Offers a pose without an assignment: each spot becomes the marker that is nearest in the end.

@@ -52,6 +52,9 @@ impl Patch {
         self.stride = self.rows.next_multiple_of(LANES);
         self.signal.clear();
         self.signal.resize(self.rows * self.stride, 0.0);
+        if self.turned.capacity() < 2 * self.signal.len() {
+            self.turned.reserve(2 * self.signal.len() - self.turned.len());
+        }
         let first = self.left.max(0);
         let end = (self.left + self.rows as i32).min(frame.width() as i32);
         for (signal, v) in self.signal.chunks_exact_mut(self.stride).zip(self.top..) {

@@ -112,8 +112,11 @@ pub struct Sighting {
     pub spot: Spot,
     /// Its direction in the camera frame.
     pub bearing: Bearing,
-    /// Covariance of the direction, rad^2, tangent to the sphere (rank 2).
+    /// Covariance of the direction, rad^2, tangent to the sphere (rank 2): from the spot and, where the camera's file says
+    /// how sure it is, from the calibration.
     pub covariance_rad2: Matrix3<f64>,
+    /// The part of it that comes from the spot, and differs from spot to spot.
+    pub spot_covariance_rad2: Matrix3<f64>,
     /// How far the direction turns per pixel there, where it turns most, rad/px.
     pub rad_per_px: f64,
     /// The marker's true direction is no further from the bearing, rad: its light falls within the box of pixels that its

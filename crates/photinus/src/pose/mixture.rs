@@ -1,6 +1,6 @@
 //! Normal distributions with weights -> what is told: modes, mean and covariance, distance, all within the strict bounds.
 
-use nalgebra::{Matrix3, Rotation3, Vector3};
+use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
 
 use super::problem::Pose;
 use crate::ranging::{Estimate, Interval};
@@ -195,11 +195,16 @@ fn moments(components: &[Component], reference: &Rotation3<f64>, turns: usize) -
 fn nearest_turn(from: &Rotation3<f64>, to: &Rotation3<f64>, turns: usize) -> Vector3<f64> {
     let between = from.inverse() * to;
     if turns == 1 {
-        return between.scaled_axis();
+        return turn_of(&between);
     }
     let sector_rad = core::f64::consts::TAU / turns as f64;
     let matrix = between.matrix();
     let yaw_rad = libm::atan2(matrix.m21 - matrix.m12, matrix.m11 + matrix.m22);
     let back_rad = -(yaw_rad / sector_rad).round() * sector_rad;
-    (between * Rotation3::from_axis_angle(&Vector3::z_axis(), back_rad)).scaled_axis()
+    turn_of(&(between * Rotation3::from_axis_angle(&Vector3::z_axis(), back_rad)))
+}
+
+/// Axis times angle; by the quaternion, since the arc cosine of a matrix's trace is no number where rounding takes it past 1.
+fn turn_of(rotation: &Rotation3<f64>) -> Vector3<f64> {
+    UnitQuaternion::from_rotation_matrix(rotation).scaled_axis()
 }

@@ -18,6 +18,8 @@ use super::matching::{Matcher, NEIGHBOUR_NATS};
 use partition::{MOST_PARTITIONED, Partition};
 use tree::Tree;
 
+/// Groups of so many spots tell their distance and so the light of their LEDs.
+const CLEAR_SPOTS: usize = 3;
 /// Most rounds of partitioning in one frame: the time of a frame is bounded.
 const MOST_ROUNDS: usize = 12;
 /// Larger groups are not taken apart spot by spot.
@@ -34,6 +36,8 @@ pub(super) struct Groups {
     partition: Partition,
     circles: Vec<Circle>,
     near: Vec<usize>,
+    /// Logarithms of the light of clear neighbours.
+    powers: Vec<f64>,
 }
 
 /// Groups of spots, one after the other.
@@ -92,8 +96,13 @@ impl Groups {
             return;
         }
         self.tree.grow(sightings);
-        self.tree.cost(|group| matcher.nats(sightings, group, gravity));
-        self.tree.cut(|group, nats| self.list.push(group.iter().copied(), nats));
+        matcher.set_log_power(None);
+        self.cut_tree(sightings, gravity, matcher);
+        let log_power = self.log_power(sightings, gravity, matcher);
+        if log_power.is_some() && (0..self.list.len()).any(|group| self.is_doubtful(group)) {
+            matcher.set_log_power(log_power);
+            self.cut_tree(sightings, gravity, matcher);
+        }
         self.part_overlapping(sightings, gravity, matcher);
         self.put_in_order();
     }
@@ -101,6 +110,38 @@ impl Groups {
     /// The groups, each ascending, in the order of their first member.
     pub(super) fn iter(&self) -> impl Iterator<Item = &[usize]> {
         (0..self.list.len()).map(|group| self.list.group(group))
+    }
+
+    fn cut_tree(
+        &mut self,
+        sightings: &[Sighting],
+        gravity: Option<&Unit<Vector3<f64>>>,
+        matcher: &mut Matcher,
+    ) {
+        self.list.clear();
+        self.tree.cost(|group| matcher.nats(sightings, group, gravity));
+        self.tree.cut(|group, nats| self.list.push(group.iter().copied(), nats));
+    }
+
+    /// What the clear neighbours of the frame tell of its LEDs' light: the median of their logarithms.
+    fn log_power(
+        &mut self,
+        sightings: &[Sighting],
+        gravity: Option<&Unit<Vector3<f64>>>,
+        matcher: &mut Matcher,
+    ) -> Option<f64> {
+        self.powers.clear();
+        for group in 0..self.list.len() {
+            if self.list.group(group).len() >= CLEAR_SPOTS && !self.is_doubtful(group) {
+                self.powers.extend(matcher.log_power(sightings, self.list.group(group), gravity));
+            }
+        }
+        self.powers.sort_unstable_by(f64::total_cmp);
+        self.powers.get(self.powers.len() / 2).copied()
+    }
+
+    fn is_doubtful(&self, group: usize) -> bool {
+        self.list.group(group).len() == 1 || self.list.nats[group] > DOUBTFUL_NATS
     }
 
     /// Takes groups that overlap in the image apart and puts them together anew, at the least cost.
@@ -140,7 +181,7 @@ impl Groups {
             let middle = members.iter().map(direction).sum::<Vector3<f64>>().normalize();
             let off = |spot: &usize| (direction(spot) - middle).norm();
             let radius_rad = members.iter().map(off).fold(0.0, f64::max);
-            let doubtful = members.len() == 1 || self.list.nats[group] > DOUBTFUL_NATS;
+            let doubtful = self.is_doubtful(group);
             let widest = |&spot: &usize| matcher.widest_rad(&sightings[spot]);
             let reach_rad =
                 if doubtful { members.iter().map(widest).fold(f64::INFINITY, f64::min) } else { 0.0 };

@@ -27,6 +27,12 @@ pub(super) const NEIGHBOUR_NATS: f64 = 8.0;
 /// A view that costs so much more than the best one, nats, is no first guess of a pose. Views are a coarse grid, and what
 /// they cost as coarse.
 const POOR_NATS: f32 = 9.0;
+/// Spread of the logarithm of light between neighbours: lobes, units, the lens towards its edge.
+const LOG_POWER_SIGMA: f64 = 0.5;
+/// So much of the logarithm of light saturation may hide.
+const CUT_OFF_LOG: f64 = 1.0;
+/// Light alone does not rule a neighbour out.
+const MOST_POWER_NATS: f64 = 10.0;
 /// What cannot be, nats.
 pub(super) const IMPOSSIBLE: f64 = 1e9;
 
@@ -37,6 +43,8 @@ pub(super) struct Matcher {
     bounds: DistanceBounds,
     symmetry: Symmetry,
     tilt_sigma_rad: f64,
+    /// Logarithm of the light of this frame's LEDs at 1 m, where some neighbours tell it.
+    log_power: Option<f64>,
     bearings: Vec<BoundedBearing>,
     places: Vec<Vector2<f64>>,
     costs: Vec<Lanes>,
@@ -52,6 +60,7 @@ impl Matcher {
             bounds: DistanceBounds::new(airframe, max_tilt_rad),
             // The tilt limit is taken for two sigma; the grid of views adds half a step.
             tilt_sigma_rad: libm::hypot(max_tilt_rad / 2.0, grid_rad),
+            log_power: None,
             bearings: Vec::new(),
             places: Vec::new(),
             costs: Vec::new(),
@@ -107,6 +116,36 @@ impl Matcher {
         LogDistance { mean: 0.5 * (near + far), sigma: (far - near) / 12f64.sqrt() }
     }
 
+    /// Sets what is known of the light of this frame's LEDs.
+    pub(super) fn set_log_power(&mut self, log_power: Option<f64>) {
+        self.log_power = log_power;
+    }
+
+    /// The light that a group's LEDs would have at 1 m if it is the neighbour it looks like, as a logarithm.
+    pub(super) fn log_power(
+        &mut self,
+        sightings: &[Sighting],
+        group: &[usize],
+        gravity: Option<&Unit<Vector3<f64>>>,
+    ) -> Option<f64> {
+        let image = Image::of(sightings, group, gravity, &mut self.places)?;
+        let arrangements = self.views.arrangements(group.len())?;
+        let seen = Ordered::of(&image, sightings, group);
+        let best = seen.costs(&arrangements.quads, &image, self.tilt_sigma_rad, &mut self.costs);
+        let distance_m = seen.place(&arrangements.all[best.arrangement], &image).0.norm();
+        mean_log_light(sightings, group).map(|light| light + 2.0 * libm::log(distance_m))
+    }
+
+    /// What it costs that spots of this light are at a distance, nats.
+    fn power_nats(&self, sightings: &[Sighting], group: &[usize], distance_m: f64) -> f64 {
+        let Some((power, light)) = self.log_power.zip(mean_log_light(sightings, group)) else { return 0.0 };
+        let off = light + 2.0 * libm::log(distance_m) - power;
+        let saturated = group.iter().any(|&spot| sightings[spot].spot.saturated_px > 0);
+        // Light that is cut off makes a spot look fainter than it is, up to a point.
+        let off = if saturated && off < 0.0 { (off + CUT_OFF_LOG).min(0.0) } else { off };
+        (0.5 * (off / LOG_POWER_SIGMA) * (off / LOG_POWER_SIGMA)).min(MOST_POWER_NATS)
+    }
+
     /// What the claim costs that these spots, at least one, are one neighbour, nats.
     pub(super) fn nats(
         &mut self,
@@ -135,7 +174,10 @@ impl Matcher {
             .fold(Lanes::ZERO, |sum, &four| sum + lanes::exp(Lanes::splat(best.nats) - four));
         let distance_m = seen.place(&arrangements.all[best.arrangement], &image).0.norm();
         let views = f64::from(best.nats) - libm::log(f64::from(lanes::sum(weight)));
-        NEIGHBOUR_NATS + views + size_nats(sightings, group, distance_m)
+        NEIGHBOUR_NATS
+            + views
+            + size_nats(sightings, group, distance_m)
+            + self.power_nats(sightings, group, distance_m)
     }
 
     /// Which markers the spots of a group of at least two may be.
@@ -190,6 +232,13 @@ fn outlined_nats(views: &Views, image: &Image<'_>, tilt_sigma_rad: f64) -> Optio
     let best = fits().min_by(|a, b| a.nats.total_cmp(&b.nats))?;
     let weight: f64 = fits().map(|fit| libm::exp(best.nats - fit.nats)).sum();
     Some((best.nats - libm::log(weight), best.place_m.norm()))
+}
+
+/// Mean logarithm of the light of spots; `None` where one has none.
+fn mean_log_light(sightings: &[Sighting], group: &[usize]) -> Option<f64> {
+    let light = |&spot: &usize| sightings[spot].spot.flux;
+    let all = group.iter().all(|spot| light(spot) > 0.0);
+    all.then(|| group.iter().map(|spot| libm::log(light(spot))).sum::<f64>() / group.len() as f64)
 }
 
 fn widened(range: &Interval, reach_m: f64) -> Option<Interval> {

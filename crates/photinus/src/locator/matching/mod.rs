@@ -28,9 +28,9 @@ pub(super) const NEIGHBOUR_NATS: f64 = 8.0;
 /// they cost as coarse.
 const POOR_NATS: f32 = 9.0;
 /// Spread of the logarithm of light between neighbours: lobes, units, the lens towards its edge.
-const LOG_POWER_SIGMA: f64 = 0.5;
+const LOG_POWER_SIGMA: f64 = 0.35;
 /// So much of the logarithm of light saturation may hide.
-const CUT_OFF_LOG: f64 = 1.0;
+const CUT_OFF_LOG: f64 = 0.7;
 /// Light alone does not rule a neighbour out.
 const MOST_POWER_NATS: f64 = 10.0;
 /// What cannot be, nats.

@@ -1,6 +1,6 @@
 //! Normal distributions with weights -> what is told: modes, mean and covariance, distance, all within the strict bounds.
 
-use nalgebra::{Matrix3, Rotation3, Vector3};
+use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
 
 use super::problem::Pose;
 use crate::ranging::{Estimate, Interval};
@@ -192,11 +192,35 @@ fn moments(components: &[Component], reference: &Rotation3<f64>, turns: usize) -
 fn nearest_turn(from: &Rotation3<f64>, to: &Rotation3<f64>, turns: usize) -> Vector3<f64> {
     let between = from.inverse() * to;
     if turns == 1 {
-        return between.scaled_axis();
+        return rotation_vector(&between);
     }
     let sector_rad = core::f64::consts::TAU / turns as f64;
     let matrix = between.matrix();
     let yaw_rad = libm::atan2(matrix.m21 - matrix.m12, matrix.m11 + matrix.m22);
     let back_rad = -(yaw_rad / sector_rad).round() * sector_rad;
-    (between * Rotation3::from_axis_angle(&Vector3::z_axis(), back_rad)).scaled_axis()
+    rotation_vector(&(between * Rotation3::from_axis_angle(&Vector3::z_axis(), back_rad)))
+}
+
+/// The axis of a rotation times its angle, rad. Through the quaternion: the trace of a matrix, off by its rounding, gives no
+/// angle near half a turn or none.
+fn rotation_vector(rotation: &Rotation3<f64>) -> Vector3<f64> {
+    UnitQuaternion::from_rotation_matrix(rotation).scaled_axis()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn attitudes_half_a_turn_apart_have_a_rotation_between_them() {
+        for tilt in [0.0, 1e-12, 1e-9, 0.01, 0.3] {
+            let from = Rotation3::new(Vector3::new(0.3, -0.9, 1.0 + tilt));
+            for yaw_rad in [0.0, 1e-9, core::f64::consts::PI, core::f64::consts::PI - 1e-9] {
+                let to = from * Rotation3::from_axis_angle(&Vector3::z_axis(), yaw_rad);
+                let off = nearest_turn(&from, &to, 1);
+                assert!((off.norm() - yaw_rad).abs() < 1e-7, "{yaw_rad}: {off}");
+                assert!(nearest_turn(&from, &to, 2).norm() < 1e-7 + yaw_rad.min(core::f64::consts::PI - yaw_rad));
+            }
+        }
+    }
 }

@@ -64,6 +64,18 @@ pub(super) fn without_yaw(normal: &Normal) -> (Matrix5<f64>, Vector5<f64>) {
     (all.fixed_view::<5, 5>(0, 0).into_owned(), all.fixed_view::<5, 1>(0, 5).into_owned())
 }
 
+/// The poses a sigma of yaw to either side of a mode, all else following as far as it is coupled with yaw.
+pub(super) fn beside(mode: &Refined) -> Option<[Pose; 2]> {
+    let (information, coupling) = without_yaw(&mode.normal);
+    let follows = information.cholesky()?.solve(&-coupling);
+    let yaw_information = mode.normal.information[(5, 5)] + coupling.dot(&follows);
+    let sigma_rad = (1.0 / yaw_information.max(1e-6).sqrt()).min(LONGEST);
+    Some(
+        [sigma_rad, -sigma_rad]
+            .map(|yaw_rad| mode.pose.stepped(&shortened((follows * yaw_rad).push(yaw_rad)))),
+    )
+}
+
 /// The pose that costs least beside `here` with the yaw turned by `yaw_rad`.
 pub(super) fn turned(problem: &Problem<'_>, here: &Refined, yaw_rad: f64) -> Option<Refined> {
     let (information, coupling) = without_yaw(&here.normal);

@@ -174,7 +174,9 @@ impl Matcher {
                 let named = markers.map(|marker| Some(symmetry.turned(canonical, marker)));
                 // With gravity the tilt tells above from below; without it both are ways to look.
                 let branch = u8::from(gravity.is_none() && arrangement.elevation_rad < 0.0);
-                hypotheses.offer(&named[..group.len()], f64::from(nats), branch, || {
+                let signals = group.iter().map(|&member| sightings[member].signal);
+                let nats = f64::from(nats) + symmetry.least_signal_nats(signals, &named[..group.len()]);
+                hypotheses.offer(&named[..group.len()], nats, branch, || {
                     let (place_m, turn) = seen.place(arrangement, &image);
                     let pose = image.pose(&place_m, turn, arrangement.yaw_rad, arrangement.elevation_rad);
                     let camera_from_body = symmetry.attitude(&pose.camera_from_body, canonical);

@@ -113,9 +113,13 @@ impl Estimator {
         self.components.clear();
         for index in 0..self.modes.len() {
             let mode = self.modes[index];
-            let twin = |other: &Refined| is_same(other, &mode);
-            let same = |other: usize| hypotheses.markers(other) == hypotheses.markers(index);
-            if self.nats[index] > limit || (0..index).any(|other| same(other) && twin(&self.modes[other])) {
+            // Of searches that ended in one mode the best stands for it: the others may have stopped short.
+            let is_better_twin = |other: usize| {
+                (self.nats[other], other) < (self.nats[index], index)
+                    && hypotheses.markers(other) == hypotheses.markers(index)
+                    && is_same(&self.modes[other], &mode)
+            };
+            if self.nats[index] > limit || (0..self.modes.len()).any(is_better_twin) {
                 continue;
             }
             let problem = problem(&self.airframe, &self.settings, observations, &self.whitened, known)

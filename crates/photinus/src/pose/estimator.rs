@@ -8,7 +8,7 @@ use super::hypotheses::Hypotheses;
 use super::mixture::{self, Component, Mode, Summary};
 use super::observation::{Observation, Whitened};
 use super::problem::{LogDistance, Pose, Problem};
-use super::refine::{Refined, beside, refine};
+use super::refine::{Refined, following, refine, yaw_sigma_rad};
 use super::settings::{Settings, SettingsError};
 use super::symmetry::Symmetry;
 use crate::airframe::Airframe;
@@ -158,8 +158,10 @@ impl Estimator {
             if unseen > HOPELESS_NATS {
                 // Light pulls little on a marker that hardly shows: the mode may sit where it no longer does, a sigma beside
                 // where it must.
-                for beside in beside(&mode).into_iter().flatten() {
-                    unseen = unseen.min(0.5 + problem.visibility_nats(&beside));
+                let sigma_rad = yaw_sigma_rad(&mode).unwrap_or(0.0);
+                for beside in [sigma_rad, -sigma_rad].map(|yaw_rad| following(&mode, yaw_rad)) {
+                    let nats = beside.map_or(f64::INFINITY, |pose| 0.5 + problem.visibility_nats(&pose));
+                    unseen = unseen.min(nats);
                 }
             }
             let signals = observations.iter().map(|seen| seen.signal);

@@ -1,1 +1,34 @@
 //! Photos and recordings in; cameras, spot-size curves, mountings and LED layouts out, each with its uncertainty.
+//!
+//! A camera, in the order of the flow:
+//!
+//! ```text
+//! photo -> grid -> start -> adjust -> labels -> solve -> camera: which model, how sure, what to warn of, export
+//! ```
+//!
+//! What else Photinus must know beforehand:
+//!
+//! ```text
+//! spot_size        areas of one LED over distance -> how large a spot can be
+//! mounting         places in the image of what is known in the body frame -> how the camera sits
+//! airframe_layout  photos taken around an airframe -> where its LEDs sit
+//! ```
+//!
+//! What these share: `sighted` (something seen, and what an error of it is in pixels), `resection` (a camera's pose from what is
+//! known), `robust` (what deviates too far), `scatter` (sigma by resampling).
+
+pub mod adjust;
+pub mod airframe_layout;
+pub mod camera;
+pub mod grid;
+pub mod labels;
+pub mod lens;
+pub mod mounting;
+pub mod photo;
+mod resection;
+mod robust;
+mod scatter;
+pub mod sighted;
+pub mod solve;
+pub mod spot_size;
+mod start;

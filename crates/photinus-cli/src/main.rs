@@ -5,12 +5,14 @@
 //! info, convert: what a file holds, and the same in another format
 //! simulate: a scene -> frames with truth
 //! evaluate: results against the truth of a dataset
+//! calibrate: photos of a grid -> a camera whose errors are known
 //! demo: all of it on a flight that the program carries along
 //! reproduce: the experiments of the founding paper, each number beside the paper's
 //! ```
 
 mod aligned;
 mod beforehand;
+mod calibrate;
 mod clock;
 mod convert;
 mod demo;
@@ -71,6 +73,7 @@ enum Command {
     Evaluate(evaluate::Args),
     Demo(demo::Args),
     Reproduce(reproduce::Args),
+    Calibrate(calibrate::Args),
 }
 
 fn main() -> ExitCode {
@@ -81,6 +84,7 @@ fn main() -> ExitCode {
         Command::Simulate(args) => args.quiet(),
         Command::Evaluate(args) => args.quiet(),
         Command::Reproduce(args) => args.quiet(),
+        Command::Calibrate(args) => args.quiet(),
         Command::Info(_) | Command::Convert(_) | Command::Demo(_) => false,
     };
     let mut terminal = Terminal::new(quiet);
@@ -93,6 +97,7 @@ fn main() -> ExitCode {
         Command::Evaluate(args) => evaluate::run(&args, &terminal),
         Command::Demo(args) => demo::run(&args, &mut terminal),
         Command::Reproduce(args) => reproduce::run(&args, &mut terminal),
+        Command::Calibrate(args) => calibrate::run(&args, &mut terminal),
     };
     let Err(failure) = done else { return ExitCode::SUCCESS };
     if let Some(message) = failure.message() {

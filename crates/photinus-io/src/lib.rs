@@ -6,11 +6,14 @@
 //! ```text
 //! image, video, dataset -> frames -> (photinus) -> results
 //! camera, airframe, mask, blink, spot_curve: what the method is told beforehand
+//! calibration: tables that calibrations are made from
 //! ```
 
 pub mod airframe;
 pub mod blink;
+pub mod calibration;
 pub mod camera;
+pub mod corners;
 pub mod dataset;
 mod error;
 pub mod frames;

@@ -7,6 +7,9 @@ use std::io::Cursor;
 use photinus::ranging::{Envelope, SpotCurve};
 use photinus_io::airframe::{layout_text, parse_airframe, toml_text};
 use photinus_io::blink::BlinkCodes;
+use photinus_io::calibration::{
+    mounting_text, parse_known_sightings, parse_led_sightings, parse_mounting, parse_spot_sizes,
+};
 use photinus_io::dataset::{DatasetInfo, parse_frames_csv, parse_truth};
 use photinus_io::image::decode_image;
 use photinus_io::results::ResultsReader;
@@ -31,6 +34,11 @@ const BLINK: &str = "# words\n0,1,1,0\n1,1,0,1\n";
 const SPOT_CURVE: &str = "exposure_us = 1000.0\nthreshold = 200\nlimit_m = 20.0\n\
     upper = { offset_px = 1.3398, scale_px_m2 = 31.4704, shift_m = -0.0154 }\n\
     lower = { offset_px = 0.9, scale_px_m2 = 12.0, shift_m = 0.0 }\n";
+const SPOT_SIZES: &str = "distance_m,area_px,exposure_us\n1.5,12,1000\n# far\n9.0,0,\n";
+const KNOWN: &str = "u_px,v_px,x,y,z,x_m,y_m,z_m,sigma_px\n1,2,0,0,1,,,,\n3,4,,,,0.5,-1,2,0.3\n";
+const LEDS: &str = "photo,led,u_px,v_px\na.png,0,1.5,2\nb.png,0,3,4\na.png,1,5,6\n";
+const MOUNTING: &str = "body_from_camera_xyzw = [0.0, 0.6, 0.0, 0.8]\nrotation_covariance_rad2 = [[1e-6, 0.0, 0.0], \
+    [0.0, 1e-6, 0.0], [0.0, 0.0, 1e-6]]\nposition_m = [0.1, 0.0, -0.2]\n";
 const RESULTS: &str = "{\"frame\":3,\"time_s\":null,\"source\":\"a\",\"spots\":[{\"u_px\":1.5,\"v_px\":2,\
     \"sigma_px\":[0.2,0.3],\"range_m\":[1,null]}],\"rejected\":[{\"u_px\":1,\"v_px\":1,\"area_px\":9,\
     \"reason\":\"sun\"}],\"neighbours\":[]}\n";
@@ -55,6 +63,12 @@ fn parse_all(bytes: &[u8]) {
     if let Ok(file) = parse_spot_curve(&text, "t") {
         assert_eq!(parse_spot_curve(&spot_curve::text(&file), "t").expect("what was written is read"), file);
     }
+    let _ = parse_spot_sizes(&text, "t");
+    let _ = parse_known_sightings(&text, "t");
+    let _ = parse_led_sightings(&text, "t");
+    if let Ok(file) = parse_mounting(&text, "t") {
+        assert_eq!(parse_mounting(&mounting_text(&file), "t").expect("what was written is read"), file);
+    }
     ResultsReader::new(bytes, "t").for_each(drop);
 }
 
@@ -75,7 +89,8 @@ fn y4m((width, height): (usize, usize), pixels: &[u8], frames: usize) -> Vec<u8>
 fn valid_files() -> Vec<Vec<u8>> {
     use image::ImageFormat::{Bmp, Png, Pnm, Tiff};
     let texts = [DATASET, FRAMES, TRUTH, AIRFRAME, RING, LAYOUT, BLINK, SPOT_CURVE, RESULTS];
-    let texts = texts.into_iter().map(|text| text.as_bytes().to_vec());
+    let calibrations = [SPOT_SIZES, KNOWN, LEDS, MOUNTING];
+    let texts = texts.into_iter().chain(calibrations).map(|text| text.as_bytes().to_vec());
     let images = [Png, Bmp, Tiff, Pnm].into_iter().map(encoded);
     texts.chain(images).chain([y4m((8, 6), &[7; 48], 3)]).collect()
 }
@@ -191,6 +206,10 @@ fn the_files_to_damage_are_valid() {
     }
     BlinkCodes::parse(BLINK, "t").unwrap();
     parse_spot_curve(SPOT_CURVE, "t").unwrap();
+    parse_spot_sizes(SPOT_SIZES, "t").unwrap();
+    parse_known_sightings(KNOWN, "t").unwrap();
+    parse_led_sightings(LEDS, "t").unwrap();
+    parse_mounting(MOUNTING, "t").unwrap();
     assert!(ResultsReader::new(RESULTS.as_bytes(), "t").all(|record| record.is_ok()));
     for format in [image::ImageFormat::Png, image::ImageFormat::Bmp, image::ImageFormat::Tiff] {
         decode_image(&encoded(format), "t").unwrap();

@@ -137,7 +137,7 @@ fn closed_form_poses_allocate_nothing() {
 #[test]
 fn a_warm_locator_allocates_nothing() {
     let mut rng = Pcg64::new(32, 7);
-    let warm_up: Vec<Vec<u8>> = (0..12).map(|_| frame(300, &mut rng)).collect();
+    let warm_up: Vec<Vec<u8>> = (0..6).map(|_| frame(300, &mut rng)).collect();
     let frames: Vec<Vec<u8>> = (0..30).map(|i| frame(4 * i, &mut rng)).collect();
     let lens = Ideal::new(IdealLaw::Equidistant, [130.0; 2], Pixel::new(187.5, 119.5)).unwrap();
     let camera = Camera::new(Model::Ideal(lens), WIDTH, HEIGHT, None).unwrap();

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use photinus_io::airframe::{layout_text, toml_text};
-use photinus_io::camera::{write_camera_toml, write_ocam_text};
+use photinus_io::camera::{write_calibrated_camera_toml, write_ocam_text};
 use photinus_io::results::{CsvWriter, read_results};
 
 use super::write;
@@ -26,6 +26,9 @@ pub(super) fn camera_to_ocam(path: &Path, out: &Path, terminal: &Terminal) -> Re
         inverse.degree,
         inverse.max_px
     );
+    if file.camera.parameter_covariance().is_some() {
+        terminal.note(format_args!("{}: the covariance of the calibration is not kept", out.display()));
+    }
     if inverse.max_px > POOR_INVERSE_PX {
         terminal.warning(format_args!("{told}; use the direct one where you can"));
     } else {
@@ -37,7 +40,8 @@ pub(super) fn camera_to_ocam(path: &Path, out: &Path, terminal: &Terminal) -> Re
 pub(super) fn camera_to_toml(path: &Path, out: &Path, terminal: &Terminal) -> Result<(), Failure> {
     let file = beforehand::camera(path, terminal).map_err(Failure::input)?;
     let mut text = Vec::new();
-    write_camera_toml(&file.camera, &mut text, out).map_err(Failure::running)?;
+    write_calibrated_camera_toml(&file.camera, file.calibration.as_ref(), &mut text, out)
+        .map_err(Failure::running)?;
     write(out, &text)?;
     if file.inverse.is_some() {
         terminal.note(format_args!(

@@ -11,7 +11,7 @@ use super::Report;
 const ROUND_TRIP_PX: f64 = 1e-6;
 
 pub(super) fn report(path: &Path) -> Result<Report> {
-    let CameraFile { camera, format, oddities, inverse } = read_camera(path)?;
+    let CameraFile { camera, format, oddities, inverse, calibration } = read_camera(path)?;
     let mut report = Report::new("a camera");
     let centre = camera.model().centre();
     report.fact("format", format_name(format));
@@ -21,6 +21,18 @@ pub(super) fn report(path: &Path) -> Result<Report> {
     report.fact("field of view", field_of_view(&camera));
     report.fact("field limit", limit(&camera));
     report.fact("resolution", resolution(&camera));
+    if let Some(calibration) = calibration {
+        report.fact(
+            "calibration",
+            format!(
+                "{} photos, LEDs within {:.3} px in the mean, {:.2} px at most",
+                calibration.photos_used, calibration.mean_px, calibration.max_px
+            ),
+        );
+    }
+    if let Some(sigma) = calibration_sigma(&camera) {
+        report.fact("calibration sigma", sigma);
+    }
     if let Some(inverse) = inverse {
         report.fact(
             "inverse polynomial",
@@ -48,6 +60,20 @@ pub(super) fn report(path: &Path) -> Result<Report> {
     }
     report.notes.extend(oddities);
     Ok(report)
+}
+
+/// How far off bearings may be by the calibration, along a row from the centre outwards.
+fn calibration_sigma(camera: &Camera) -> Option<String> {
+    camera.parameter_covariance()?;
+    let centre = camera.model().centre();
+    let outwards: Vec<f64> = (0..camera.width())
+        .map(|u| Pixel::new(u as f64, centre.v))
+        .filter_map(|pixel| camera.calibration_covariance(pixel))
+        .map(|covariance| 1e3 * covariance.trace().sqrt())
+        .collect();
+    let least = outwards.iter().copied().fold(f64::INFINITY, f64::min);
+    let most = outwards.iter().copied().fold(0.0, f64::max);
+    Some(format!("{least:.2} mrad at best, {most:.2} mrad at worst along the row of the centre"))
 }
 
 /// What the format is called.

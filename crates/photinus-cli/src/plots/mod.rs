@@ -1,11 +1,14 @@
 //! Figures for a paper: how they look, and how they get onto the disk, each as PNG and SVG.
 
+mod figure;
 pub(crate) mod style;
 
 use std::path::Path;
 
 use kuva::render::render::Scene;
 use photinus_io::{Error, Result};
+
+pub(crate) use figure::{Figure, FigureFolder};
 
 /// Pixels of a PNG for one of the SVG: sharp at the width of a column in print.
 const PNG_SCALE: f32 = 2.5;

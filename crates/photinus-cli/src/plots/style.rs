@@ -1,8 +1,12 @@
 //! How figures look. Colours stay apart for colour-blind eyes (Okabe and Ito 2008); line style or mark tells the same.
 
+use std::sync::Arc;
+
 use kuva::plot::legend::{LegendEntry, LegendShape};
 use kuva::plot::scatter::MarkerShape;
-use kuva::prelude::{BandPlot, Layout, LegendPosition, LinePlot, Plot, ReferenceLine, ScatterPlot, Theme};
+use kuva::prelude::{
+    BandPlot, Layout, LegendPosition, LinePlot, Plot, ReferenceLine, ScatterPlot, Theme, TickFormat,
+};
 
 pub(crate) const TRUTH: &str = "#000000";
 pub(crate) const ESTIMATE: &str = "#0072B2";
@@ -77,4 +81,9 @@ pub(crate) fn band(data: &[(f64, f64, f64)], colour: &str) -> BandPlot {
 /// A dashed line across, for what a value should be.
 pub(crate) fn level(value: f64) -> ReferenceLine {
     ReferenceLine::horizontal(value).with_color(FAINT)
+}
+
+/// Numbers as people write them, 0.1 and not 1e-1.
+pub(crate) fn plain() -> TickFormat {
+    TickFormat::Custom(Arc::new(|number| format!("{}", (number * 1e6).round() / 1e6)))
 }

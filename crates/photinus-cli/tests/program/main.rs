@@ -7,6 +7,11 @@
 )]
 
 mod bad_input;
+mod calibrate;
+mod calibrate_airframe;
+mod calibrate_mounting;
+mod calibrate_report;
+mod calibrate_spot_size;
 mod commands;
 mod demo;
 mod evaluate;

@@ -74,6 +74,17 @@ impl Stage {
     }
 }
 
+impl Stage {
+    /// Runs and expects to be refused with these parts.
+    pub(crate) fn refuses(&self, words: &str, parts: &[&str]) {
+        let done = self.run(words);
+        assert_eq!(done.code, 2, "{words}: {}", done.err);
+        for part in parts {
+            assert!(done.err.contains(part), "{words}\n{}\nlacks `{part}`", done.err);
+        }
+    }
+}
+
 impl Drop for Stage {
     fn drop(&mut self) {
         // A folder left behind in the system's temporary folder harms nobody.

@@ -6,6 +6,8 @@
 //! far the mean is from that of the samples, in standard deviations of the posterior; the ratio of the standard deviations;
 //! the largest difference of the weight below a cut.
 
+#![expect(clippy::print_stdout, reason = "an example prints its table")]
+
 mod chain;
 mod compare;
 mod experiment;

@@ -13,8 +13,10 @@
 //! centre_px = [364.4, 229.6]  # column, row
 //! direct_polynomial = [-259.5, 0.0, 1.63e-3, -2.33e-6, 6.6e-9]   # ocam: z(r) in px, ascending, as OCamCalib has it
 //! stretch = [[1.0, 0.0], [0.0, 1.0]]                             # ocam: [[c, d], [e, 1]] on (row, column)
-//! # all others: focal_px = [fx, fy]; kannala_brandt: k = [k1, k2, k3, k4]; pinhole: radial = [k1, .. k6],
+//! # all others: focal_px = [fx, fy]; kannala_brandt: k = [k1, k2, k3, k4], optional shear_px; pinhole: radial = [k1, .. k6],
 //! # tangential = [p1, p2]
+//! [calibration]               # optional: what `photinus calibrate camera` found out about it
+//! covariance = [[...], ...]   # of the model's parameters, in the order of Model::parameter_count
 //! ```
 
 mod camera_info;
@@ -40,7 +42,7 @@ pub use inverse::InverseReport;
 pub use kalibr::parse_kalibr;
 pub use ocam_text::parse_ocam_text;
 pub use ocam_write::write_ocam_text;
-pub use own_toml::{parse_camera_toml, write_camera_toml};
+pub use own_toml::{parse_camera_toml, write_calibrated_camera_toml, write_camera_toml};
 pub use pyocamcalib::parse_pyocamcalib;
 pub use uvdar_yaml::parse_uvdar_yaml;
 
@@ -55,6 +57,21 @@ pub struct CameraFile {
     pub oddities: Vec<String>,
     /// How far the file's own inverse polynomial is from the inverse of its direct one, where it has both.
     pub inverse: Option<InverseReport>,
+    /// What the calibration reached, where the file says so.
+    pub calibration: Option<CalibrationSummary>,
+}
+
+/// What a calibration reached: distances between where the photos show LEDs and where the camera expects them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CalibrationSummary {
+    /// Photos that the camera rests on.
+    pub photos_used: u32,
+    /// Mean distance, px.
+    pub mean_px: f64,
+    /// Root mean square distance, px.
+    pub rms_px: f64,
+    /// Largest distance, px.
+    pub max_px: f64,
 }
 
 /// The formats of camera files.
@@ -108,7 +125,7 @@ impl CameraFile {
         field_limit_deg: Option<f64>,
     ) -> std::result::Result<Self, CameraError> {
         let camera = Camera::new(model, width_px, height_px, field_limit_deg.map(f64::to_radians))?;
-        let mut file = Self { camera, format, oddities: Vec::new(), inverse: None };
+        let mut file = Self { camera, format, oddities: Vec::new(), inverse: None, calibration: None };
         file.remark_centre();
         Ok(file)
     }
@@ -154,6 +171,7 @@ fn camera_error(path: &Path, error: CameraError) -> Error {
             "check that the coefficients stand in ascending powers; where z points forward, change all their signs"
         }
         E::Singular { .. } => "for square pixels it is the identity: c d e = 1 0 0",
+        E::CovarianceSize { .. } | E::NoCovariance => "calibrate again, or remove the table [calibration]",
         E::FieldLimit { .. } => {
             "give the angle off the axis out to which the lens was calibrated, or leave it out"
         }

@@ -3,12 +3,12 @@
 use std::io::Write;
 use std::path::Path;
 
-use nalgebra::Matrix2;
+use nalgebra::{DMatrix, Matrix2};
 use photinus::camera::{Camera, CameraError, Ideal, IdealLaw, KannalaBrandt, Model, OCam, Pinhole, Pixel};
 use serde::{Deserialize, Serialize};
 
 use super::numbers::{Finite, degrees, values};
-use super::{CameraFile, CameraFormat, camera_error};
+use super::{CalibrationSummary, CameraFile, CameraFormat, camera_error};
 use crate::{Error, Place, Result, table};
 
 /// The file as it stands: the keys of all models, of which each model has its own.
@@ -24,8 +24,21 @@ struct Table {
     stretch: Option<[[Finite; 2]; 2]>,
     focal_px: Option<[Finite; 2]>,
     k: Option<[Finite; 4]>,
+    shear_px: Option<Finite>,
     radial: Option<[Finite; 6]>,
     tangential: Option<[Finite; 2]>,
+    calibration: Option<Calibration>,
+}
+
+/// What a calibration knows about itself.
+#[derive(Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+struct Calibration {
+    photos_used: Option<u32>,
+    mean_px: Option<Finite>,
+    rms_px: Option<Finite>,
+    max_px: Option<Finite>,
+    covariance: Vec<Vec<Finite>>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
@@ -58,18 +71,49 @@ pub fn parse_camera_toml(text: &str, path: &Path) -> Result<CameraFile> {
     let size = [table.width_px, table.height_px];
     let mut file =
         CameraFile::new(CameraFormat::Toml, model, size, limit).map_err(|error| camera_error(path, error))?;
+    if let Some(calibration) = table.calibration {
+        file.calibration = calibration.summary();
+        file.camera = calibrated(file.camera, &calibration.covariance, path)?;
+    }
     if let Model::OCam(lens) = file.camera.model().clone() {
         file.remark_lens(&lens);
     }
     Ok(file)
 }
 
-/// Writes a camera in Photinus's own format; `path` is for messages. Every digit is kept.
+/// The camera with the covariance that stands in its file.
+fn calibrated(camera: Camera, rows: &[Vec<Finite>], path: &Path) -> Result<Camera> {
+    let wrong =
+        |error: CameraError| camera_error(path, error).at(Place::Key("calibration.covariance".to_owned()));
+    let needed = camera.model().parameter_count();
+    if rows.len() != needed || rows.iter().any(|row| row.len() != needed) {
+        return Err(wrong(CameraError::CovarianceSize { needed, rows: rows.len() }));
+    }
+    let covariance = DMatrix::from_fn(needed, needed, |i, j| rows[i][j].0);
+    camera.with_calibration(covariance).map_err(wrong)
+}
+
+/// Writes a camera in Photinus's own format, with the covariance of its calibration if it has one; `path` is for messages.
+/// Every digit is kept.
 ///
 /// # Errors
 /// An [`Error`] when writing fails.
 pub fn write_camera_toml(camera: &Camera, to: &mut impl Write, path: &Path) -> Result<()> {
-    let text = toml::to_string(&Table::of(camera)).map_err(|error| Error::format(path, error.to_string()))?;
+    write_calibrated_camera_toml(camera, None, to, path)
+}
+
+/// [`write_camera_toml`] with what the calibration reached, where the camera has a covariance.
+///
+/// # Errors
+/// An [`Error`] when writing fails.
+pub fn write_calibrated_camera_toml(
+    camera: &Camera,
+    summary: Option<&CalibrationSummary>,
+    to: &mut impl Write,
+    path: &Path,
+) -> Result<()> {
+    let text = toml::to_string(&Table::of(camera, summary))
+        .map_err(|error| Error::format(path, error.to_string()))?;
     to.write_all(text.as_bytes()).map_err(|error| Error::io(path, error))
 }
 
@@ -87,7 +131,8 @@ impl Table {
             Name::KannalaBrandt => {
                 let focal_px = required(self.focal_px.take(), "focal_px", path)?.map(|n| n.0);
                 let k = required(self.k.take(), "k", path)?.map(|n| n.0);
-                return Ok(KannalaBrandt::new(focal_px, centre, k).map(Model::KannalaBrandt));
+                let shear_px = self.shear_px.take().map_or(0.0, |n| n.0);
+                return Ok(KannalaBrandt::with_shear(focal_px, centre, k, shear_px).map(Model::KannalaBrandt));
             }
             Name::Pinhole => {
                 let focal_px = required(self.focal_px.take(), "focal_px", path)?.map(|n| n.0);
@@ -111,6 +156,7 @@ impl Table {
             (self.stretch.is_some(), "stretch"),
             (self.focal_px.is_some(), "focal_px"),
             (self.k.is_some(), "k"),
+            (self.shear_px.is_some(), "shear_px"),
             (self.radial.is_some(), "radial"),
             (self.tangential.is_some(), "tangential"),
         ]
@@ -118,7 +164,7 @@ impl Table {
         .find_map(|(there, key)| there.then_some(key))
     }
 
-    fn of(camera: &Camera) -> Self {
+    fn of(camera: &Camera, summary: Option<&CalibrationSummary>) -> Self {
         let centre = camera.model().centre();
         let bare = Self {
             model: Name::Ocam,
@@ -130,8 +176,10 @@ impl Table {
             stretch: None,
             focal_px: None,
             k: None,
+            shear_px: None,
             radial: None,
             tangential: None,
+            calibration: camera.parameter_covariance().map(|matrix| Calibration::of(matrix, summary)),
         };
         match camera.model() {
             Model::OCam(lens) => {
@@ -155,6 +203,7 @@ impl Table {
                 model: Name::KannalaBrandt,
                 focal_px: Some(lens.focal_px().map(Finite)),
                 k: Some(lens.k().map(Finite)),
+                shear_px: Some(lens.shear_px()).filter(|shear| shear.abs() > 0.0).map(Finite),
                 ..bare
             },
             Model::Pinhole(lens) => Self {
@@ -165,6 +214,28 @@ impl Table {
                 ..bare
             },
         }
+    }
+}
+
+impl Calibration {
+    fn of(covariance: &DMatrix<f64>, summary: Option<&CalibrationSummary>) -> Self {
+        let number = |of: fn(&CalibrationSummary) -> f64| summary.map(|summary| Finite(of(summary)));
+        Self {
+            photos_used: summary.map(|summary| summary.photos_used),
+            mean_px: number(|summary| summary.mean_px),
+            rms_px: number(|summary| summary.rms_px),
+            max_px: number(|summary| summary.max_px),
+            covariance: covariance.row_iter().map(|row| row.iter().copied().map(Finite).collect()).collect(),
+        }
+    }
+
+    fn summary(&self) -> Option<CalibrationSummary> {
+        Some(CalibrationSummary {
+            photos_used: self.photos_used?,
+            mean_px: self.mean_px.as_ref()?.0,
+            rms_px: self.rms_px.as_ref()?.0,
+            max_px: self.max_px.as_ref()?.0,
+        })
     }
 }
 
@@ -218,6 +289,11 @@ mod tests {
             (FILE.replace("[464.0, 461.0]", "[0, 461.0]"), "cam.toml: a focal length of 0 px"),
             (FILE.replace("-0.03", "-3"), "cam.toml: the angle off the axis stops growing"),
             (format!("{FILE}field_limit_deg = 0"), "cam.toml: a field limit of 0 deg"),
+            (
+                format!("{FILE}[calibration]\ncovariance = [[1.0]]"),
+                "cam.toml, `calibration.covariance`: a covariance of 1 rows: this model has 9 parameters",
+            ),
+            (format!("{FILE}[calibration]\nvariance = 1"), "cam.toml, line 9: unknown key `variance`"),
         ];
         for (text, message) in cases {
             assert!(refusal(&text).starts_with(message), "{}\nnot {message}", refusal(&text));
@@ -244,11 +320,17 @@ mod tests {
                 Model::OCam(OCam::new(&direct[..4], centre, Matrix2::new(1.0 + n[8], n[9], n[10], 1.0 + n[11])).unwrap()),
                 Model::Ideal(Ideal::new(IdealLaw::Equisolid, [f, f + n[2]], centre).unwrap()),
                 Model::KannalaBrandt(KannalaBrandt::new([f, f + n[2]], centre, [n[3], 0.1 * n[4], 0.1 * n[5], 0.01 * n[6]]).unwrap()),
+                Model::KannalaBrandt(KannalaBrandt::with_shear([f, f + n[2]], centre, [n[3], 0.0, 0.0, 0.0], n[4]).unwrap()),
                 Model::Pinhole(Pinhole::new([f, f + n[8]], centre, radial, [0.02 * n[9], 0.02 * n[10]]).unwrap()),
             ];
             for model in models {
                 let camera = Camera::new(model, 752, 480, limit_deg.map(f64::to_radians)).unwrap();
-                prop_assert_eq!(round_trip(&camera), camera);
+                prop_assert_eq!(round_trip(&camera), camera.clone());
+                let size = camera.model().parameter_count();
+                let covariance = DMatrix::from_fn(size, size, |i, j| if i == j { n[0] * n[0] + 1e-9 } else { 0.0 });
+                if let Ok(camera) = camera.with_calibration(covariance) {
+                    prop_assert_eq!(round_trip(&camera), camera);
+                }
             }
         }
     }

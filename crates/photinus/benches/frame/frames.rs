@@ -1,9 +1,10 @@
 //! Frames to time: saturated spots with soft edges on a dark, noisy background.
 
-use nalgebra::{Rotation3, Vector3};
-use photinus::airframe::Airframe;
+use nalgebra::{Matrix2, Rotation3, Vector3};
+use photinus::airframe::{Airframe, Marker};
 use photinus::camera::{Bearing, Camera};
 use photinus::ranging::SpotCurve;
+use photinus::spots::{Extent, Spot};
 use rand_distr::{Distribution, Normal, Uniform};
 use rand_pcg::Pcg64;
 
@@ -67,7 +68,8 @@ fn add_sun(light: &mut [f64], (u, v): (f64, f64)) {
     }
 }
 
-/// Eight frames of `count` level hexarotors at random yaws, 2 to 8 m away, spread over the field.
+/// Eight frames of `count` level hexarotors at random yaws, 2 to 8 m away (more than a dozen 5 to 10 m), spread over the
+/// field.
 pub(crate) fn hexarotors(count: usize, camera: &Camera, airframe: &Airframe) -> Vec<Vec<u8>> {
     (0..FRAMES).map(|seed| hexarotors_of(count, camera, airframe, &mut Pcg64::new(seed.into(), 9))).collect()
 }
@@ -76,10 +78,13 @@ fn hexarotors_of(count: usize, camera: &Camera, airframe: &Airframe, rng: &mut P
     let mut light = vec![5.0; WIDTH * HEIGHT];
     let uniform = |low: f64, high: f64| Uniform::new(low, high).expect("a range");
     for index in 0..count {
-        let (column, row) = (index % 6, index / 6);
-        let azimuth = -1.1 + 0.44 * column as f64;
-        let elevation = 0.3 * row as f64 + uniform(-0.05, 0.05).sample(rng);
-        let distance_m = uniform(2.0, 8.0).sample(rng);
+        let few = count <= 12;
+        let (across, step_rad) = if few { (6, 0.44) } else { (10, 0.24) };
+        let (column, row) = (index % across, index / across);
+        let azimuth = -1.1 + step_rad * column as f64;
+        let lowest = if few { 0.0 } else { -0.6 };
+        let elevation = lowest + 0.3 * row as f64 + uniform(-0.05, 0.05).sample(rng);
+        let distance_m = if few { uniform(2.0, 8.0) } else { uniform(5.0, 10.0) }.sample(rng);
         let ahead = Vector3::new(
             libm::cos(elevation) * libm::sin(azimuth),
             -libm::sin(elevation),
@@ -110,4 +115,29 @@ fn add_airframe(
             add_disc(light, (pixel.u, pixel.v), (area_px.max(1.0) / std::f64::consts::PI).sqrt(), 1.0);
         }
     }
+}
+
+/// The spots of a level airframe straight ahead whose light is found, unsaturated.
+pub(crate) fn spots(camera: &Camera, airframe: &Airframe, yaw_rad: f64, distance_m: f64) -> Vec<Spot> {
+    let upright = Rotation3::from_basis_unchecked(&[Vector3::x(), Vector3::z(), -Vector3::y()]);
+    let camera_from_body = upright * Rotation3::from_axis_angle(&Vector3::z_axis(), yaw_rad);
+    let place_m = Vector3::new(0.0, 0.0, distance_m);
+    let camera_m = camera_from_body.inverse() * -place_m;
+    let spot = |(marker, seen): (usize, &Marker)| {
+        let centre = camera.pixel(&Bearing::new(camera_from_body * seen.position_m + place_m)?)?;
+        let intensity = airframe.intensity(marker, &camera_m);
+        let (u, v) = (centre.u.round() as u32, centre.v.round() as u32);
+        (intensity > 0.2).then_some(Spot {
+            centre,
+            covariance_px2: Matrix2::identity() * 0.0025,
+            area_px: 4,
+            peak: 180,
+            saturated_px: 0,
+            flux: 20_000.0 * intensity / (distance_m * distance_m),
+            background: 5.0,
+            middle: (u, v),
+            extent: Extent { left: u - 1, top: v - 1, right: u + 1, bottom: v + 1 },
+        })
+    };
+    airframe.markers().iter().enumerate().filter_map(spot).collect()
 }

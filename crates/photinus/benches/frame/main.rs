@@ -11,6 +11,7 @@ mod frames;
 use std::hint::black_box;
 
 use contest::Contest;
+use nalgebra::Vector3;
 use photinus::airframe::{Airframe, Ring};
 use photinus::camera::{Camera, Ideal, IdealLaw, Model, Pixel};
 use photinus::frame::FrameView;
@@ -20,6 +21,7 @@ use photinus::spots::{Brightness, Detector, Settings};
 fn main() {
     detection();
     locating();
+    posing();
 }
 
 fn detection() {
@@ -75,15 +77,40 @@ fn locating() {
         black_box(frame.iter().fold(0, |high: u8, &pixel| high.max(pixel)));
     });
     let (camera, airframe) = (camera(), hexarotor());
-    for count in [1, 6, 12] {
+    let gravity = Vector3::y_axis();
+    for count in [1, 6, 12, 25, 50] {
         let frames = frames::hexarotors(count, &camera, &airframe);
+        for (known, gravity) in [("", Some(gravity)), (", no gravity", None)] {
+            let (frames, camera) = (frames.clone(), camera.clone());
+            let mut locator =
+                Locator::new(camera, &airframe, None, locator::Settings::default()).expect("a locator");
+            contest.add(&format!("locate, {count} hexarotors{known}"), move |i| {
+                let frame = FrameView::packed(&frames[i % frames.len()], frames::WIDTH, frames::HEIGHT)
+                    .expect("a frame");
+                let located = locator.locate(&frame, gravity.as_ref(), &mut |_| ());
+                black_box(located.expect("the camera's size"));
+            });
+        }
+    }
+    contest.run();
+}
+
+/// One hexarotor by its spots alone: grouping, bounds and pose, without detection.
+fn posing() {
+    let mut contest = Contest::new("Posing one hexarotor, anonymous", "three spots at 5 m");
+    let (camera, airframe) = (camera(), hexarotor());
+    let gravity = Vector3::y_axis();
+    for (name, yaw_rad, distance_m) in [
+        ("three spots at 5 m", 0.5, 5.0),
+        ("two spots at 5 m", 0.1, 5.0),
+        ("three spots at 10 m", 0.5, 10.0),
+        ("two spots at 10 m", 0.1, 10.0),
+    ] {
+        let spots = frames::spots(&camera, &airframe, yaw_rad, distance_m);
         let mut locator =
             Locator::new(camera.clone(), &airframe, None, locator::Settings::default()).expect("a locator");
-        contest.add(&format!("locate, {count} hexarotors"), move |i| {
-            let frame = FrameView::packed(&frames[i % frames.len()], frames::WIDTH, frames::HEIGHT);
-            black_box(
-                locator.locate(&frame.expect("a frame"), None, &mut |_| ()).expect("the camera's size"),
-            );
+        contest.add(name, move |_| {
+            black_box(locator.locate_spots(&spots, Some(&gravity), &mut |_| ()));
         });
     }
     contest.run();

@@ -54,6 +54,19 @@ pub enum CameraError {
         /// The value given, rad.
         value_rad: f64,
     },
+    /// A covariance that is not of the model's parameters.
+    #[error("a covariance of {rows} rows: this model has {needed} parameters that are calibrated")]
+    CovarianceSize {
+        /// Rows that the model needs.
+        needed: usize,
+        /// Rows given.
+        rows: usize,
+    },
+    /// A matrix that is no covariance.
+    #[error(
+        "the covariance is none: it is not symmetric, or a combination of parameters has a negative variance"
+    )]
+    NoCovariance,
     /// A model that folds back inside the image: two pixels would see the same direction, or one pixel two.
     #[error(
         "the angle off the axis stops growing at {radius_px:.1} px from the centre ({deg:.1} deg), inside the image: \

@@ -28,6 +28,29 @@ impl KannalaBrandt {
         Ok(Self { k, plane: Plane::with_focal(centre, focal_px)? })
     }
 
+    /// The same with a shear, for an axis of the sensor that leans: a place x focal lengths to the right lies `shear_px` x
+    /// lower than without.
+    ///
+    /// # Errors
+    /// Those of [`KannalaBrandt::new`]; [`CameraError`] when the shear is not finite.
+    pub fn with_shear(
+        focal_px: [f64; 2],
+        centre: Pixel,
+        k: [f64; 4],
+        shear_px: f64,
+    ) -> Result<Self, CameraError> {
+        finite("the shear", &[shear_px])?;
+        let upright = Self::new(focal_px, centre, k)?;
+        let mut pixel_from_plane = upright.plane.pixel_from_plane;
+        pixel_from_plane.m21 = shear_px;
+        Ok(Self { plane: Plane::new(centre, pixel_from_plane)?, ..upright })
+    }
+
+    /// How much lower a place one focal length to the right lies, px; 0 for most cameras.
+    pub fn shear_px(&self) -> f64 {
+        self.plane.pixel_from_plane.m21
+    }
+
     /// k1 to k4.
     pub fn k(&self) -> [f64; 4] {
         self.k

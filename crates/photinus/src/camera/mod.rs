@@ -6,8 +6,10 @@
 //!
 //! A [`Model`] holds checked parameters; a [`Camera`] is a model with an image and a field. The lenses that are symmetric
 //! about their axis ([`OCam`], [`Ideal`], [`KannalaBrandt`]) share one geometry (`radial.rs`) and differ in one curve.
+//! A camera may carry the covariance of its calibration (`calibration.rs`) and tells what it means for a bearing.
 
 mod bearing;
+mod calibration;
 mod error;
 mod field;
 mod ideal;
@@ -33,6 +35,7 @@ pub use ocam::OCam;
 pub use pinhole::Pinhole;
 
 use crate::frame::FrameView;
+use calibration::Calibration;
 use field::Field;
 
 /// A calibrated camera: a model, the size of its image, and the field in which it answers.
@@ -55,6 +58,7 @@ pub struct Camera {
     height_px: usize,
     stated_limit_rad: Option<f64>,
     field: Field,
+    calibration: Option<Calibration>,
 }
 
 impl Camera {
@@ -86,7 +90,7 @@ impl Camera {
         let corners =
             [(-0.5, -0.5), (right, -0.5), (-0.5, bottom), (right, bottom)].map(|(u, v)| Pixel::new(u, v));
         let field = model.field(&corners, field_limit_rad)?;
-        Ok(Self { model, width_px, height_px, stated_limit_rad: field_limit_rad, field })
+        Ok(Self { model, width_px, height_px, stated_limit_rad: field_limit_rad, field, calibration: None })
     }
 
     /// The direction seen at a place; `None` outside the image or the field.

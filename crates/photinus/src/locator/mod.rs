@@ -114,8 +114,11 @@ pub struct Sighting {
     pub signal: Option<u32>,
     /// Its direction in the camera frame.
     pub bearing: Bearing,
-    /// Covariance of the direction, rad^2, tangent to the sphere (rank 2).
+    /// Covariance of the direction, rad^2, tangent to the sphere (rank 2): from the spot and, where the camera's file says
+    /// how sure it is, from the calibration.
     pub covariance_rad2: Matrix3<f64>,
+    /// The part of it that comes from the spot, and differs from spot to spot.
+    pub spot_covariance_rad2: Matrix3<f64>,
     /// How far the direction turns per pixel there, where it turns most, rad/px.
     pub rad_per_px: f64,
     /// The marker's true direction is no further from the bearing, rad: its light falls within the box of pixels that its
@@ -198,10 +201,7 @@ impl Located {
 
     /// The ways in which this neighbour's spots can be its airframe, the likeliest first.
     pub fn modes(&self, neighbour: &Neighbour) -> &[Mode] {
-        self.modes
-            .get(neighbour.first_mode..)
-            .and_then(|rest| rest.get(..neighbour.modes))
-            .unwrap_or(&[])
+        self.modes.get(neighbour.first_mode..).and_then(|rest| rest.get(..neighbour.modes)).unwrap_or(&[])
     }
 }
 
@@ -242,7 +242,7 @@ impl Locator {
             matcher: Matcher::new(airframe, settings.max_tilt_rad),
             poser: Poser::new(airframe, settings.pose, faintest_light(&settings.spots))?,
             groups: Groups::default(),
-            group: Vec::new(),
+            group: Vec::with_capacity(airframe.markers().len()),
             located: Located::default(),
         })
     }

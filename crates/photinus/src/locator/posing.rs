@@ -3,7 +3,7 @@
 //! In: the sightings of one group. Out: the neighbour and its modes. The bounds are strict and come from
 //! [`crate::ranging::DistanceBounds`] and spot sizes alone; the posterior of [`crate::pose`] is cut off at them.
 
-use nalgebra::{Unit, Vector3};
+use nalgebra::{Matrix3, Unit, Vector3};
 
 use super::matching::Matcher;
 use super::pairs::Pairs;
@@ -25,6 +25,9 @@ const SATURATED_LOG_SIGMA: f64 = 0.2;
 const LOG_SIGMA_PER_PX: f64 = 1.5;
 /// Markers nearer to each other than this are one spot, px.
 const RESOLUTION_PX: f64 = 2.5;
+
+/// Over so much of the field the error of a calibration changes by itself.
+const CALIBRATION_LENGTH_RAD: f64 = 0.5;
 
 /// Tells the neighbours behind groups of sightings.
 #[derive(Debug)]
@@ -48,11 +51,11 @@ impl Poser {
         Ok(Self {
             airframe: airframe.clone(),
             estimator: Estimator::new(airframe, settings)?,
-            hypotheses: Hypotheses::default(),
-            observations: Vec::new(),
+            hypotheses: Hypotheses::with_room(airframe.markers().len()),
+            observations: Vec::with_capacity(airframe.markers().len()),
             pairs: Pairs::new(airframe),
             faintest_light,
-            without: Vec::new(),
+            without: Vec::with_capacity(airframe.markers().len()),
         })
     }
 
@@ -110,7 +113,9 @@ impl Poser {
         let mut without = std::mem::take(&mut self.without);
         for stranger in 0..group.len() {
             without.clear();
-            without.extend(group.iter().enumerate().filter(|(index, _)| *index != stranger).map(|(_, &spot)| spot));
+            without.extend(
+                group.iter().enumerate().filter(|(index, _)| *index != stranger).map(|(_, &spot)| spot),
+            );
             self.estimate(sightings, &without, gravity, matcher);
             let log_evidence = self.estimator.posterior().log_evidence + pose::STRANGER_LOG_DENSITY;
             if log_evidence > best.0 {
@@ -164,11 +169,15 @@ impl Poser {
             first_mode: 0,
             modes: 0,
         };
-        let Some(Summary { pose, position_covariance_m2, orientation_covariance_rad2, mut distance }) = *summary
+        let Some(Summary { pose, mut position_covariance_m2, orientation_covariance_rad2, mut distance }) =
+            *summary
         else {
             return (neighbour, &[]);
         };
         let length_m = pose.position_m.norm();
+        let (of_position_m2, of_distance_m2) = of_calibration(sightings, group, &pose.position_m);
+        position_covariance_m2 += of_position_m2;
+        distance.sigma_m = (distance.sigma_m * distance.sigma_m + of_distance_m2).sqrt();
         if let Some(bearing) = Bearing::new(pose.position_m) {
             neighbour.bearing = bearing;
         }
@@ -189,6 +198,21 @@ impl Poser {
     }
 }
 
+/// What the camera's calibration leaves of a neighbour's position, m^2, and the part of it along the line of sight.
+///
+/// Its error is much the same for all spots of a neighbour, which it moves together: no spots average it away, and none of
+/// it looks like a distance. How it changes over the field is the error of distance: by itself over
+/// [`CALIBRATION_LENGTH_RAD`].
+fn of_calibration(sightings: &[Sighting], group: &[usize], position_m: &Vector3<f64>) -> (Matrix3<f64>, f64) {
+    let of_one = |&spot: &usize| sightings[spot].covariance_rad2 - sightings[spot].spot_covariance_rad2;
+    let mean_rad2 = group.iter().map(of_one).sum::<Matrix3<f64>>() / group.len() as f64;
+    let scale = 0.5 * mean_rad2.trace() / (CALIBRATION_LENGTH_RAD * CALIBRATION_LENGTH_RAD);
+    (
+        mean_rad2 * position_m.norm_squared() + position_m * position_m.transpose() * scale,
+        scale * position_m.norm_squared(),
+    )
+}
+
 fn observe(sighting: &Sighting) -> Observation {
     let spot = &sighting.spot;
     // A detector that measures no light says nothing by it.
@@ -202,7 +226,7 @@ fn observe(sighting: &Sighting) -> Observation {
     });
     Observation {
         bearing: sighting.bearing,
-        covariance_rad2: sighting.covariance_rad2,
+        covariance_rad2: sighting.spot_covariance_rad2,
         log_light,
         resolution_rad: RESOLUTION_PX * sighting.rad_per_px,
         signal: sighting.signal,

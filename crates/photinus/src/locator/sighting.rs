@@ -17,14 +17,16 @@ pub(super) fn sight(
 ) -> Option<Sighting> {
     let (bearing, jacobian) = camera.bearing_with_jacobian(spot.centre)?;
     let rad_per_px = largest_rad_per_px(&jacobian);
+    let spot_covariance_rad2 = jacobian * spot.covariance_px2 * jacobian.transpose();
+    let calibration = camera.calibration_covariance(spot.centre).unwrap_or_default();
     Some(Sighting {
         spot: spot.clone(),
         signal,
         rad_per_px,
         bearing,
-        covariance_rad2: jacobian * spot.covariance_px2 * jacobian.transpose(),
-        bound_rad: (farthest_px(spot) * rad_per_px * SCALE_CHANGE)
-            .min(std::f64::consts::PI),
+        covariance_rad2: spot_covariance_rad2 + calibration,
+        spot_covariance_rad2,
+        bound_rad: (farthest_px(spot) * rad_per_px * SCALE_CHANGE).min(std::f64::consts::PI),
         range: curve.and_then(|curve| curve.distances(spot.area_px.max(1))),
     })
 }

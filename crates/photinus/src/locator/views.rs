@@ -11,6 +11,7 @@ use nalgebra::{Vector2, Vector3};
 
 use crate::airframe::Airframe;
 use crate::lanes::{LANES, Lanes};
+use crate::pose::Symmetry;
 
 /// Most spots that are put in order one by one.
 pub(super) const MOST_ORDERED: usize = 4;
@@ -47,8 +48,10 @@ pub(super) struct Arrangement {
     pub(super) ahead_m: [f64; MOST_ORDERED],
     /// Logarithms of their intensities, less the mean.
     pub(super) log_intensity: [f64; MOST_ORDERED],
-    /// Which markers they are.
-    pub(super) markers: [usize; MOST_ORDERED],
+    /// Which markers they are after the turn that makes them the first of all their equals; as many as the arrangement has.
+    pub(super) markers: [Option<u16>; MOST_ORDERED],
+    /// That turn of the airframe.
+    pub(super) turn: usize,
     /// Yaw of the direction to the camera in the body frame, rad.
     pub(super) yaw_rad: f64,
     /// What the markers that show but are not among them cost, nats.
@@ -146,8 +149,8 @@ struct Seen {
 }
 
 impl Views {
-    pub(super) fn of(airframe: &Airframe) -> Self {
-        let sector_rad = TAU / airframe.turns() as f64;
+    pub(super) fn of(airframe: &Airframe, symmetry: &Symmetry) -> Self {
+        let sector_rad = TAU / symmetry.turns() as f64;
         let yaws = (sector_rad / YAW_STEP_RAD).ceil().max(1.0) as usize;
         let mut views =
             Self { arrangements: Default::default(), outlines: Vec::new(), most_visible: 0, lone_nats: 0.0 };
@@ -161,7 +164,7 @@ impl Views {
                 let seen = look(airframe, yaw_rad, elevation_rad);
                 if seen.len() >= 2 {
                     total += libm::exp(log_prior);
-                    views.add(&seen, [yaw_rad, elevation_rad], log_prior);
+                    views.add(&seen, symmetry, [yaw_rad, elevation_rad], log_prior);
                 }
             }
         }
@@ -175,7 +178,7 @@ impl Views {
         (!arrangements.all.is_empty()).then_some(arrangements)
     }
 
-    fn add(&mut self, seen: &[Seen], towards: [f64; 2], log_prior: f64) {
+    fn add(&mut self, seen: &[Seen], symmetry: &Symmetry, towards: [f64; 2], log_prior: f64) {
         self.most_visible = self.most_visible.max(seen.len());
         let unseen_nats: f64 = seen.iter().map(cost_of_unseen).sum();
         let brightest = seen.iter().map(cost_of_unseen).fold(0.0, f64::max);
@@ -188,7 +191,7 @@ impl Views {
             }
             each_order(seen.len(), spots, &mut |order| {
                 if arrangements.len() <= MOST_ARRANGEMENTS {
-                    arrangements.push(arrange(seen, order, unseen_nats, towards, log_prior));
+                    arrangements.push(arrange(seen, order, symmetry, unseen_nats, towards, log_prior));
                 }
             });
         }
@@ -263,6 +266,7 @@ fn each_order(of: usize, count: usize, with: &mut impl FnMut(&[usize])) {
 fn arrange(
     seen: &[Seen],
     order: &[usize],
+    symmetry: &Symmetry,
     all_unseen_nats: f64,
     [yaw_rad, elevation_rad]: [f64; 2],
     log_prior: f64,
@@ -278,18 +282,24 @@ fn arrange(
         middle_m,
         ahead_m: [0.0; MOST_ORDERED],
         log_intensity: [0.0; MOST_ORDERED],
-        markers: [0; MOST_ORDERED],
+        markers: [None; MOST_ORDERED],
+        turn: 0,
         unseen_nats: all_unseen_nats - chosen().map(cost_of_unseen).sum::<f64>(),
         yaw_rad,
         elevation_rad,
         log_prior,
     };
+    let mut names = [0; MOST_ORDERED];
     for (index, seen) in chosen().enumerate() {
         // Markers one behind the other have no shape; they match nothing.
         arrangement.shape[index] = (seen.place_m - middle_m) / size_m.max(1e-9);
         arrangement.log_intensity[index] = libm::log(seen.intensity) - mean_log;
         arrangement.ahead_m[index] = seen.ahead_m;
-        arrangement.markers[index] = seen.marker;
+        names[index] = seen.marker as u16;
+    }
+    arrangement.turn = symmetry.canonical_turn(&names[..order.len()]);
+    for (marker, name) in arrangement.markers.iter_mut().zip(&names[..order.len()]) {
+        *marker = Some(symmetry.turned(arrangement.turn, *name));
     }
     arrangement
 }

@@ -24,12 +24,20 @@ const STEP_SIGMAS: f64 = 1.2;
 const ABRUPT_NATS: f64 = 1.0;
 const FINEST_STEP_RAD: f64 = 0.015;
 /// A slice this much worse than the best, nats, is one of two that end the walk.
-const LITTLE_NATS: f64 = 5.5;
+const LITTLE_NATS: f64 = 5.0;
 /// Most slices on one side.
 const MOST_SLICES: usize = 36;
 
+/// Most components of one mode.
+pub(super) const MOST_COMPONENTS: usize = 2 * MOST_SLICES + 1;
+
 /// Adds the components that stand for the posterior around a mode.
-pub(super) fn spread(problem: &Problem<'_>, mode: &Refined, hypothesis: usize, components: &mut Vec<Component>) {
+pub(super) fn spread(
+    problem: &Problem<'_>,
+    mode: &Refined,
+    hypothesis: usize,
+    components: &mut Vec<Component>,
+) {
     let Some(yaw_sigma_rad) = yaw_sigma_rad(mode) else { return };
     if yaw_sigma_rad < NARROW_RAD {
         components.extend(whole(problem, mode, hypothesis));

@@ -13,6 +13,11 @@ pub(super) struct Assignment {
 }
 
 impl Assignment {
+    /// Room for so many spots and markers.
+    pub(super) fn with_room(markers: usize) -> Self {
+        Self { pairs: Vec::with_capacity(markers * markers), taken: Vec::with_capacity(2 * markers) }
+    }
+
     /// Gives every spot the nearest marker that shines towards the camera and is not yet taken, the nearest pairs first;
     /// `None` where no marker is left. Returns whether any spot changed.
     pub(super) fn assign(
@@ -39,8 +44,7 @@ impl Assignment {
         self.taken.resize(airframe.markers().len() + observations.len(), false);
         let mut changed = false;
         for &(_, spot, marker) in &self.pairs {
-            let (of_marker, of_spot) =
-                (usize::from(marker), airframe.markers().len() + usize::from(spot));
+            let (of_marker, of_spot) = (usize::from(marker), airframe.markers().len() + usize::from(spot));
             if self.taken[of_marker] || self.taken[of_spot] {
                 continue;
             }

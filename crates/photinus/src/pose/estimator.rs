@@ -69,16 +69,24 @@ impl Estimator {
     /// [`SettingsError`] when a setting has no meaning.
     pub fn new(airframe: &Airframe, settings: Settings) -> Result<Self, SettingsError> {
         settings.check()?;
+        let (spots, hypotheses) = (airframe.markers().len(), Hypotheses::MOST);
+        let symmetry = Symmetry::of(airframe);
+        // One mode more is held while it is turned.
+        let components = (hypotheses * symmetry.told_apart() + 1) * along_yaw::MOST_COMPONENTS;
         Ok(Self {
             airframe: airframe.clone(),
             settings,
-            symmetry: Symmetry::of(airframe),
-            whitened: Vec::new(),
-            assignment: Assignment::default(),
-            modes: Vec::new(),
-            nats: Vec::new(),
-            components: Vec::new(),
-            posterior: Posterior::default(),
+            symmetry,
+            whitened: Vec::with_capacity(spots),
+            assignment: Assignment::with_room(spots),
+            modes: Vec::with_capacity(hypotheses),
+            nats: Vec::with_capacity(hypotheses),
+            components: Vec::with_capacity(components),
+            posterior: Posterior {
+                modes: Vec::with_capacity(components),
+                markers: Vec::with_capacity(spots),
+                ..Posterior::default()
+            },
         })
     }
 
@@ -144,7 +152,8 @@ impl Estimator {
             if index == 0 {
                 let angle_rad = self.settings.marker_sigma_m / start.position_m.norm();
                 self.whitened.clear();
-                self.whitened.extend(observations.iter().map(|seen| Whitened::of(seen, angle_rad * angle_rad)));
+                self.whitened
+                    .extend(observations.iter().map(|seen| Whitened::of(seen, angle_rad * angle_rad)));
             }
             let problem = problem(&self.airframe, &self.settings, observations, &self.whitened, known);
             let mode = if hypotheses.is_loose(index) {

@@ -2,9 +2,6 @@
 
 use super::problem::Pose;
 
-/// Most hypotheses about one neighbour: the time of a neighbour is bounded.
-const MOST: usize = 16;
-
 /// The branch of starts whose assignment is not settled.
 const LOOSE: u8 = u8::MAX;
 
@@ -27,6 +24,15 @@ pub(super) struct Start {
 }
 
 impl Hypotheses {
+    /// Most hypotheses about one neighbour: the time of a neighbour is bounded.
+    pub const MOST: usize = 16;
+
+    /// None yet, with room for so many spots.
+    pub fn with_room(spots: usize) -> Self {
+        let (starts, markers) = (Vec::with_capacity(Self::MOST), Vec::with_capacity(Self::MOST * spots));
+        Self { spots: 0, starts, markers }
+    }
+
     /// Forgets all hypotheses; the next are about so many spots.
     pub fn begin(&mut self, spots: usize) {
         self.spots = spots;
@@ -36,13 +42,7 @@ impl Hypotheses {
 
     /// Offers an assignment, the marker of each spot, that costs `nats` by a first look; `pose` is asked only if it is kept.
     /// Of one assignment and branch the cheapest is kept, of all the cheapest few.
-    pub fn offer(
-        &mut self,
-        markers: &[Option<u16>],
-        nats: f64,
-        branch: u8,
-        pose: impl FnOnce() -> Pose,
-    ) {
+    pub fn offer(&mut self, markers: &[Option<u16>], nats: f64, branch: u8, pose: impl FnOnce() -> Pose) {
         let same = (0..self.starts.len())
             .find(|&index| self.starts[index].branch == branch && self.markers(index) == markers);
         let place = same.or_else(|| self.dearest());
@@ -62,7 +62,7 @@ impl Hypotheses {
     /// The one that gives way to a cheaper one; `None` while there is room for more.
     fn dearest(&self) -> Option<usize> {
         let dearer = |&a: &usize, &b: &usize| self.starts[a].nats.total_cmp(&self.starts[b].nats);
-        (self.starts.len() >= MOST).then(|| (0..MOST).max_by(dearer))?
+        (self.starts.len() >= Self::MOST).then(|| (0..Self::MOST).max_by(dearer))?
     }
 
     /// Offers a pose without an assignment: each spot becomes the marker that is nearest in the end.

@@ -43,8 +43,7 @@ impl Light {
         let distance_m = pose.position_m.norm();
         for (spot, marker) in problem.used() {
             let Some(seen) = problem.observations[spot].log_light else { continue };
-            let (intensity, gradient) =
-                problem.airframe.intensity_with_gradient(marker, &camera_in_body_m);
+            let (intensity, gradient) = problem.airframe.intensity_with_gradient(marker, &camera_in_body_m);
             let shines = intensity.max(DARK);
             let arm_m = problem.airframe.markers()[marker].position_m;
             let from_marker_m = camera_in_body_m - arm_m;
@@ -62,9 +61,8 @@ impl Light {
             let by_delta = camera_from_body * by_camera * -distance_m;
             let by_omega = by_camera.cross(&camera_in_body_m);
             let expected = libm::log(shines) - libm::log(range2_m2);
-            let row = Vector6::new(
-                -by_delta.x, -by_delta.y, -by_delta.z, -by_omega.x, -by_omega.y, -by_omega.z,
-            );
+            let row =
+                Vector6::new(-by_delta.x, -by_delta.y, -by_delta.z, -by_omega.x, -by_omega.y, -by_omega.z);
             light.add(1.0 / variance, seen.value - expected, &row);
         }
         light
@@ -114,9 +112,7 @@ impl Problem<'_> {
         };
         let half = match power {
             // The intensity at which a marker at the origin's distance gives the faintest light.
-            Some(power) => {
-                (self.faintest_light * camera_in_body_m.norm_squared() / power).clamp(0.02, 1.0)
-            }
+            Some(power) => (self.faintest_light * camera_in_body_m.norm_squared() / power).clamp(0.02, 1.0),
             None => FAINTEST_SHARE,
         };
         // Where light is scarce, a marker that another outshines by far is taken for a reflection of it.
@@ -130,7 +126,9 @@ impl Problem<'_> {
             if self.markers.contains(&u16::try_from(marker).ok()) {
                 return -libm::log(found.max(1e-9));
             }
-            if self.melting && self.used().any(|(spot, seen)| self.are_one(spot, seen, marker, &camera_in_body_m)) {
+            if self.melting
+                && self.used().any(|(spot, seen)| self.are_one(spot, seen, marker, &camera_in_body_m))
+            {
                 return 0.0;
             }
             -libm::log(1.0 - found)

@@ -82,7 +82,11 @@ struct Truncated {
 fn truncated(low: f64, high: f64) -> Truncated {
     // Far in a tail the rest is close to exponential, at the nearer limit.
     if low > 5.0 {
-        return Truncated { log_mass: -0.5 * low * low - libm::log(low), shift: (low + 1.0 / low).min(high), variance: (1.0 / (low * low)).min((high - low) * (high - low)) };
+        return Truncated {
+            log_mass: -0.5 * low * low - libm::log(low),
+            shift: (low + 1.0 / low).min(high),
+            variance: (1.0 / (low * low)).min((high - low) * (high - low)),
+        };
     }
     if high < -5.0 {
         let Truncated { log_mass, shift, variance } = truncated(-high, -low);
@@ -90,7 +94,8 @@ fn truncated(low: f64, high: f64) -> Truncated {
     }
     const SQRT_2: f64 = core::f64::consts::SQRT_2;
     let below = |x: f64| 0.5 * libm::erfc(-x / SQRT_2);
-    let density = |x: f64| if x.is_finite() { libm::exp(-0.5 * x * x) / (core::f64::consts::TAU).sqrt() } else { 0.0 };
+    let density =
+        |x: f64| if x.is_finite() { libm::exp(-0.5 * x * x) / (core::f64::consts::TAU).sqrt() } else { 0.0 };
     let moment = |x: f64| if x.is_finite() { x * density(x) } else { 0.0 };
     let mass = (below(high) - below(low)).max(1e-12);
     let shift = ((density(low) - density(high)) / mass).clamp(low, high);
@@ -131,9 +136,7 @@ pub(super) fn summarise(components: &[Component], turns: usize) -> Option<Summar
 /// Puts neighbouring slices together into modes, the heaviest first.
 pub(super) fn modes(components: &mut [Component], turns: usize, modes: &mut Vec<Mode>) {
     modes.clear();
-    components.sort_unstable_by(|a, b| {
-        a.hypothesis.cmp(&b.hypothesis).then(a.yaw_rad.total_cmp(&b.yaw_rad))
-    });
+    components.sort_unstable_by(|a, b| a.hypothesis.cmp(&b.hypothesis).then(a.yaw_rad.total_cmp(&b.yaw_rad)));
     for hypothesis in components.chunk_by(|a, b| a.hypothesis == b.hypothesis) {
         for slices in hypothesis.chunks(SLICES_PER_MODE) {
             let weight: f64 = slices.iter().map(|slice| libm::exp(slice.log_weight)).sum();
@@ -219,7 +222,9 @@ mod tests {
                 let to = from * Rotation3::from_axis_angle(&Vector3::z_axis(), yaw_rad);
                 let off = nearest_turn(&from, &to, 1);
                 assert!((off.norm() - yaw_rad).abs() < 1e-7, "{yaw_rad}: {off}");
-                assert!(nearest_turn(&from, &to, 2).norm() < 1e-7 + yaw_rad.min(core::f64::consts::PI - yaw_rad));
+                assert!(
+                    nearest_turn(&from, &to, 2).norm() < 1e-7 + yaw_rad.min(core::f64::consts::PI - yaw_rad)
+                );
             }
         }
     }

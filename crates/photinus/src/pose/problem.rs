@@ -185,12 +185,7 @@ impl Problem<'_> {
 
     /// Where the light of a spot comes from in the body frame, m: its marker, with those that melt into it and have no spot
     /// of their own; and how far that is known, as a factor on its residual.
-    fn seen_at_m(
-        &self,
-        spot: usize,
-        marker: usize,
-        camera_in_body_m: &Vector3<f64>,
-    ) -> (Vector3<f64>, f64) {
+    fn seen_at_m(&self, spot: usize, marker: usize, camera_in_body_m: &Vector3<f64>) -> (Vector3<f64>, f64) {
         let markers = self.airframe.markers();
         let alone_m = markers[marker].position_m;
         if !self.melting {
@@ -206,7 +201,8 @@ impl Problem<'_> {
                 continue;
             }
             let more = self.airframe.intensity(other, camera_in_body_m);
-            let light = light.get_or_insert_with(|| self.airframe.intensity(marker, camera_in_body_m).max(1e-3));
+            let light =
+                light.get_or_insert_with(|| self.airframe.intensity(marker, camera_in_body_m).max(1e-3));
             *light += more;
             at_m += (beside.position_m - at_m) * (more / *light);
         }

@@ -8,6 +8,8 @@ use super::problem::{Normal, Pose, Problem};
 const MOST_STEPS: usize = 20;
 /// A step that would gain less than this, nats, is the last.
 const SMALL_GAIN: f64 = 1e-4;
+/// The same for a slice, which is one of many.
+const SMALL_SLICE_GAIN: f64 = 1e-2;
 /// Longest step of the position, in distances, and of the attitude, rad.
 const LONGEST: f64 = 0.5;
 
@@ -39,7 +41,7 @@ pub(super) fn refine(problem: &Problem<'_>, start: Pose) -> Refined {
         };
         let step = shortened(-factor.solve(&gradient));
         let gain = -gradient.dot(&step);
-        if !(gain > SMALL_GAIN) {
+        if gain.is_nan() || gain <= SMALL_GAIN {
             break;
         }
         let there = Refined::at(problem, here.pose.stepped(&step));
@@ -85,7 +87,8 @@ pub(super) fn turned(problem: &Problem<'_>, here: &Refined, yaw_rad: f64) -> Opt
         let (information, _) = without_yaw(&there.normal);
         let gradient = there.normal.gradient.fixed_rows::<5>(0).into_owned();
         let rest = -information.cholesky()?.solve(&gradient);
-        if !(-gradient.dot(&rest) > 1e-2) {
+        let gain = -gradient.dot(&rest);
+        if gain.is_nan() || gain <= SMALL_SLICE_GAIN {
             break;
         }
         let next = Refined::at(problem, there.pose.stepped(&shortened(rest.push(0.0))));

@@ -46,7 +46,12 @@ impl Settings {
         let need =
             |ok: bool, name, value, must| if ok { Ok(()) } else { Err(SettingsError { name, value, must }) };
         let Self { tilt_sigma_rad, marker_sigma_m, unit_sigma, .. } = *self;
-        need((1e-4..=3.2).contains(&tilt_sigma_rad), "the tilt's sigma", tilt_sigma_rad, "0.0001 to 3.2 rad")?;
+        need(
+            (1e-4..=3.2).contains(&tilt_sigma_rad),
+            "the tilt's sigma",
+            tilt_sigma_rad,
+            "0.0001 to 3.2 rad",
+        )?;
         need((0.0..=1.0).contains(&marker_sigma_m), "the markers' sigma", marker_sigma_m, "0 to 1 m")?;
         need((1e-3..=10.0).contains(&unit_sigma), "the spread of power", unit_sigma, "0.001 to 10")
     }

@@ -38,7 +38,7 @@ proptest! {
     #[test]
     fn derivatives_agree_with_finite_differences(
         place in prop::array::uniform3(-3.0f64..3.0), turn in prop::array::uniform3(-0.6f64..0.6),
-        yaw in 0.0f64..6.28, noise in prop::array::uniform6(-0.003f64..0.003), with_up in any::<bool>(), quad in any::<bool>(),
+        yaw in -3.0f64..3.0, noise in prop::array::uniform6(-0.003f64..0.003), with_up in any::<bool>(), quad in any::<bool>(),
     ) {
         let airframe = if quad { quadrotor() } else { hexarotor() };
         let pose = Pose {
@@ -81,13 +81,13 @@ proptest! {
 
     #[test]
     fn slopes_of_light_agree_with_finite_differences(
-        place in prop::array::uniform3(-3.0f64..3.0), yaw in 0.0f64..6.28, quad in any::<bool>(),
+        place in prop::array::uniform3(-3.0f64..3.0), yaw in -3.0f64..3.0, quad in any::<bool>(),
     ) {
         let airframe = if quad { quadrotor() } else { hexarotor() };
         let camera = Vector3::from(place) + Rotation3::new(Vector3::z() * yaw) * Vector3::x() * 3.0;
         for marker in 0..airframe.markers().len() {
             let (intensity, gradient) = airframe.intensity_with_gradient(marker, &camera);
-            prop_assert_eq!(intensity, airframe.intensity(marker, &camera));
+            prop_assert_eq!(intensity.to_bits(), airframe.intensity(marker, &camera).to_bits());
             let step = 1e-6;
             let numeric = Vector3::from_fn(|axis, _| {
                 let mut off = Vector3::zeros();

@@ -16,7 +16,7 @@ pub struct Envelope {
 
 impl Envelope {
     /// The area before rounding, px; infinite at or below the pole.
-    fn area_px(&self, distance_m: f64) -> f64 {
+    pub fn area_px(&self, distance_m: f64) -> f64 {
         let shifted_m = distance_m + self.shift_m;
         if shifted_m <= 0.0 {
             return f64::INFINITY;

@@ -126,7 +126,8 @@ impl Detector {
         let mut count = 0;
         let mut found = None;
         self.neighbourhood.each_near(i, SCATTERED_PX, |other, edge_px| {
-            if edge_px < SCATTERED_PX && light(&self.parts[other]) > SCATTERING_SHARE * light(&self.parts[i]) {
+            if edge_px < SCATTERED_PX && light(&self.parts[other]) > SCATTERING_SHARE * light(&self.parts[i])
+            {
                 count += 1;
                 found = Some(self.parts[other].guess);
             }

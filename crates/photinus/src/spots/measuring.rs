@@ -29,6 +29,8 @@ const LARGEST_MISFIT: f64 = 5.0;
 const SATURATION_BLUR_PX: f64 = 0.13;
 /// Error of the centre of an undersampled spot whose window is cut short by another spot, px.
 const CROWDED_BLUR_PX: f64 = 0.07;
+/// The same once the light that the other scatters is taken off, px.
+const RELIEVED_BLUR_PX: f64 = 0.045;
 
 /// Measures the light of parts, one after the other in the same room.
 #[derive(Debug, Default)]
@@ -43,6 +45,8 @@ struct Window {
     around: Surroundings,
     /// Other light comes so near that the window is narrower than the spot.
     crowded: bool,
+    /// The light that the spot beside it scatters was taken off.
+    relieved: bool,
 }
 
 impl Meter {
@@ -71,7 +75,7 @@ impl Meter {
             self.patch.read_beside(frame, middle, reach, radius_px, beside, part.bright)
         });
         if beside {
-            window.crowded = false;
+            (window.relieved, window.crowded) = (window.crowded, false);
         } else {
             self.patch.read(frame, middle, reach, &window.around);
         }
@@ -110,6 +114,7 @@ impl Meter {
             let missing = match (part.outline.cut, window.crowded) {
                 (true, _) => radius / 2.0,
                 (false, true) => CROWDED_BLUR_PX,
+                (false, false) if window.relieved => RELIEVED_BLUR_PX,
                 (false, false) => 0.0,
             };
             Some((centre, covariance + blur + Matrix2::from_diagonal_element(missing * missing)))
@@ -142,7 +147,7 @@ fn open_window(frame: &FrameView<'_>, part: &Part, room_px: f64) -> Window {
             .unwrap_or(level)
     };
     let narrow = (radius + 2.5).min(room);
-    let window = Window { radius_px: narrow, around: around(narrow), crowded: false };
+    let window = Window { radius_px: narrow, around: around(narrow), crowded: false, relieved: false };
     if part.outline.saturated_px > 0 {
         return window;
     }
@@ -152,6 +157,7 @@ fn open_window(frame: &FrameView<'_>, part: &Part, room_px: f64) -> Window {
         radius_px: whole,
         around: if whole > narrow { around(whole) } else { window.around },
         crowded: room_px < part.most_room_px().min(spot_px),
+        relieved: false,
     }
 }
 

@@ -10,6 +10,10 @@ use crate::lanes::{self, LANES, Lanes};
 /// Width of the ring of background pixels, px.
 const RING_PX: i32 = 2;
 
+/// The light of a halo rises by less than this factor from three pixels away to two.
+const STEEPEST_HALO: f64 = 2.0;
+/// The pixels of a narrow spot outshine those around them on average by this factor: a Gaussian of 1.1 px does not.
+const CORE_OVER_HALO: f64 = 4.0;
 /// Fewer background pixels tell no level.
 const FEWEST_PX: i32 = 8;
 
@@ -52,6 +56,9 @@ impl Patch {
         self.stride = self.rows.next_multiple_of(LANES);
         self.signal.clear();
         self.signal.resize(self.rows * self.stride, 0.0);
+        if self.turned.capacity() < 2 * self.signal.len() {
+            self.turned.reserve(2 * self.signal.len() - self.turned.len());
+        }
         let first = self.left.max(0);
         let end = (self.left + self.rows as i32).min(frame.width() as i32);
         for (signal, v) in self.signal.chunks_exact_mut(self.stride).zip(self.top..) {
@@ -164,8 +171,9 @@ impl Patch {
     }
 
     /// How much of the light of a narrow spot falls into each of three columns and into each of three rows around the pixel
-    /// (`u`, `v`), as shares of all nine, above the halo that the sixteen pixels around these tell of.
-    pub(super) fn shares(&self, (u, v): (i32, i32)) -> [[f64; 3]; 2] {
+    /// (`u`, `v`), as shares of all nine, above the halo that the sixteen pixels around these tell of; `None` for a spot so
+    /// wide that these are part of it.
+    pub(super) fn shares(&self, (u, v): (i32, i32)) -> Option<[[f64; 3]; 2]> {
         let (column, row) = ((u - self.left).max(2) as usize, (v - self.top).max(2) as usize);
         let [mut columns, mut rows] = [[0.0; 3]; 2];
         let [mut beside, mut corners] = [0.0; 2];
@@ -182,11 +190,14 @@ impl Patch {
                 }
             }
         }
-        // A halo that is a Gaussian, from two and from three pixels away to one: as much more again, twice at most.
-        let rise = (beside / corners.max(1e-9)).clamp(1.0, 2.0);
-        let halo = (beside * rise).max(0.0);
-        let total = (columns.iter().sum::<f64>() - 9.0 * halo).max(1e-9);
-        [columns, rows].map(|sums| sums.map(|sum| (sum - 3.0 * halo) / total))
+        // A halo that is a Gaussian rises as much again from two pixels away to one as from three to two. What rises more
+        // steeply is the spot's own flank.
+        let rise = Some(beside / corners.max(1e-9)).filter(|rise| (1.0..STEEPEST_HALO).contains(rise));
+        let halo = (beside * rise.unwrap_or(1.0)).max(0.0);
+        let nine = columns.iter().sum::<f64>();
+        let total = nine - 9.0 * halo;
+        (nine > 9.0 * CORE_OVER_HALO * beside && total > 0.0)
+            .then(|| [columns, rows].map(|sums| sums.map(|sum| (sum - 3.0 * halo) / total)))
     }
 
     /// Signal within `radius_px` of `centre`, grey levels.

@@ -8,6 +8,9 @@ use super::settings::Shape;
 use super::{Detections, Rejected, Spot};
 use crate::spots::Reason;
 
+/// Light of a spot that is hardly wider than a pixel over its height, px.
+const NARROW_PX: f64 = 8.0;
+
 /// Rejects the spots that are taken for reflections.
 pub(super) fn reject(detections: &mut Detections, shape: &Shape) {
     let Detections { spots, rejected } = detections;
@@ -23,10 +26,11 @@ pub(super) fn reject(detections: &mut Detections, shape: &Shape) {
             continue;
         }
         let nearest = nearest_certain(spots, index, 4.0 * shape.widest_px, is_certain);
-        // By light as well: the height of a narrow spot depends on where in a pixel it falls.
-        let outshone = |nearest: &Spot| {
-            height(spot) < shape.faintest * height(nearest) && spot.flux < shape.faintest * nearest.flux
+        // The height of a narrow spot depends on where in a pixel it falls: it is faint if its light is, too.
+        let is_faint = |nearest: &Spot| {
+            spot.flux > NARROW_PX * height(spot) || spot.flux < shape.faintest * nearest.flux
         };
+        let outshone = |nearest: &Spot| height(spot) < shape.faintest * height(nearest) && is_faint(nearest);
         if nearest.is_some_and(outshone) {
             rejected.push(Rejected {
                 centre: spot.centre,

@@ -20,13 +20,19 @@ use crate::camera::Pixel;
 
 /// A smaller share of the light than this is noise, halo or rounding.
 const FAINTEST_SHARE: f64 = 0.004;
+/// A spot with less of its light in four pixels is too wide for the grid to pull.
+const NARROW_SHARE: f64 = 0.8;
 /// The pull is known to this share of itself: cores are not Gaussians, shares are not free of noise.
 const UNKNOWN: f64 = 0.6;
 
 /// Takes the grid's pull off a centre; the variance of what is left, px^2.
 pub(super) fn unfold(patch: &Patch, centre: Pixel) -> (Pixel, Matrix2<f64>) {
     let pixel = (centre.u.round() as i32, centre.v.round() as i32);
-    let [columns, rows] = patch.shares(pixel);
+    let in_two = |shares: &[f64; 3]| shares[1] + shares[0].max(shares[2]);
+    let narrow = |[columns, rows]: &[[f64; 3]; 2]| in_two(columns) * in_two(rows) >= NARROW_SHARE;
+    let Some([columns, rows]) = patch.shares(pixel).filter(narrow) else {
+        return (centre, Matrix2::zeros());
+    };
     let (u, var_u) = unfold_axis(centre.u - f64::from(pixel.0), &columns);
     let (v, var_v) = unfold_axis(centre.v - f64::from(pixel.1), &rows);
     let place = Pixel::new(f64::from(pixel.0) + u, f64::from(pixel.1) + v);
@@ -72,7 +78,8 @@ mod tests {
             for step in -9..=9 {
                 let centre = f64::from(step) / 20.0;
                 let shares = [-1.0, 0.0, 1.0].map(|column| share(column, centre, sigma_px));
-                let measured = (-4..=4).map(|c| f64::from(c) * share(f64::from(c), centre, sigma_px)).sum::<f64>();
+                let measured =
+                    (-4..=4).map(|c| f64::from(c) * share(f64::from(c), centre, sigma_px)).sum::<f64>();
                 let (phase, variance) = unfold_axis(measured, &shares);
                 let (before, after) = ((measured - centre).abs(), (phase - centre).abs());
                 assert!(after < (0.65 * before).max(0.012), "{sigma_px} {centre}: {before} {after}");

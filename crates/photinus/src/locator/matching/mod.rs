@@ -45,9 +45,10 @@ pub(super) struct Matcher {
 impl Matcher {
     pub(super) fn new(airframe: &Airframe, max_tilt_rad: f64) -> Self {
         let grid_rad = ELEVATION_STEP_RAD / 2.0;
+        let symmetry = Symmetry::of(airframe);
         Self {
-            views: Views::of(airframe),
-            symmetry: Symmetry::of(airframe),
+            views: Views::of(airframe, &symmetry),
+            symmetry,
             bounds: DistanceBounds::new(airframe, max_tilt_rad),
             // The tilt limit is taken for two sigma; the grid of views adds half a step.
             tilt_sigma_rad: libm::hypot(max_tilt_rad / 2.0, grid_rad),
@@ -168,18 +169,15 @@ impl Matcher {
                 if nats > best.nats + POOR_NATS {
                     continue;
                 }
-                let markers = arrangement.markers.map(|marker| marker as u16);
-                let symmetry = &self.symmetry;
-                let canonical = symmetry.canonical_turn(&markers[..group.len()]);
-                let named = markers.map(|marker| Some(symmetry.turned(canonical, marker)));
                 // With gravity the tilt tells above from below; without it both are ways to look.
                 let branch = u8::from(gravity.is_none() && arrangement.elevation_rad < 0.0);
+                let named = &arrangement.markers[..group.len()];
                 let signals = group.iter().map(|&member| sightings[member].signal);
-                let nats = f64::from(nats) + symmetry.least_signal_nats(signals, &named[..group.len()]);
-                hypotheses.offer(&named[..group.len()], nats, branch, || {
+                let nats = f64::from(nats) + self.symmetry.least_signal_nats(signals, named);
+                hypotheses.offer(named, nats, branch, || {
                     let (place_m, turn) = seen.place(arrangement, &image);
                     let pose = image.pose(&place_m, turn, arrangement.yaw_rad, arrangement.elevation_rad);
-                    let camera_from_body = symmetry.attitude(&pose.camera_from_body, canonical);
+                    let camera_from_body = self.symmetry.attitude(&pose.camera_from_body, arrangement.turn);
                     Pose { camera_from_body, ..pose }
                 });
             }
@@ -190,7 +188,8 @@ impl Matcher {
 /// What the outline of all spots costs, nats, and the distance at which it fits best, m.
 fn outlined_nats(views: &Views, image: &Image<'_>, tilt_sigma_rad: f64) -> Option<(f64, f64)> {
     let spread = Spread::of(image.places.iter().copied());
-    let fits = || views.outlines.iter().filter_map(|outline| overlay(&spread, outline, image, tilt_sigma_rad));
+    let fits =
+        || views.outlines.iter().filter_map(|outline| overlay(&spread, outline, image, tilt_sigma_rad));
     let best = fits().min_by(|a, b| a.nats.total_cmp(&b.nats))?;
     let weight: f64 = fits().map(|fit| libm::exp(best.nats - fit.nats)).sum();
     Some((best.nats - libm::log(weight), best.place_m.norm()))

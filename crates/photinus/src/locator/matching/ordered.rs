@@ -98,11 +98,7 @@ impl Ordered {
 
     /// The place of the airframe if the spots are these markers, each as much larger in the image as it is nearer, and the
     /// turn of the image (cosine, sine) against the view.
-    pub(super) fn place(
-        &self,
-        arrangement: &Arrangement,
-        image: &Image<'_>,
-    ) -> (Vector3<f64>, Vector2<f64>) {
+    pub(super) fn place(&self, arrangement: &Arrangement, image: &Image<'_>) -> (Vector3<f64>, Vector2<f64>) {
         let Arrangement { shape, size_m, middle_m, ahead_m, .. } = arrangement;
         let per_spot = 1.0 / self.count as f64;
         // How much nearer each marker is matters in the second order only: a distance as from afar will do for that.

@@ -1,0 +1,68 @@
+//! `photinus calibrate`: photos and recordings -> what Photinus must know beforehand, each with its uncertainty.
+
+mod advice;
+mod airframe;
+mod camera;
+mod coverage;
+mod mounting;
+mod page;
+mod photos;
+mod report;
+mod spot_size;
+mod table;
+
+use std::io::Write;
+use std::path::Path;
+
+use clap::Subcommand;
+use photinus_io::Error;
+
+use crate::failure::Failure;
+use crate::output::create;
+use crate::terminal::Terminal;
+
+/// Calibrate: from photos and recordings to a camera whose errors are known
+#[derive(Debug, clap::Args)]
+pub(crate) struct Args {
+    #[command(subcommand)]
+    what: What,
+}
+
+/// What is calibrated.
+#[derive(Debug, Subcommand)]
+enum What {
+    Camera(camera::Args),
+    Coverage(coverage::Args),
+    SpotSize(spot_size::Args),
+    Mounting(mounting::Args),
+    Airframe(airframe::Args),
+}
+
+impl Args {
+    /// Whether only errors and results are to be printed.
+    pub(crate) fn quiet(&self) -> bool {
+        match &self.what {
+            What::Camera(args) => args.quiet(),
+            What::Coverage(_) => false,
+            What::SpotSize(args) => args.quiet(),
+            What::Mounting(args) => args.quiet(),
+            What::Airframe(args) => args.quiet(),
+        }
+    }
+}
+
+/// Runs the command.
+pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> Result<(), Failure> {
+    match &args.what {
+        What::Camera(args) => camera::run(args, terminal),
+        What::Coverage(args) => coverage::run(args, terminal),
+        What::SpotSize(args) => spot_size::run(args, terminal),
+        What::Mounting(args) => mounting::run(args, terminal),
+        What::Airframe(args) => airframe::run(args, terminal),
+    }
+}
+
+/// Writes a file of text, or says why it cannot be.
+fn write(path: &Path, text: &str) -> Result<(), Failure> {
+    create(path)?.write_all(text.as_bytes()).map_err(|error| Failure::running(Error::io(path, error)))
+}

@@ -1,0 +1,44 @@
+//! A folder of figures that a page shows, too.
+
+use std::path::{Path, PathBuf};
+
+use kuva::prelude::{Layout, Plot};
+use photinus_io::{Error, Result};
+
+use super::save;
+
+/// A figure: what is drawn, and on which axes.
+pub(crate) struct Figure {
+    /// Its file name, without an ending.
+    pub(crate) name: String,
+    /// What is drawn.
+    pub(crate) plots: Vec<Plot>,
+    /// On which axes.
+    pub(crate) layout: Layout,
+}
+
+/// A folder of figures.
+pub(crate) struct FigureFolder(PathBuf);
+
+impl FigureFolder {
+    /// Makes the folder.
+    ///
+    /// # Errors
+    /// [`Error`] when it cannot be made.
+    pub(crate) fn create(folder: &Path) -> Result<Self> {
+        std::fs::create_dir_all(folder).map_err(|error| {
+            Error::io(folder, error).advise("name a folder that can be made and written to")
+        })?;
+        Ok(Self(folder.to_owned()))
+    }
+
+    /// Writes a figure as PNG and SVG, and gives the text of the SVG.
+    ///
+    /// # Errors
+    /// [`Error`] when it cannot be drawn or written.
+    pub(crate) fn write(&self, figure: Figure) -> Result<String> {
+        let scene = kuva::render::render::render_multiple(figure.plots, figure.layout);
+        save(&self.0, &figure.name, &scene)?;
+        Ok(kuva::backend::svg::SvgBackend::new().render_scene(&scene))
+    }
+}

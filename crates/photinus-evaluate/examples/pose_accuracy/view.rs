@@ -1,0 +1,156 @@
+//! Random views of a neighbour: its spots in pure geometry, and the information bound of its distance.
+
+use std::f64::consts::TAU;
+
+use nalgebra::{Matrix2, Matrix6, Rotation3, Unit, Vector3, Vector6};
+use photinus::airframe::Airframe;
+use photinus::camera::{Bearing, Camera, Pixel};
+use photinus::locator::{Located, Sighting};
+use photinus::spots::{Extent, Spot};
+use rand_distr::{Distribution, StandardNormal, Uniform};
+use rand_pcg::Pcg64;
+
+/// Tilt of a target and error of gravity, one sigma per axis, rad.
+pub(crate) const TILT_RAD: f64 = 4.0 * TAU / 360.0;
+pub(crate) const GRAVITY_RAD: f64 = 0.3 * TAU / 360.0;
+/// Spread of LEDs in pure geometry: sigma of the logarithm of their power.
+pub(crate) const UNIT_SIGMA: f64 = 0.1;
+/// Light of an LED straight ahead at 1 m, and the least that is found, grey levels.
+const POWER: f64 = 40_000.0;
+const FAINTEST: f64 = 60.0;
+
+/// A neighbour, and what is known of the vertical.
+pub(crate) struct View {
+    pub(crate) position_m: Vector3<f64>,
+    pub(crate) camera_from_body: Rotation3<f64>,
+    pub(crate) gravity: Unit<Vector3<f64>>,
+}
+
+fn normal(rng: &mut Pcg64) -> f64 {
+    StandardNormal.sample(rng)
+}
+
+fn uniform(rng: &mut Pcg64, low: f64, high: f64) -> f64 {
+    Uniform::new(low, high).expect("a range").sample(rng)
+}
+
+impl View {
+    pub(crate) fn draw(distance_m: f64, rng: &mut Pcg64) -> Self {
+        let (azimuth, elevation) = (uniform(rng, -1.0, 1.0), uniform(rng, -0.35, 0.35));
+        let ahead = Vector3::new(
+            libm::cos(elevation) * libm::sin(azimuth),
+            -libm::sin(elevation),
+            libm::cos(elevation) * libm::cos(azimuth),
+        );
+        let upright = Rotation3::from_basis_unchecked(&[Vector3::x(), Vector3::z(), -Vector3::y()]);
+        let yaw = Rotation3::from_axis_angle(&Vector3::z_axis(), uniform(rng, 0.0, TAU));
+        let tilt = Rotation3::new(Vector3::new(normal(rng), 0.0, normal(rng)) * TILT_RAD);
+        let off = Rotation3::new(Vector3::new(normal(rng), 0.0, normal(rng)) * GRAVITY_RAD);
+        Self {
+            position_m: ahead * distance_m,
+            camera_from_body: tilt * upright * yaw,
+            gravity: Unit::new_normalize(off * Vector3::y()),
+        }
+    }
+
+    /// The spots that show, each with an error of `sigma_px`, and their markers with the sigma of each direction, rad.
+    pub(crate) fn spots(
+        &self,
+        airframe: &Airframe,
+        camera: &Camera,
+        sigma_px: f64,
+        rng: &mut Pcg64,
+    ) -> (Vec<Spot>, Vec<(usize, f64)>) {
+        let camera_m = -(self.camera_from_body.inverse() * self.position_m);
+        let (mut spots, mut markers) = (Vec::new(), Vec::new());
+        for marker in 0..airframe.markers().len() {
+            let arm_m = airframe.markers()[marker].position_m;
+            let flux = POWER * airframe.intensity(marker, &camera_m) / (camera_m - arm_m).norm_squared()
+                * libm::exp(UNIT_SIGMA * normal(rng));
+            if flux < FAINTEST {
+                continue;
+            }
+            let place = self.camera_from_body * arm_m + self.position_m;
+            let Some(pixel) = Bearing::new(place).and_then(|bearing| camera.pixel(&bearing)) else {
+                continue;
+            };
+            let centre = Pixel::new(pixel.u + sigma_px * normal(rng), pixel.v + sigma_px * normal(rng));
+            let (u, v) = (pixel.u.round() as u32, pixel.v.round() as u32);
+            let extent = Extent { left: u.max(1) - 1, top: v.max(1) - 1, right: u + 1, bottom: v + 1 };
+            // An equidistant lens: the same angle per pixel along the radius, nearly so across it.
+            markers.push((marker, sigma_px * 3.7673e-3));
+            spots.push(Spot {
+                centre,
+                covariance_px2: Matrix2::identity() * (sigma_px * sigma_px),
+                area_px: 4,
+                peak: 200,
+                saturated_px: 0,
+                flux,
+                background: 5.0,
+                middle: (u, v),
+                extent,
+            });
+        }
+        (spots, markers)
+    }
+
+    /// The markers behind the spots, each with the sigma of its direction, rad.
+    pub(crate) fn matched(&self, airframe: &Airframe, located: &Located) -> Vec<(usize, f64)> {
+        let nearest = |sighting: &Sighting| {
+            let gap = |marker: &usize| {
+                let place = self.camera_from_body * airframe.markers()[*marker].position_m + self.position_m;
+                sighting.bearing.angle_to(&Bearing::new(place).expect("a direction"))
+            };
+            (0..airframe.markers().len()).min_by(|a, b| gap(a).total_cmp(&gap(b))).expect("a marker")
+        };
+        let sigma_rad = |sighting: &Sighting| (sighting.covariance_rad2.trace() / 2.0).sqrt();
+        located.sightings.iter().map(|sighting| (nearest(sighting), sigma_rad(sighting))).collect()
+    }
+
+    /// The Cramer-Rao bound of the variance of distance, by numeric derivatives of all that is measured or believed.
+    pub(crate) fn bound_m2(&self, airframe: &Airframe, markers: &[(usize, f64)], unit_sigma: f64) -> f64 {
+        let measured = |step: &Vector6<f64>| -> Vec<f64> {
+            let position_m = self.position_m + step.fixed_rows::<3>(0);
+            let turn = Rotation3::new(step.fixed_rows::<3>(3).into_owned());
+            let camera_from_body = self.camera_from_body * turn;
+            let camera_m = -(camera_from_body.inverse() * position_m);
+            let mut numbers = Vec::new();
+            let mut lights = Vec::new();
+            for &(marker, sigma_rad) in markers {
+                let arm_m = airframe.markers()[marker].position_m;
+                let seen = (camera_from_body * arm_m + position_m).normalize();
+                numbers.extend(seen.iter().map(|number| number / sigma_rad));
+                let intensity = airframe.intensity(marker, &camera_m).max(1e-6);
+                lights.push(libm::log(intensity) - libm::log((camera_m - arm_m).norm_squared()));
+            }
+            let mean = lights.iter().sum::<f64>() / lights.len() as f64;
+            numbers.extend(lights.iter().map(|light| (light - mean) / unit_sigma));
+            let up = camera_from_body.inverse() * -Vector3::y();
+            let tilt = libm::hypot(TILT_RAD, GRAVITY_RAD);
+            numbers.extend([up.x / tilt, up.y / tilt]);
+            numbers
+        };
+        let columns: Vec<Vec<f64>> = (0..6)
+            .map(|axis| {
+                let mut step = Vector6::zeros();
+                step[axis] = 1e-6;
+                let (ahead, behind) = (measured(&step), measured(&-step));
+                ahead.iter().zip(&behind).map(|(a, b)| (a - b) / 2e-6).collect()
+            })
+            .collect();
+        let mut information = Matrix6::from_fn(|row, column| {
+            columns[row].iter().zip(&columns[column]).map(|(a, b)| a * b).sum::<f64>()
+        });
+        // The prior on distance of a lone spot: something has to be believed.
+        let ahead = self.position_m.normalize();
+        let mut along = Vector6::zeros();
+        along.fixed_rows_mut::<3>(0).copy_from(&(ahead / self.position_m.norm() / 0.6));
+        if markers.len() == 1 {
+            information += along * along.transpose();
+            information[(5, 5)] += 1.0;
+        }
+        let covariance = information.try_inverse().expect("an invertible information");
+        let position = covariance.fixed_view::<3, 3>(0, 0);
+        ahead.dot(&(position * ahead))
+    }
+}

@@ -1,0 +1,52 @@
+//! Poses against truth, in pure geometry and through rendered frames: a short run of the example `pose_accuracy`.
+
+#![allow(dead_code, reason = "the example prints more than the test looks at")]
+
+#[path = "../examples/pose_accuracy/experiment.rs"]
+mod experiment;
+#[path = "../examples/pose_accuracy/render.rs"]
+mod render;
+#[path = "../examples/pose_accuracy/view.rs"]
+mod view;
+
+use experiment::{Source, Tally, airframes, run};
+
+/// Numbers of spots of which enough were seen to say something.
+fn rows(tallies: &[Tally]) -> impl Iterator<Item = (usize, &Tally)> {
+    tallies.iter().enumerate().filter(|(spots, tally)| *spots >= 2 && tally.count >= 60.0)
+}
+
+#[test]
+fn in_pure_geometry_three_markers_reach_the_information_bound() {
+    for airframe in airframes() {
+        for distance_m in [2.0, 5.0, 10.0, 15.0] {
+            let (tallies, nothing) = run(&airframe, distance_m, Source::Geometry { sigma_px: 0.1 }, 400);
+            assert_eq!(nothing, 0);
+            for (spots, tally) in rows(&tallies) {
+                let what = format!("{} {distance_m} m, {spots} spots: {tally:?}", airframe.name());
+                let most = if spots >= 3 { 1.25 } else { 1.5 };
+                assert!(tally.rmse_m() < most * tally.bound_m(), "{what}");
+                // The mean of n chi-squares of 3 scatters by sqrt(6 / n): here by a sixth to a third.
+                let honest = if spots >= 3 { 2.2..3.9 } else { 1.4..3.9 };
+                assert!(honest.contains(&tally.nees()), "{what}: {}", tally.nees());
+                assert!(tally.outside_bounds < 1.0, "{what}");
+            }
+        }
+    }
+}
+
+#[test]
+fn through_rendered_frames_distance_stays_by_the_bound_and_truth_between_the_strict_ones() {
+    for airframe in airframes() {
+        for distance_m in [2.0, 5.0, 10.0] {
+            let (tallies, nothing) = run(&airframe, distance_m, Source::Rendered, 200);
+            assert_eq!(nothing, 0);
+            for (spots, tally) in rows(&tallies) {
+                let what = format!("{} {distance_m} m, {spots} spots: {tally:?}", airframe.name());
+                assert!(tally.rmse_m() < 1.6 * tally.bound_m(), "{what}");
+                assert!((1.0..6.0).contains(&tally.nees()), "{what}: {}", tally.nees());
+                assert!(tally.outside_bounds < 1.0, "{what}");
+            }
+        }
+    }
+}

@@ -195,18 +195,17 @@ fn moments(components: &[Component], reference: &Rotation3<f64>, turns: usize) -
 fn nearest_turn(from: &Rotation3<f64>, to: &Rotation3<f64>, turns: usize) -> Vector3<f64> {
     let between = from.inverse() * to;
     if turns == 1 {
-        return rotation_vector(&between);
+        return turn_of(&between);
     }
     let sector_rad = core::f64::consts::TAU / turns as f64;
     let matrix = between.matrix();
     let yaw_rad = libm::atan2(matrix.m21 - matrix.m12, matrix.m11 + matrix.m22);
     let back_rad = -(yaw_rad / sector_rad).round() * sector_rad;
-    rotation_vector(&(between * Rotation3::from_axis_angle(&Vector3::z_axis(), back_rad)))
+    turn_of(&(between * Rotation3::from_axis_angle(&Vector3::z_axis(), back_rad)))
 }
 
-/// The axis of a rotation times its angle, rad. Through the quaternion: the trace of a matrix, off by its rounding, gives no
-/// angle near half a turn or none.
-fn rotation_vector(rotation: &Rotation3<f64>) -> Vector3<f64> {
+/// Axis times angle; by the quaternion, since the arc cosine of a matrix's trace is no number where rounding takes it past 1.
+fn turn_of(rotation: &Rotation3<f64>) -> Vector3<f64> {
     UnitQuaternion::from_rotation_matrix(rotation).scaled_axis()
 }
 

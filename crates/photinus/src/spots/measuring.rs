@@ -107,9 +107,12 @@ impl Meter {
         let balanced = || {
             let (centre, covariance) =
                 centroid::balance(&self.patch, part.guess, window.radius_px as f32, variance)?;
-            let (centre, blur) = match saturated_px {
-                0 => sampling::unfold(&self.patch, centre),
-                _ => (centre, Matrix2::from_diagonal_element(blur_of_saturation(saturated_px))),
+            let (centre, covariance) = match saturated_px {
+                0 => sampling::unfold(&self.patch, centre, covariance),
+                _ => {
+                    let blur = Matrix2::from_diagonal_element(blur_of_saturation(saturated_px));
+                    (centre, covariance + blur)
+                }
             };
             let missing = match (part.outline.cut, window.crowded) {
                 (true, _) => radius / 2.0,
@@ -117,7 +120,7 @@ impl Meter {
                 (false, false) if window.relieved => RELIEVED_BLUR_PX,
                 (false, false) => 0.0,
             };
-            Some((centre, covariance + blur + Matrix2::from_diagonal_element(missing * missing)))
+            Some((centre, covariance + Matrix2::from_diagonal_element(missing * missing)))
         };
         let found = if saturated_px > 0 {
             let fit = skirt((radius + 2.5).min(window.radius_px + 1.0));

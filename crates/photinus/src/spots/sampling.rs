@@ -25,22 +25,34 @@ const NARROW_SHARE: f64 = 0.8;
 /// The pull is known to this share of itself: cores are not Gaussians, shares are not free of noise.
 const UNKNOWN: f64 = 0.6;
 
-/// Takes the grid's pull off a centre; the variance of what is left, px^2.
-pub(super) fn unfold(patch: &Patch, centre: Pixel) -> (Pixel, Matrix2<f64>) {
+/// Takes the grid's pull off a centre with its covariance, px^2, and adds the variance of what is left.
+pub(super) fn unfold(patch: &Patch, centre: Pixel, covariance_px2: Matrix2<f64>) -> (Pixel, Matrix2<f64>) {
     let pixel = (centre.u.round() as i32, centre.v.round() as i32);
     let in_two = |shares: &[f64; 3]| shares[1] + shares[0].max(shares[2]);
     let narrow = |[columns, rows]: &[[f64; 3]; 2]| in_two(columns) * in_two(rows) >= NARROW_SHARE;
     let Some([columns, rows]) = patch.shares(pixel).filter(narrow) else {
-        return (centre, Matrix2::zeros());
+        return (centre, covariance_px2);
     };
-    let (u, var_u) = unfold_axis(centre.u - f64::from(pixel.0), &columns);
-    let (v, var_v) = unfold_axis(centre.v - f64::from(pixel.1), &rows);
-    let place = Pixel::new(f64::from(pixel.0) + u, f64::from(pixel.1) + v);
-    (place, Matrix2::from_diagonal(&Vector2::new(var_u, var_v)))
+    let u = unfold_axis(centre.u - f64::from(pixel.0), &columns);
+    let v = unfold_axis(centre.v - f64::from(pixel.1), &rows);
+    let place = Pixel::new(f64::from(pixel.0) + u.phase, f64::from(pixel.1) + v.phase);
+    let gain = Matrix2::from_diagonal(&Vector2::new(u.gain, v.gain));
+    let left = Matrix2::from_diagonal(&Vector2::new(u.variance_px2, v.variance_px2));
+    (place, gain * covariance_px2 * gain + left)
 }
 
-/// One axis: the measured phase within the middle pixel and the shares of the light -> phase and variance, px^2.
-fn unfold_axis(measured: f64, shares: &[f64; 3]) -> (f64, f64) {
+/// One axis without the grid's pull.
+struct Unfolded {
+    /// Where in the middle pixel the light fell, px.
+    phase: f64,
+    /// How the phase changes with the measured one.
+    gain: f64,
+    /// Of what is left of the pull.
+    variance_px2: f64,
+}
+
+/// Takes the pull off the phase measured within the middle pixel, by the shares of the light.
+fn unfold_axis(measured: f64, shares: &[f64; 3]) -> Unfolded {
     let far = if measured >= 0.0 { shares[0] } else { shares[2] };
     let mut phase = measured;
     let mut contrast = 0.0;
@@ -50,7 +62,8 @@ fn unfold_axis(measured: f64, shares: &[f64; 3]) -> (f64, f64) {
         phase = (measured + contrast / PI * libm::sin(TAU * phase)).clamp(-0.5, 0.5);
     }
     let pull = UNKNOWN * contrast / (PI * core::f64::consts::SQRT_2);
-    (phase, pull * pull)
+    let gain = 1.0 / (1.0 - 2.0 * contrast * libm::cos(TAU * phase)).max(0.5);
+    Unfolded { phase, gain, variance_px2: pull * pull }
 }
 
 /// How many sigma above the mean a normal distribution has a share of itself left, for shares up to a half (Abramowitz and
@@ -80,7 +93,7 @@ mod tests {
                 let shares = [-1.0, 0.0, 1.0].map(|column| share(column, centre, sigma_px));
                 let measured =
                     (-4..=4).map(|c| f64::from(c) * share(f64::from(c), centre, sigma_px)).sum::<f64>();
-                let (phase, variance) = unfold_axis(measured, &shares);
+                let Unfolded { phase, variance_px2: variance, .. } = unfold_axis(measured, &shares);
                 let (before, after) = ((measured - centre).abs(), (phase - centre).abs());
                 assert!(after < (0.65 * before).max(0.012), "{sigma_px} {centre}: {before} {after}");
                 assert!(after < 3.0 * variance.sqrt() + 0.01, "{sigma_px} {centre}: {after} {variance}");

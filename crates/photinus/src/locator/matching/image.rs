@@ -55,7 +55,9 @@ impl<'a> Image<'a> {
             *place -= middle;
         }
         let size = places.iter().map(Vector2::norm_squared).sum::<f64>().sqrt();
-        let variance = members().map(|sighting| sighting.covariance_rad2.trace() / 2.0).sum::<f64>() / count;
+        // One spot that another disturbs must not make every shape a match: the geometric mean.
+        let log_variance = members().map(|sighting| libm::log(sighting.covariance_rad2.trace() / 2.0));
+        let variance = libm::exp(log_variance.sum::<f64>() / count);
         (size > 0.0).then_some(Self {
             axes: Matrix3::from_columns(&[right.into_inner(), up, ahead.into_inner()]),
             places,

@@ -18,6 +18,7 @@ use crate::detect::in_frame;
 use crate::failure::Failure;
 use crate::input::{Entry, Input, InputArgs};
 use crate::output::OutputArgs;
+use crate::pose_options::PoseArgs;
 use crate::run;
 use crate::spot_options::{SpotArgs, mask_of};
 use crate::terminal::Terminal;
@@ -43,7 +44,7 @@ pub(crate) struct Args {
     #[command(flatten)]
     input: InputArgs,
     /// Spots of another detector in place of frames: JSON lines, see docs/file-formats.md
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["contrast", "threshold", "mask"])]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["contrast", "threshold", "faintest", "mask"])]
     spots: Option<PathBuf>,
     /// The camera's calibration, in any format that `photinus info` knows [default: that of the dataset]
     #[arg(long, value_name = "FILE")]
@@ -60,6 +61,8 @@ pub(crate) struct Args {
     /// Largest tilt of a neighbour that the bounds allow for, where gravity is known
     #[arg(long, value_name = "DEG", default_value_t = 15.0, value_parser = tilt)]
     max_tilt: f64,
+    #[command(flatten)]
+    pose_options: PoseArgs,
     #[command(flatten)]
     spot_options: SpotArgs,
     #[command(flatten)]
@@ -131,7 +134,7 @@ pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> std::result::Result<(
     let settings = Settings {
         spots: args.spot_options.settings(),
         max_tilt_rad: args.max_tilt.to_radians(),
-        ..Settings::default()
+        pose: args.pose_options.settings(),
     };
     let refuse = |error: photinus::locator::LocatorError| Failure::Input(error.to_string());
     let mut locator = Locator::new(camera, &airframe, curve, settings).map_err(refuse)?;
@@ -166,8 +169,9 @@ pub(crate) fn fill(
             in_frame(Error::format(&entry.record.source, error.to_string()).advise(advice), entry)
         })?,
         None => {
-            let spots: Vec<Spot> = entry.record.spots.iter().map(Spot::from).collect();
-            locator.locate_spots(&spots, gravity, finished)
+            let given = entry.record.spots.iter().map(|record| (Spot::from(record), record.signal));
+            let spots: Vec<(Spot, Option<u32>)> = given.collect();
+            locator.locate_signalled(&spots, gravity, finished)
         }
     };
     entry.record.put_located(located, airframe);

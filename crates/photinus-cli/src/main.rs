@@ -27,6 +27,7 @@ mod output;
 mod overlay;
 mod page;
 mod plots;
+mod pose_options;
 mod reproduce;
 mod run;
 mod simulate;

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use photinus::frame::Mask;
-use photinus::spots::{Brightness, Settings};
+use photinus::spots::{Brightness, Settings, Shape};
 use photinus_io::dataset::Dataset;
 use photinus_io::mask::{MaskFile, read_mask};
 
@@ -19,6 +19,10 @@ pub(crate) struct SpotArgs {
     /// A pixel is bright from the grey level N on: the paper's rule, with 200
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..))]
     threshold: Option<u8>,
+    /// A faint spot with less than this share of the brightness of one beside it is taken for a reflection; 0 keeps all.
+    /// Not with --threshold
+    #[arg(long, value_name = "SHARE", default_value_t = Shape::default().faintest, value_parser = share, conflicts_with = "threshold")]
+    faintest: f64,
     /// An image of the frames' size that is 0 where not to look [default: that of the dataset, if any]
     #[arg(long, value_name = "FILE")]
     mask: Option<PathBuf>,
@@ -32,7 +36,8 @@ impl SpotArgs {
             (None, Some(step)) => Brightness::Contrast(step),
             (None, None) => Brightness::default(),
         };
-        Settings { brightness, ..Settings::default() }
+        let shape = Shape { faintest: self.faintest, ..Shape::default() };
+        Settings { brightness, shape, ..Settings::default() }
     }
 
     /// The mask that was named, or that of the dataset.
@@ -54,4 +59,9 @@ impl SpotArgs {
 /// The mask of a file, where there is one.
 pub(crate) fn mask_of(file: Option<&MaskFile>) -> Option<&Mask> {
     file.map(|file| &file.mask)
+}
+
+fn share(text: &str) -> Result<f64, String> {
+    let share: Option<f64> = text.parse().ok().filter(|share| (0.0..=1.0).contains(share));
+    share.ok_or_else(|| "give a share, 0 to 1".to_owned())
 }

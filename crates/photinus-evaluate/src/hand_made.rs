@@ -61,6 +61,7 @@ pub(crate) fn spot(u_px: f64, v_px: f64, area_px: u32) -> SpotRecord {
         bearing: None,
         bound_rad: None,
         range_m: None,
+        signal: None,
     }
 }
 

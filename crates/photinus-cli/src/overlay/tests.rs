@@ -27,6 +27,7 @@ fn spot(u_px: f64, v_px: f64) -> SpotRecord {
         bearing: None,
         bound_rad: None,
         range_m: None,
+        signal: None,
     }
 }
 

@@ -48,6 +48,10 @@ fn usage() {
     refuses(&stage, &format!("{LOCATE} --gravity 0,0,0"), 2, &["no direction"]);
     refuses(&stage, &format!("{LOCATE} --gravity 0,nan,0"), 2, &["no direction"]);
     refuses(&stage, &format!("{LOCATE} --max-tilt 200"), 2, &["0 to 180"]);
+    refuses(&stage, &format!("{LOCATE} --tilt-sigma 0"), 2, &["--tilt-sigma", "degrees, 0.01 to 180"]);
+    refuses(&stage, &format!("{LOCATE} --marker-sigma 2"), 2, &["--marker-sigma"]);
+    refuses(&stage, &format!("{LOCATE} --marker-sigma nan"), 2, &["metres, 0 to 1"]);
+    refuses(&stage, "detect frame.png --faintest 2", 2, &["--faintest", "a share, 0 to 1"]);
     refuses(&stage, "detect .", 2, &["holds no dataset.toml", "; name the folder of a dataset"]);
     refuses(&stage, "detect . frame.png", 2, &["a folder among several inputs; name"]);
     refuses(

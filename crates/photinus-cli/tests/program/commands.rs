@@ -100,6 +100,52 @@ fn locate_prints_writes_and_draws() {
 }
 
 #[test]
+fn what_is_believed_of_a_neighbour_shows_in_its_sigma() {
+    let stage = Stage::new("priors");
+    let sigma_m = |options: &str| {
+        assert_eq!(stage.run(&format!("{LOCATE} -q --out r.jsonl --gravity 0,1,0 {options}")).code, 0);
+        records(&stage, "r.jsonl")[0].neighbours[0].distance_m.sigma.unwrap()
+    };
+    let usual_m = sigma_m("");
+    assert!(
+        (sigma_m("--tilt-sigma 5 --marker-sigma 0.001") - usual_m).abs() < 1e-12,
+        "these are the defaults"
+    );
+    assert!(sigma_m("--marker-sigma 0.05") > 1.2 * usual_m);
+    assert!(sigma_m("--no-brightness") > usual_m);
+    assert!(sigma_m("--tilt-sigma 0.5") < sigma_m("--tilt-sigma 20"));
+}
+
+#[test]
+fn signals_of_spots_tell_the_yaw() {
+    let stage = Stage::new("signals");
+    let led = |arm: i32| {
+        let (yaw_rad, radius_m) = (f64::from(arm) * std::f64::consts::FRAC_PI_3, 0.4);
+        let (sin, cos) = libm::sincos(yaw_rad);
+        format!("{} {} 0 0 0 {yaw_rad} {arm}\n", radius_m * cos, radius_m * sin)
+    };
+    stage.file("six.txt", (0..6).map(led).collect::<String>());
+    // Arms that face the camera: the body's left is the image's right.
+    for (left, right) in [(0, 1), (2, 3)] {
+        let spot = |u_px: f64, signal: u32| {
+            format!(r#"{{"u_px":{u_px},"v_px":31,"sigma_px":0.1,"signal":{signal}}}"#)
+        };
+        stage.file("s.jsonl", format!("{{\"spots\":[{},{}]}}", spot(42.0, left), spot(52.0, right)));
+        let known = "--camera camera.toml --airframe six.txt --gravity 0,1,0 -q --out r.jsonl";
+        assert_eq!(stage.run(&format!("locate --spots s.jsonl {known}")).code, 0);
+        let record = &records(&stage, "r.jsonl")[0];
+        assert_eq!(record.spots[1].signal, Some(right));
+        // The body's x axis in the camera frame, x and z; the arms are to the left of it.
+        let [x, y, z, w] = record.neighbours[0].orientation_xyzw.unwrap();
+        let forward = [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * z - y * w)];
+        let camera_deg = libm::atan2(-forward[0], -forward[1]).to_degrees();
+        let middle_deg = 30.0 * f64::from(left + right);
+        let off_deg = (camera_deg - middle_deg).rem_euclid(360.0);
+        assert!(off_deg.min(360.0 - off_deg) < 30.0, "the camera is at {camera_deg}, not {middle_deg}");
+    }
+}
+
+#[test]
 fn a_video_becomes_a_dataset_that_knows_its_camera_and_becomes_the_video_again() {
     let stage = Stage::new("dataset");
     stage.file("two.y4m", video(2));

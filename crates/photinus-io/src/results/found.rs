@@ -70,6 +70,7 @@ impl From<&Sighting> for SpotRecord {
             bearing: Some((*sighting.bearing.vector()).into()),
             bound_rad: Some(sighting.bound_rad),
             range_m: sighting.range.map(|range| (range.min_m(), finite(range.max_m()))),
+            signal: sighting.signal,
             ..Self::from(&sighting.spot)
         }
     }
@@ -93,6 +94,7 @@ impl From<&Spot> for SpotRecord {
             bearing: None,
             bound_rad: None,
             range_m: None,
+            signal: None,
         }
     }
 }

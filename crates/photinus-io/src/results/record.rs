@@ -67,10 +67,10 @@ pub struct NeighbourRecord {
     /// Covariance of the position, m^2.
     #[serde(default)]
     pub position_covariance_m2: Option<[[f64; 3]; 3]>,
-    /// Its attitude, camera_from_body as x, y, z, w.
+    /// Its mean attitude, camera_from_body as x, y, z, w: one of those that the airframe's symmetry makes equal.
     #[serde(default)]
     pub orientation_xyzw: Option<[f64; 4]>,
-    /// Covariance of the attitude, as a small rotation in the camera frame, rad^2.
+    /// Covariance of the attitude as a small rotation in the body frame, the third axis yaw, rad^2.
     #[serde(default)]
     pub orientation_covariance_rad2: Option<[[f64; 3]; 3]>,
     /// Every pose that the spots allow, the likeliest first.

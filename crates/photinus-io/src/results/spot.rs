@@ -43,6 +43,9 @@ pub struct SpotRecord {
     pub bound_rad: Option<f64>,
     /// Truth is never outside, m; the far end is `null` where nothing bounds it.
     pub range_m: Option<(f64, Option<f64>)>,
+    /// Which of the airframe's signals it was seen to blink, where that is known.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub signal: Option<u32>,
 }
 
 impl SpotRecord {
@@ -69,6 +72,7 @@ struct Given {
     bearing: Option<[f64; 3]>,
     bound_rad: Option<f64>,
     range_m: Option<(f64, Option<f64>)>,
+    signal: Option<u32>,
 }
 
 /// One standard deviation, or one per axis.
@@ -132,6 +136,7 @@ impl TryFrom<Given> for SpotRecord {
             bearing: given.bearing,
             bound_rad: given.bound_rad,
             range_m: given.range_m,
+            signal: given.signal,
         })
     }
 }

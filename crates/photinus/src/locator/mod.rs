@@ -110,6 +110,8 @@ pub enum Stage {
 pub struct Sighting {
     /// The spot.
     pub spot: Spot,
+    /// Which of the airframe's signals it was seen to blink, where that is known.
+    pub signal: Option<u32>,
     /// Its direction in the camera frame.
     pub bearing: Bearing,
     /// Covariance of the direction, rad^2, tangent to the sphere (rank 2): from the spot and, where the camera's file says
@@ -151,7 +153,8 @@ pub struct Position {
 /// How a neighbour is turned.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Orientation {
-    /// Maps the body's coordinates to the camera's. Yaw is one of those that the airframe's symmetry makes equal.
+    /// Maps the body's coordinates to the camera's. Yaw is one of those that the airframe's symmetry makes equal; where
+    /// signals of spots are known, one of those that they do not tell apart.
     pub camera_from_body: Rotation3<f64>,
     /// Covariance as a small rotation in the body frame (its third axis is yaw), rad^2.
     pub covariance_rad2: Matrix3<f64>,
@@ -284,7 +287,8 @@ impl Locator {
         let detections = self.detector.detect(frame, self.mask.as_ref()).map_err(|_| size)?;
         self.located.rejected.clone_from(&detections.rejected);
         finished(Stage::Spots);
-        sight_all(&self.camera, self.curve.as_ref(), &detections.spots, &mut self.located);
+        let spots = detections.spots.iter().map(|spot| (spot, None));
+        sight_all(&self.camera, self.curve.as_ref(), spots, &mut self.located);
         finished(Stage::Bearings);
         Ok(self.tell_neighbours(gravity, finished))
     }
@@ -293,6 +297,27 @@ impl Locator {
     pub fn locate_spots(
         &mut self,
         spots: &[Spot],
+        gravity: Option<&Unit<Vector3<f64>>>,
+        finished: &mut dyn FnMut(Stage),
+    ) -> &Located {
+        self.sight_and_tell(spots.iter().map(|spot| (spot, None)), gravity, finished)
+    }
+
+    /// The same with the signal that each spot was seen to blink, `None` where that is not known: with them a symmetric
+    /// airframe's yaw is told as far as its signals differ. A signal that no LED of the airframe carries tells nothing, a
+    /// wrong one little.
+    pub fn locate_signalled(
+        &mut self,
+        spots: &[(Spot, Option<u32>)],
+        gravity: Option<&Unit<Vector3<f64>>>,
+        finished: &mut dyn FnMut(Stage),
+    ) -> &Located {
+        self.sight_and_tell(spots.iter().map(|(spot, signal)| (spot, *signal)), gravity, finished)
+    }
+
+    fn sight_and_tell<'a>(
+        &mut self,
+        spots: impl Iterator<Item = (&'a Spot, Option<u32>)>,
         gravity: Option<&Unit<Vector3<f64>>>,
         finished: &mut dyn FnMut(Stage),
     ) -> &Located {
@@ -340,10 +365,15 @@ fn faintest_light(settings: &spots::Settings) -> f64 {
 }
 
 /// Gives every spot its bearing; those that have none are rejected.
-fn sight_all(camera: &Camera, curve: Option<&SpotCurve>, spots: &[Spot], located: &mut Located) {
+fn sight_all<'a>(
+    camera: &Camera,
+    curve: Option<&SpotCurve>,
+    spots: impl Iterator<Item = (&'a Spot, Option<u32>)>,
+    located: &mut Located,
+) {
     located.sightings.clear();
-    for spot in spots {
-        match sighting::sight(camera, curve, spot) {
+    for (spot, signal) in spots {
+        match sighting::sight(camera, curve, spot, signal) {
             Some(sighting) => located.sightings.push(sighting),
             None => located.rejected.push(Rejected {
                 centre: spot.centre,

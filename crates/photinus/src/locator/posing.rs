@@ -229,7 +229,7 @@ fn observe(sighting: &Sighting) -> Observation {
         covariance_rad2: sighting.spot_covariance_rad2,
         log_light,
         resolution_rad: RESOLUTION_PX * sighting.rad_per_px,
-        signal: None,
+        signal: sighting.signal,
     }
 }
 

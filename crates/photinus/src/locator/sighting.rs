@@ -8,14 +8,20 @@ use crate::spots::Spot;
 /// How much the scale of the image may grow across half a spot: what a bound is widened by.
 const SCALE_CHANGE: f64 = 1.05;
 
-/// Sights a spot; `None` outside the camera's field.
-pub(super) fn sight(camera: &Camera, curve: Option<&SpotCurve>, spot: &Spot) -> Option<Sighting> {
+/// Sights a spot that was seen to blink `signal`, if any; `None` outside the camera's field.
+pub(super) fn sight(
+    camera: &Camera,
+    curve: Option<&SpotCurve>,
+    spot: &Spot,
+    signal: Option<u32>,
+) -> Option<Sighting> {
     let (bearing, jacobian) = camera.bearing_with_jacobian(spot.centre)?;
     let rad_per_px = largest_rad_per_px(&jacobian);
     let spot_covariance_rad2 = jacobian * spot.covariance_px2 * jacobian.transpose();
     let calibration = camera.calibration_covariance(spot.centre).unwrap_or_default();
     Some(Sighting {
         spot: spot.clone(),
+        signal,
         rad_per_px,
         bearing,
         covariance_rad2: spot_covariance_rad2 + calibration,

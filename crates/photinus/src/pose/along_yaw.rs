@@ -11,7 +11,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::mixture::Component;
 use super::problem::Problem;
-use super::refine::{Refined, turned, without_yaw};
+use super::refine::{Refined, following, turned, without_yaw, yaw_sigma_rad};
 
 /// Yaw surer than this needs no slices, rad.
 const NARROW_RAD: f64 = 0.03;
@@ -19,6 +19,10 @@ const NARROW_RAD: f64 = 0.03;
 const WIDEST_STEP_RAD: f64 = 5.0 * PI / 180.0;
 /// ... and this share of the yaw's sigma: sums over a normal distribution in such steps are exact to a part in 10^5.
 const STEP_SIGMAS: f64 = 1.2;
+/// Where a marker comes into sight or goes out of it by more than this from one slice to the next, nats, the slices are
+/// halved, down to so much, rad.
+const ABRUPT_NATS: f64 = 1.0;
+const FINEST_STEP_RAD: f64 = 0.015;
 /// A slice this much worse than the best, nats, is one of two that end the walk.
 const LITTLE_NATS: f64 = 5.0;
 /// Most slices on one side.
@@ -34,15 +38,15 @@ pub(super) fn spread(
     hypothesis: usize,
     components: &mut Vec<Component>,
 ) {
-    let (information, coupling) = without_yaw(&mode.normal);
-    let Some(factor) = information.cholesky() else { return };
-    let yaw_information = mode.normal.information[(5, 5)] - coupling.dot(&factor.solve(&coupling));
-    let yaw_sigma_rad = 1.0 / yaw_information.max(1e-6).sqrt();
+    let Some(yaw_sigma_rad) = yaw_sigma_rad(mode) else { return };
     if yaw_sigma_rad < NARROW_RAD {
         components.extend(whole(problem, mode, hypothesis));
         return;
     }
-    let step_rad = (STEP_SIGMAS * yaw_sigma_rad).min(WIDEST_STEP_RAD);
+    let mut step_rad = (STEP_SIGMAS * yaw_sigma_rad).min(WIDEST_STEP_RAD);
+    while step_rad > FINEST_STEP_RAD && changes_abruptly(problem, mode, step_rad) {
+        step_rad *= 0.5;
+    }
     let Some(middle) = slice(problem, mode, hypothesis, 0.0, step_rad) else { return };
     components.push(middle);
     for side in [step_rad, -step_rad] {
@@ -61,6 +65,13 @@ pub(super) fn spread(
             here = there;
         }
     }
+}
+
+/// Whether a marker comes into sight or goes out of it within a slice of the mode: by more than a normal distribution falls.
+fn changes_abruptly(problem: &Problem<'_>, mode: &Refined, step_rad: f64) -> bool {
+    let here = problem.visibility_nats(&mode.pose);
+    let changes = |there| (problem.visibility_nats(&there) - here).abs() > ABRUPT_NATS;
+    [step_rad, -step_rad].into_iter().any(|side| following(mode, side).is_some_and(changes))
 }
 
 /// A mode as one normal distribution.

@@ -8,7 +8,7 @@ use super::hypotheses::Hypotheses;
 use super::mixture::{self, Component, Mode, Summary};
 use super::observation::{Observation, Whitened};
 use super::problem::{LogDistance, Pose, Problem};
-use super::refine::{Refined, refine};
+use super::refine::{Refined, following, refine, yaw_sigma_rad};
 use super::settings::{Settings, SettingsError};
 use super::symmetry::Symmetry;
 use crate::airframe::Airframe;
@@ -18,8 +18,6 @@ use crate::ranging::Interval;
 const HOPELESS_NATS: f64 = 8.0;
 /// Most rounds of assigning spots to markers and refining the pose.
 const MOST_ROUNDS: usize = 10;
-/// What it costs that a decoded signal is not the marker's: one in a hundred and fifty is wrong.
-const WRONG_SIGNAL_NATS: f64 = 5.0;
 
 /// What is known of a neighbour besides its spots.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -72,17 +70,20 @@ impl Estimator {
     pub fn new(airframe: &Airframe, settings: Settings) -> Result<Self, SettingsError> {
         settings.check()?;
         let (spots, hypotheses) = (airframe.markers().len(), Hypotheses::MOST);
+        let symmetry = Symmetry::of(airframe);
+        // One mode more is held while it is turned.
+        let components = (hypotheses * symmetry.told_apart() + 1) * along_yaw::MOST_COMPONENTS;
         Ok(Self {
             airframe: airframe.clone(),
             settings,
-            symmetry: Symmetry::of(airframe),
+            symmetry,
             whitened: Vec::with_capacity(spots),
             assignment: Assignment::with_room(spots),
             modes: Vec::with_capacity(hypotheses),
             nats: Vec::with_capacity(hypotheses),
-            components: Vec::with_capacity(hypotheses * along_yaw::MOST_COMPONENTS),
+            components: Vec::with_capacity(components),
             posterior: Posterior {
-                modes: Vec::with_capacity(hypotheses * along_yaw::MOST_COMPONENTS),
+                modes: Vec::with_capacity(components),
                 markers: Vec::with_capacity(spots),
                 ..Posterior::default()
             },
@@ -120,9 +121,13 @@ impl Estimator {
         self.components.clear();
         for index in 0..self.modes.len() {
             let mode = self.modes[index];
-            let twin = |other: &Refined| is_same(other, &mode);
-            let same = |other: usize| hypotheses.markers(other) == hypotheses.markers(index);
-            if self.nats[index] > limit || (0..index).any(|other| same(other) && twin(&self.modes[other])) {
+            // Of searches that ended in one mode the best stands for it: the others may have stopped short.
+            let is_better_twin = |other: usize| {
+                (self.nats[other], other) < (self.nats[index], index)
+                    && hypotheses.markers(other) == hypotheses.markers(index)
+                    && is_same(&self.modes[other], &mode)
+            };
+            if self.nats[index] > limit || (0..self.modes.len()).any(is_better_twin) {
                 continue;
             }
             let problem = problem(&self.airframe, &self.settings, observations, &self.whitened, known)
@@ -157,8 +162,20 @@ impl Estimator {
             } else {
                 refine(&problem.assigned(hypotheses.markers(index), &start), start)
             };
-            let unseen = problem.assigned(hypotheses.markers(index), &mode.pose).visibility_nats(&mode.pose);
-            self.nats.push(mode.normal.nats + unseen);
+            let problem = problem.assigned(hypotheses.markers(index), &mode.pose);
+            let mut unseen = problem.visibility_nats(&mode.pose);
+            if unseen > HOPELESS_NATS {
+                // Light pulls little on a marker that hardly shows: the mode may sit where it no longer does, a sigma beside
+                // where it must.
+                let sigma_rad = yaw_sigma_rad(&mode).unwrap_or(0.0);
+                for beside in [sigma_rad, -sigma_rad].map(|yaw_rad| following(&mode, yaw_rad)) {
+                    let nats = beside.map_or(f64::INFINITY, |pose| 0.5 + problem.visibility_nats(&pose));
+                    unseen = unseen.min(nats);
+                }
+            }
+            let signals = observations.iter().map(|seen| seen.signal);
+            let wrong = self.symmetry.least_signal_nats(signals, hypotheses.markers(index));
+            self.nats.push(mode.normal.nats + unseen + wrong);
             self.modes.push(mode);
         }
     }
@@ -168,26 +185,21 @@ impl Estimator {
         if observations.iter().all(|seen| seen.signal.is_none()) {
             return;
         }
-        let count = self.components.len() - first;
-        for turn in 0..self.symmetry.turns() {
-            let wrong = observations.iter().zip(markers).filter(|(seen, marker)| {
-                let turned = marker.map(|marker| self.symmetry.turned(turn, marker));
-                seen.signal.zip(turned).is_some_and(|(signal, marker)| {
-                    let leds = &self.airframe.markers()[usize::from(marker)].leds;
-                    leds.iter().all(|&led| self.airframe.leds()[led].signal != Some(signal))
-                })
-            });
-            let nats = WRONG_SIGNAL_NATS * wrong.count() as f64;
-            for index in first..first + count {
+        let last = self.components.len();
+        let turns = self.symmetry.told_apart();
+        for turn in 0..turns {
+            let signals = observations.iter().map(|seen| seen.signal);
+            let nats = self.symmetry.signal_nats(turn, signals, markers) + libm::log(turns as f64);
+            for index in first..last {
                 let mut component = self.components[index];
                 component.log_weight -= nats;
                 component.pose.camera_from_body =
                     self.symmetry.attitude(&component.pose.camera_from_body, turn);
-                component.hypothesis += turn * 1000;
+                component.hypothesis += turn * self.modes.len();
                 self.components.push(component);
             }
         }
-        self.components.drain(first..first + count);
+        self.components.drain(first..last);
     }
 
     fn tell(&mut self, observations: &[Observation], known: &Known) {
@@ -199,7 +211,7 @@ impl Estimator {
             return;
         }
         let anonymous = observations.iter().all(|seen| seen.signal.is_none());
-        let turns = if anonymous { self.symmetry.turns() } else { 1 };
+        let turns = if anonymous { self.symmetry.turns() } else { self.symmetry.turns_with_signals() };
         posterior.summary = mixture::summarise(components, turns);
         mixture::modes(components, turns, &mut posterior.modes);
     }

@@ -208,3 +208,23 @@ fn nearest_turn(from: &Rotation3<f64>, to: &Rotation3<f64>, turns: usize) -> Vec
 fn turn_of(rotation: &Rotation3<f64>) -> Vector3<f64> {
     UnitQuaternion::from_rotation_matrix(rotation).scaled_axis()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn attitudes_half_a_turn_apart_have_a_rotation_between_them() {
+        for tilt in [0.0, 1e-12, 1e-9, 0.01, 0.3] {
+            let from = Rotation3::new(Vector3::new(0.3, -0.9, 1.0 + tilt));
+            for yaw_rad in [0.0, 1e-9, core::f64::consts::PI, core::f64::consts::PI - 1e-9] {
+                let to = from * Rotation3::from_axis_angle(&Vector3::z_axis(), yaw_rad);
+                let off = nearest_turn(&from, &to, 1);
+                assert!((off.norm() - yaw_rad).abs() < 1e-7, "{yaw_rad}: {off}");
+                assert!(
+                    nearest_turn(&from, &to, 2).norm() < 1e-7 + yaw_rad.min(core::f64::consts::PI - yaw_rad)
+                );
+            }
+        }
+    }
+}

@@ -27,6 +27,7 @@ mod pnp;
 mod problem;
 mod refine;
 mod settings;
+mod signals;
 mod symmetry;
 #[cfg(test)]
 mod tests;

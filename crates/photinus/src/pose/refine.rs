@@ -66,12 +66,23 @@ pub(super) fn without_yaw(normal: &Normal) -> (Matrix5<f64>, Vector5<f64>) {
     (all.fixed_view::<5, 5>(0, 0).into_owned(), all.fixed_view::<5, 1>(0, 5).into_owned())
 }
 
+/// The standard deviation of the yaw of a mode, all else free, rad; `None` where the rest is not determined.
+pub(super) fn yaw_sigma_rad(mode: &Refined) -> Option<f64> {
+    let (information, coupling) = without_yaw(&mode.normal);
+    let explained = coupling.dot(&information.cholesky()?.solve(&coupling));
+    Some(1.0 / (mode.normal.information[(5, 5)] - explained).max(1e-6).sqrt())
+}
+
+/// A pose with the yaw turned by `yaw_rad`, all else following as far as it is coupled with yaw: `turned` to first order.
+pub(super) fn following(here: &Refined, yaw_rad: f64) -> Option<Pose> {
+    let (information, coupling) = without_yaw(&here.normal);
+    let step = information.cholesky()?.solve(&(coupling * -yaw_rad)).push(yaw_rad);
+    Some(here.pose.stepped(&shortened(step)))
+}
+
 /// The pose that costs least beside `here` with the yaw turned by `yaw_rad`.
 pub(super) fn turned(problem: &Problem<'_>, here: &Refined, yaw_rad: f64) -> Option<Refined> {
-    let (information, coupling) = without_yaw(&here.normal);
-    let predicted = information.cholesky()?.solve(&(coupling * -yaw_rad));
-    let mut step = predicted.push(yaw_rad);
-    let mut there = Refined::at(problem, here.pose.stepped(&shortened(step)));
+    let mut there = Refined::at(problem, following(here, yaw_rad)?);
     for _ in 0..4 {
         let (information, _) = without_yaw(&there.normal);
         let gradient = there.normal.gradient.fixed_rows::<5>(0).into_owned();
@@ -80,8 +91,7 @@ pub(super) fn turned(problem: &Problem<'_>, here: &Refined, yaw_rad: f64) -> Opt
         if gain.is_nan() || gain <= SMALL_SLICE_GAIN {
             break;
         }
-        step = shortened(rest.push(0.0));
-        let next = Refined::at(problem, there.pose.stepped(&step));
+        let next = Refined::at(problem, there.pose.stepped(&shortened(rest.push(0.0))));
         if next.normal.nats > there.normal.nats {
             break;
         }

@@ -4,7 +4,7 @@ use core::f64::consts::TAU;
 
 use nalgebra::{Rotation3, Vector3};
 
-use crate::airframe::Airframe;
+use crate::airframe::{Airframe, Marker};
 
 /// The turns of an airframe, and which marker takes whose place in each.
 #[derive(Clone, Debug)]
@@ -13,6 +13,10 @@ pub struct Symmetry {
     /// By turn, then by marker: the marker that stands where this one stood.
     turned: Vec<u16>,
     markers: usize,
+    /// By marker: the signals that its LEDs carry, ascending.
+    signals: Vec<Vec<u32>>,
+    /// How many of the turns leave the signals as they were, too.
+    turns_with_signals: usize,
 }
 
 impl Symmetry {
@@ -27,12 +31,48 @@ impl Symmetry {
             let rotation = Self::rotation(turns, turn);
             markers.iter().map(move |marker| nearest(rotation * marker.position_m) as u16)
         });
-        Self { turns, turned: turned.collect(), markers: markers.len() }
+        let signals_of = |marker: &Marker| {
+            let carried = marker.leds.iter().filter_map(|&led| airframe.leds()[led].signal);
+            let mut signals: Vec<u32> = carried.collect();
+            signals.sort_unstable();
+            signals
+        };
+        let mut symmetry = Self {
+            turns,
+            turned: turned.collect(),
+            markers: markers.len(),
+            signals: markers.iter().map(signals_of).collect(),
+            turns_with_signals: 1,
+        };
+        symmetry.turns_with_signals = (0..turns).filter(|&turn| symmetry.keeps_signals(turn)).count();
+        symmetry
+    }
+
+    fn keeps_signals(&self, turn: usize) -> bool {
+        let keeps = |marker: usize| {
+            self.signals[marker] == self.signals[usize::from(self.turned(turn, marker as u16))]
+        };
+        (0..self.markers).all(keeps)
     }
 
     /// How many turns, at least 1.
     pub fn turns(&self) -> usize {
         self.turns
+    }
+
+    /// How many turns leave the airframe as it was with its signals, at least 1.
+    pub fn turns_with_signals(&self) -> usize {
+        self.turns_with_signals
+    }
+
+    /// How many turns signals tell apart: the first so many, at least 1.
+    pub(crate) fn told_apart(&self) -> usize {
+        self.turns / self.turns_with_signals
+    }
+
+    /// Whether an LED of a marker carries a signal.
+    pub(crate) fn carries(&self, marker: u16, signal: u32) -> bool {
+        self.signals[usize::from(marker)].contains(&signal)
     }
 
     /// The marker whose place `marker` takes in a turn.

@@ -213,7 +213,10 @@ impl Matcher {
                 }
                 // With gravity the tilt tells above from below; without it both are ways to look.
                 let branch = u8::from(gravity.is_none() && arrangement.elevation_rad < 0.0);
-                hypotheses.offer(&arrangement.markers[..group.len()], f64::from(nats), branch, || {
+                let named = &arrangement.markers[..group.len()];
+                let signals = group.iter().map(|&member| sightings[member].signal);
+                let nats = f64::from(nats) + self.symmetry.least_signal_nats(signals, named);
+                hypotheses.offer(named, nats, branch, || {
                     let (place_m, turn) = seen.place(arrangement, &image);
                     let pose = image.pose(&place_m, turn, arrangement.yaw_rad, arrangement.elevation_rad);
                     let camera_from_body = self.symmetry.attitude(&pose.camera_from_body, arrangement.turn);

@@ -65,7 +65,9 @@ fn claimed(
     for led in 0..grid.leds() {
         let seen = observations.iter().find(|seen| seen.led == led);
         let expected = seen.map_or(map.pixel(led), |seen| map.pixel_without(seen));
-        let reach = limit * map.spacing_px;
+        // a spot twice as far off as the one that is there is no rival
+        let own_px = seen.map_or(f64::INFINITY, |seen| (seen.pixel - expected).norm());
+        let reach = (limit * map.spacing_px).min(2.0 * own_px);
         let mut claims = free.iter().filter(|spot| (**spot - expected).norm() < reach).map(|spot| **spot);
         match (seen, claims.next(), claims.next()) {
             (Some(seen), None, _) => kept.push(*seen),

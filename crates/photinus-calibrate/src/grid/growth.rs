@@ -17,26 +17,31 @@ pub(super) type Lattice = BTreeMap<Place, usize>;
 const REACH: f64 = 0.38;
 /// Spots near the middle that are tried as a start.
 const STARTS: usize = 10;
+/// Lattices that are looked at further: foreign spots make a wrong one the largest now and then.
+const KEPT: usize = 12;
+/// How many spots less than the largest these may hold.
+const SLACK: usize = 3;
 
-/// The lattice that holds most spots.
-pub(super) fn largest_lattice(spots: &[Vector2<f64>], grid: &Grid) -> Lattice {
+/// Lattices that hold most spots, from different starts: the largest first, the smoothest of a size first, each once.
+pub(super) fn largest_lattices(spots: &[Vector2<f64>], grid: &Grid) -> Vec<Lattice> {
     let near = nearest(spots, 8);
-    let mut best = (Lattice::new(), f64::INFINITY);
+    let mut grown: Vec<(Lattice, f64)> = Vec::new();
     for &start in from_the_middle(spots).iter().take(STARTS) {
-        for (a, b) in bases(spots, start, &near[start]) {
-            let grown = grow(spots, start, a, b, grid);
-            // an oblique basis holds as many spots but bends more
-            let is_better =
-                grown.0.len() > best.0.len() || (grown.0.len() == best.0.len() && grown.1 < best.1);
-            if is_better {
-                best = grown;
-            }
-        }
-        if best.0.len() == spots.len() {
+        grown.extend(bases(spots, start, &near[start]).iter().map(|&(a, b)| grow(spots, start, a, b, grid)));
+        if grown.iter().any(|(lattice, _)| lattice.len() == spots.len()) {
             break;
         }
     }
-    best.0
+    // an oblique basis holds as many spots but bends more
+    grown.sort_by(|a, b| b.0.len().cmp(&a.0.len()).then(a.1.total_cmp(&b.1)));
+    let largest = grown.first().map_or(0, |(lattice, _)| lattice.len());
+    let mut lattices: Vec<Lattice> = Vec::new();
+    for (lattice, _) in grown {
+        if lattice.len() + SLACK >= largest && lattices.len() < KEPT && !lattices.contains(&lattice) {
+            lattices.push(lattice);
+        }
+    }
+    lattices
 }
 
 /// Pairs of steps from a spot to neighbours that are not in line, short ones first.

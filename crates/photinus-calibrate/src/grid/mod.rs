@@ -133,6 +133,16 @@ pub enum OrderError {
         /// The least that is taken.
         needed: usize,
     },
+    /// A lattice of which the grid covers too little.
+    #[error(
+        "{lattice} spots form one lattice and the grid covers only {covered} of them: another grid, or lights in line with it?"
+    )]
+    Outside {
+        /// Spots of the lattice.
+        lattice: usize,
+        /// Those that the grid can take.
+        covered: usize,
+    },
     /// A label that came with the spots and is not of the grid, or comes twice.
     #[error("the label column {column}, row {row} is not of the grid, or comes twice")]
     Label {
@@ -187,16 +197,52 @@ pub fn order(spots: &[Vector2<f64>], grid: &Grid) -> Result<Ordered, OrderError>
     if spots.len() < needed {
         return Err(OrderError::TooFew { found: spots.len(), needed, leds: grid.leds() });
     }
-    let lattice = growth::largest_lattice(&spots, grid);
-    if lattice.len() < needed {
-        return Err(OrderError::NoLattice { found: spots.len(), lattice: lattice.len(), needed });
-    }
-    let observations = window::place(&spots, &lattice, grid, needed)?;
-    let observations = smooth::without_strangers(observations, &spots, grid)?;
-    if observations.len() < needed {
-        return Err(OrderError::NoLattice { found: spots.len(), lattice: observations.len(), needed });
-    }
+    let readings: Vec<_> = growth::largest_lattices(&spots, grid)
+        .iter()
+        .map(|lattice| reading(&spots, lattice, grid, needed))
+        .collect();
+    let observations = agreed(readings, grid)?;
     Ok(Ordered { foreign: spots.len() - observations.len(), observations })
+}
+
+/// The grid as one lattice shows it.
+fn reading(
+    spots: &[Vector2<f64>],
+    lattice: &growth::Lattice,
+    grid: &Grid,
+    needed: usize,
+) -> Result<Vec<Observation>, OrderError> {
+    let too_small = |lattice| OrderError::NoLattice { found: spots.len(), lattice, needed };
+    if lattice.len() < needed {
+        return Err(too_small(lattice.len()));
+    }
+    let observations = window::place(spots, lattice, grid, needed)?;
+    let observations = smooth::without_strangers(observations, spots, grid)?;
+    if observations.len() < needed { Err(too_small(observations.len())) } else { Ok(observations) }
+}
+
+/// The reading that holds most LEDs, the smoothest of these.
+fn agreed(
+    readings: Vec<Result<Vec<Observation>, OrderError>>,
+    grid: &Grid,
+) -> Result<Vec<Observation>, OrderError> {
+    let (mut best, mut why) = (None, None);
+    for reading in readings {
+        match reading {
+            Ok(observations) => {
+                let rough = smooth::mean_off_spacings(&observations, grid);
+                let is_better = best.as_ref().is_none_or(|(most, least): &(Vec<Observation>, f64)| {
+                    (observations.len(), *least) > (most.len(), rough)
+                });
+                if is_better {
+                    best = Some((observations, rough));
+                }
+            }
+            Err(error) => why = why.or(Some(error)),
+        }
+    }
+    let nothing = OrderError::NoLattice { found: 0, lattice: 0, needed: least_leds(grid) };
+    best.map(|(observations, _)| observations).ok_or(why.unwrap_or(nothing))
 }
 
 /// The least LEDs of a grid that a photo must show.

@@ -14,10 +14,12 @@ const TIMES_MEDIAN: f64 = 7.0;
 /// A grid that is rougher than this after the worst spots went is no grid.
 const ROUGH: f64 = 0.12;
 
-/// Terms of a polynomial of degree three in two variables.
-const TERMS: usize = 10;
+/// Terms of a polynomial of degree four in two variables.
+const TERMS: usize = 15;
+/// A grid of fewer LEDs leaves the terms of degree four no room to be told.
+const FEW_LEDS: usize = 30;
 
-/// Drops spots that lie off the smooth grid, the worst first, and takes in spots that lie where an LED is missing.
+/// Drops spots that lie off the smooth grid, the worst first, then settles which spot is which LED.
 pub(super) fn without_strangers(
     mut observations: Vec<Observation>,
     spots: &[Vector2<f64>],
@@ -38,8 +40,7 @@ pub(super) fn without_strangers(
     if worst > limit(&off) || mean_off_spacings(&observations, grid) > ROUGH {
         return Err(OrderError::NotSmooth { off_spacings: worst });
     }
-    take_in(&mut observations, spots, grid, limit(&off));
-    Ok(observations)
+    Ok(claimed(&observations, spots, grid, limit(&off)))
 }
 
 /// How far off a spot may be, in spacings: far more than the others are.
@@ -50,21 +51,31 @@ fn limit(off: &[f64]) -> f64 {
     (TIMES_MEDIAN * median).clamp(SURE, STRANGER)
 }
 
-/// Labels spots that lie where the smooth grid has an LED that is not labelled yet.
-fn take_in(observations: &mut Vec<Observation>, spots: &[Vector2<f64>], grid: &Grid, limit: f64) {
-    let Some(map) = Map::of(observations, grid) else { return };
+/// Labels the one spot that lies where the smooth grid has an LED; an LED that several spots claim is left out.
+fn claimed(
+    observations: &[Observation],
+    spots: &[Vector2<f64>],
+    grid: &Grid,
+    limit: f64,
+) -> Vec<Observation> {
+    let Some(map) = Map::of(observations, grid) else { return observations.to_vec() };
+    let free: Vec<_> =
+        spots.iter().filter(|spot| observations.iter().all(|seen| seen.pixel != **spot)).collect();
+    let mut kept = Vec::new();
     for led in 0..grid.leds() {
-        if observations.iter().any(|seen| seen.led == led) {
-            continue;
-        }
-        let expected = map.pixel(led);
-        let free = spots.iter().filter(|spot| observations.iter().all(|seen| seen.pixel != **spot));
-        let distance = |spot: &Vector2<f64>| (spot - expected).norm();
-        let nearest = free.min_by(|a, b| distance(a).total_cmp(&distance(b)));
-        if let Some(spot) = nearest.filter(|spot| distance(spot) < limit * map.spacing_px) {
-            observations.push(Observation { led, pixel: *spot });
+        let seen = observations.iter().find(|seen| seen.led == led);
+        let expected = seen.map_or(map.pixel(led), |seen| map.pixel_without(seen));
+        // a spot twice as far off as the one that is there is no rival
+        let own_px = seen.map_or(f64::INFINITY, |seen| (seen.pixel - expected).norm());
+        let reach = (limit * map.spacing_px).min(2.0 * own_px);
+        let mut claims = free.iter().filter(|spot| (**spot - expected).norm() < reach).map(|spot| **spot);
+        match (seen, claims.next(), claims.next()) {
+            (Some(seen), None, _) => kept.push(*seen),
+            (None, Some(pixel), None) => kept.push(Observation { led, pixel }),
+            _ => {}
         }
     }
+    kept
 }
 
 /// Root mean square of how far the spots are from the smooth grid, in spacings.
@@ -82,7 +93,7 @@ fn off_spacings(observations: &[Observation], grid: &Grid) -> Vec<f64> {
         .collect()
 }
 
-/// A cubic map from the grid to the image.
+/// A map of degree four (of three for small grids) from the grid to the image.
 struct Map<'a> {
     grid: &'a Grid,
     terms: SMatrix<f64, TERMS, 2>,
@@ -108,6 +119,11 @@ impl<'a> Map<'a> {
         self.terms.transpose() * terms(led, self.grid)
     }
 
+    /// Where the other spots expect the LED of this one.
+    fn pixel_without(&self, seen: &Observation) -> Vector2<f64> {
+        seen.pixel - (seen.pixel - self.pixel(seen.led)) / self.others_share(seen.led)
+    }
+
     /// What part of a residual is left when the spot itself pulls at the map.
     fn others_share(&self, led: usize) -> f64 {
         let row = terms(led, self.grid);
@@ -119,7 +135,14 @@ impl<'a> Map<'a> {
 fn terms(led: usize, grid: &Grid) -> SVector<f64, TERMS> {
     let unit = |at: usize, count: usize| 2.0 * at as f64 / (count as f64 - 1.0) - 1.0;
     let (x, y) = (unit(led % grid.columns(), grid.columns()), unit(led / grid.columns(), grid.rows()));
-    SVector::from([1.0, x, y, x * x, x * y, y * y, x * x * x, x * x * y, x * y * y, y * y * y])
+    let fourth = if grid.leds() < FEW_LEDS { 0.0 } else { 1.0 };
+    let (xx, xy, yy) = (x * x, x * y, y * y);
+    let mut terms =
+        [1.0, x, y, xx, xy, yy, x * xx, x * xy, x * yy, y * yy, xx * xx, xx * xy, xx * yy, xy * yy, yy * yy];
+    for term in &mut terms[10..] {
+        *term *= fourth;
+    }
+    SVector::from(terms)
 }
 
 /// The median distance between neighbours of the grid, px.

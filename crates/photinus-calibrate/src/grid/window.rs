@@ -1,5 +1,7 @@
 //! Where in a lattice the grid is.
 
+use std::collections::BTreeMap;
+
 use nalgebra::Vector2;
 
 use super::growth::{Lattice, Place};
@@ -35,8 +37,12 @@ pub(super) fn place(
     if let Some((columns, rows)) = other_size(lattice, grid, covered) {
         return Err(OrderError::OtherSize { columns, rows });
     }
-    if covered < needed || 10 * covered < 8 * lattice.len() {
+    if covered < needed {
         return Err(OrderError::NoLattice { found: spots.len(), lattice: covered, needed });
+    }
+    // an oblique reading leaves a corner of the true grid out at either end
+    if 100 * covered < 85 * lattice.len() {
+        return Err(OrderError::Outside { lattice: lattice.len(), covered });
     }
     // an oblique reading bends far more than the upright one, which may hold a foreign spot less
     read.retain(|reading| 100 * reading.observations.len() >= 85 * covered);
@@ -60,12 +66,13 @@ fn changed(lattice: &Lattice, [(a, b), (c, d)]: [Place; 2]) -> Lattice {
 
 /// The size of a lattice that is full and not the grid's; `covered` is what the grid covers of it.
 fn other_size(lattice: &Lattice, grid: &Grid, covered: usize) -> Option<(usize, usize)> {
-    let holds = |(columns, rows): &(usize, usize)| columns * rows >= lattice.len();
-    let sizes = bases().map(|basis| extent(&changed(lattice, basis))).filter(holds);
-    let (columns, rows) = sizes.min_by_key(|(columns, rows)| columns * rows)?;
-    let is_full = 100 * lattice.len() >= 97 * columns * rows && columns >= 3 && rows >= 3;
+    let is_full = |(columns, rows, count): &(usize, usize, usize)| {
+        *rows >= 3 && 100 * count >= 97 * columns * rows && 10 * count >= 9 * lattice.len()
+    };
+    let extents = bases().map(|basis| extent(&changed(lattice, basis))).filter(is_full);
+    let (columns, rows, count) = extents.max_by_key(|(_, _, count)| *count)?;
     let is_other = (columns, rows) != (grid.columns().max(grid.rows()), grid.columns().min(grid.rows()));
-    (is_full && is_other && covered < grid.leds().max(lattice.len())).then_some((columns, rows))
+    (is_other && (covered < count || covered + 3 <= grid.leds())).then_some((columns, rows))
 }
 
 /// The readings of an upright lattice that cover most spots, unmirrored, each once for all turns of the grid.
@@ -143,15 +150,17 @@ fn handedness(spots: &[Vector2<f64>], labelled: &[(usize, usize, usize)]) -> f64
     sum
 }
 
-/// Longer and shorter side of the lattice, counting lines with at least two spots.
-fn extent(lattice: &Lattice) -> (usize, usize) {
+/// Longer and shorter side of the lattice, counting lines with at least two spots, and how many spots are where these cross.
+fn extent(lattice: &Lattice) -> (usize, usize, usize) {
     let lines = |of: fn(&Place) -> i32| {
-        let mut counts = std::collections::BTreeMap::new();
+        let mut counts = BTreeMap::new();
         for place in lattice.keys() {
             *counts.entry(of(place)).or_insert(0) += 1;
         }
-        counts.values().filter(|count| **count >= 2).count()
+        counts.retain(|_, count| *count >= 2);
+        counts
     };
     let (a, b) = (lines(|place| place.0), lines(|place| place.1));
-    (a.max(b), a.min(b))
+    let crossings = lattice.keys().filter(|(i, j)| a.contains_key(i) && b.contains_key(j)).count();
+    (a.len().max(b.len()), a.len().min(b.len()), crossings)
 }

@@ -14,7 +14,9 @@ pub(super) fn on(error: &OrderError) -> &'static str {
         OrderError::NoLattice { .. } | OrderError::NotSmooth { .. } => {
             "does it show the grid, without other lights? photinus detect shows what was found"
         }
-        OrderError::OtherSize { .. } => "correct --grid, or bring the whole grid into the picture",
+        OrderError::OtherSize { .. } | OrderError::Outside { .. } => {
+            "correct --grid, or bring the whole grid into the picture"
+        }
         OrderError::Ambiguous { .. } => "bring the whole grid into the picture",
         OrderError::Label { .. } => "correct --grid or the labels",
         OrderError::Mirrored => {

@@ -95,7 +95,7 @@ fn histogram(report: &CameraReport) -> Shown {
     Shown {
         title: "Histogram of residuals",
         caption: format!(
-            "Both axes together. {outside} lie beyond five standard deviations, outside this figure."
+            "Both axes together. {outside} lie farther out than {reach_px} px, outside this figure."
         ),
         figure: Figure { name: "residuals-histogram".to_owned(), plots, layout },
     }

@@ -125,9 +125,14 @@ pub(crate) fn run(
     let camera = source.camera();
     let unit_sigma = if source == Source::Rendered { 0.06 } else { UNIT_SIGMA };
     let tilt_sigma_rad = libm::hypot(TILT_RAD, GRAVITY_RAD);
-    // The airframe is exact, and how it tilts is known.
-    let pose =
-        pose::Settings { tilt_sigma_rad, marker_sigma_m: 0.0, unit_sigma, ..pose::Settings::default() };
+    // The airframe is exact, no LED is dead, and how it tilts is known.
+    let pose = pose::Settings {
+        tilt_sigma_rad,
+        marker_sigma_m: 0.0,
+        unit_sigma,
+        missed: 1e-5,
+        ..pose::Settings::default()
+    };
     let settings = Settings { pose, ..Settings::default() };
     let mut locator = Locator::new(camera.clone(), airframe, None, settings).expect("a locator");
     let mut tallies = [Tally::default(); MOST_SPOTS + 1];

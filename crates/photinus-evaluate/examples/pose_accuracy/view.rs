@@ -17,7 +17,7 @@ pub(crate) const GRAVITY_RAD: f64 = 0.3 * TAU / 360.0;
 pub(crate) const UNIT_SIGMA: f64 = 0.1;
 /// Light of an LED straight ahead at 1 m, and the least that is found, grey levels.
 const POWER: f64 = 40_000.0;
-const FAINTEST: f64 = 60.0;
+const FAINTEST: f64 = 84.0;
 
 /// A neighbour, and what is known of the vertical.
 pub(crate) struct View {

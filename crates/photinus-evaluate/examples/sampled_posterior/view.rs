@@ -18,7 +18,7 @@ const UNIT_SIGMA: f64 = 0.1;
 const TILT_RAD: f64 = 4.0 * TAU / 360.0;
 /// Light of an LED straight ahead at 1 m, and the least that is found, grey levels.
 const POWER: f64 = 40_000.0;
-const FAINTEST: f64 = 60.0;
+const FAINTEST: f64 = 84.0;
 
 pub(crate) fn hexarotor() -> Airframe {
     let ring = Ring { arms: 6, radius_m: 0.4, leds_per_arm: 1, splay_rad: 0.0 };

@@ -31,8 +31,8 @@ use grouping::Groups;
 use matching::Matcher;
 use posing::Poser;
 
-/// Light of the smallest spots over their height, px.
-const FAINTEST_PX: f64 = 3.0;
+/// Light of the faintest spots over their height, px: on rendered frames, halo included.
+const FAINTEST_PX: f64 = 4.2;
 
 /// What a user may choose about locating.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -8,8 +8,6 @@ use super::problem::{Normal, Pose, Problem};
 const LOBE_ERROR: f64 = 0.02;
 /// A marker that shines with less than this towards the camera shines away.
 const DARK: f64 = 0.01;
-/// How often a marker that must show does not: dead, occluded, merged with another.
-const MISSED: f64 = 0.001;
 /// A marker that others outshine by more than this is taken for a reflection, unless it is bright in itself.
 const OUTSHONE: f64 = 0.22;
 /// ... which it is when the faintest light is less than this share of the least that is not outshone.
@@ -122,7 +120,7 @@ impl Problem<'_> {
         let nats = |marker: usize| {
             let intensity = self.airframe.intensity(marker, &camera_in_body_m);
             let odds = steep(intensity.max(1e-3) / half);
-            let found = (1.0 - MISSED) * odds / (1.0 + odds);
+            let found = (1.0 - self.settings.missed) * odds / (1.0 + odds);
             if self.markers.contains(&u16::try_from(marker).ok()) {
                 return -libm::log(found.max(1e-9));
             }

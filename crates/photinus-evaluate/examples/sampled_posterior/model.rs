@@ -14,7 +14,7 @@ use photinus::ranging::Interval;
 const LOBE_ERROR: f64 = 0.02;
 const DARK: f64 = 0.01;
 const LOG_LIGHT_PER_PX: f64 = 1.5;
-const MISSED: f64 = 0.001;
+pub(crate) const MISSED: f64 = 0.001;
 /// A marker outshone by more than this is taken for a reflection, where the faintest light does not rule that out.
 const OUTSHONE: f64 = 0.22;
 /// The place of melted light is known to this share of how far it is from the spot's own marker.

@@ -93,6 +93,7 @@ pub(crate) fn locator(airframe: &Airframe) -> Locator {
         tilt_sigma_rad: TILT_RAD,
         marker_sigma_m: 0.0,
         unit_sigma: UNIT_SIGMA,
+        missed: crate::model::MISSED,
         use_brightness: true,
     };
     Locator::new(camera(), airframe, None, Settings { pose, ..Settings::default() }).expect("a locator")

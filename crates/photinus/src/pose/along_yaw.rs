@@ -1,13 +1,13 @@
 //! A mode -> normal distributions that stand for the posterior around it.
 //!
 //! Seen from afar the yaw is the least certain: two markers leave a bent valley of distance against yaw in which no single
-//! normal distribution is honest. Slices of the valley, each with the yaw held and everything else normal around its best
-//! value, are: their weights are the integrals over all but yaw (Laplace's method, as in nested integration). A mode whose
+//! normal distribution is honest. Many are: slices of the valley, each with the yaw held and everything else normal around
+//! its best value. Their weights are the integrals over all but yaw (Laplace's method, as in nested integration). A mode whose
 //! yaw is certain is one normal distribution in all six.
 
 use core::f64::consts::{PI, TAU};
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, SMatrix, Vector3};
 
 use super::mixture::Component;
 use super::problem::Problem;
@@ -76,18 +76,16 @@ fn changes_abruptly(problem: &Problem<'_>, mode: &Refined, step_rad: f64) -> boo
 
 /// A mode as one normal distribution.
 fn whole(problem: &Problem<'_>, mode: &Refined, hypothesis: usize) -> Option<Component> {
-    let factor = mode.normal.information.cholesky()?;
-    let covariance = factor.inverse();
-    let log_root = factor.l_dirty().diagonal().iter().map(|d| libm::log(*d)).sum::<f64>();
-    let distance_m = mode.pose.position_m.norm();
-    Some(Component {
-        log_weight: 3.0 * libm::log(TAU) - log_root - mode.normal.nats - problem.visibility_nats(&mode.pose),
-        pose: mode.pose,
-        position_covariance_m2: covariance.fixed_view::<3, 3>(0, 0) * (distance_m * distance_m),
-        orientation_covariance_rad2: covariance.fixed_view::<3, 3>(3, 3).into_owned(),
+    let Laplace { covariance, log_volume } = Laplace::of(mode.normal.information)?;
+    let turn = covariance.fixed_view::<3, 3>(3, 3).into_owned();
+    Some(component(
+        problem,
+        mode,
         hypothesis,
-        yaw_rad: 0.0,
-    })
+        log_volume,
+        covariance.fixed_view::<3, 3>(0, 0).into_owned(),
+        turn,
+    ))
 }
 
 /// One slice of a valley, `step_rad` wide.
@@ -98,23 +96,46 @@ fn slice(
     yaw_rad: f64,
     step_rad: f64,
 ) -> Option<Component> {
-    let factor = without_yaw(&at.normal).0.cholesky()?;
-    let covariance = factor.inverse();
-    let log_root = factor.l_dirty().diagonal().iter().map(|d| libm::log(*d)).sum::<f64>();
-    let distance_m = at.pose.position_m.norm();
-    let tilt = covariance.fixed_view::<2, 2>(3, 3);
-    let mut orientation_covariance_rad2 =
-        Matrix3::from_diagonal(&Vector3::new(0.0, 0.0, step_rad * step_rad / 12.0));
-    orientation_covariance_rad2.fixed_view_mut::<2, 2>(0, 0).copy_from(&tilt);
-    Some(Component {
-        log_weight: 2.5 * libm::log(TAU) + libm::log(step_rad)
-            - log_root
-            - at.normal.nats
-            - problem.visibility_nats(&at.pose),
+    let Laplace { covariance, log_volume } = Laplace::of(without_yaw(&at.normal).0)?;
+    let mut turn = Matrix3::from_diagonal(&Vector3::new(0.0, 0.0, step_rad * step_rad / 12.0));
+    turn.fixed_view_mut::<2, 2>(0, 0).copy_from(&covariance.fixed_view::<2, 2>(3, 3));
+    let log_volume = log_volume + libm::log(step_rad);
+    let delta = covariance.fixed_view::<3, 3>(0, 0).into_owned();
+    Some(Component { yaw_rad, ..component(problem, at, hypothesis, log_volume, delta, turn) })
+}
+
+/// The normal distribution around a minimum of the cost.
+struct Laplace<const D: usize> {
+    covariance: SMatrix<f64, D, D>,
+    /// Logarithm of its integral for a density of 1 at the minimum.
+    log_volume: f64,
+}
+
+impl<const D: usize> Laplace<D> {
+    /// `None` where the information leaves a direction open.
+    fn of(information: SMatrix<f64, D, D>) -> Option<Self> {
+        let factor = information.cholesky()?;
+        let log_root: f64 = (0..D).map(|axis| libm::log(factor.l_dirty()[(axis, axis)])).sum();
+        let log_volume = 0.5 * D as f64 * libm::log(TAU) - log_root;
+        Some(Self { covariance: factor.inverse(), log_volume })
+    }
+}
+
+/// A component at a pose; `delta` is the covariance of the position in distances, `turn` that of the attitude, rad^2.
+fn component(
+    problem: &Problem<'_>,
+    at: &Refined,
+    hypothesis: usize,
+    log_volume: f64,
+    delta: Matrix3<f64>,
+    turn: Matrix3<f64>,
+) -> Component {
+    Component {
+        log_weight: log_volume - at.normal.nats - problem.visibility_nats(&at.pose),
         pose: at.pose,
-        position_covariance_m2: covariance.fixed_view::<3, 3>(0, 0) * (distance_m * distance_m),
-        orientation_covariance_rad2,
+        position_covariance_m2: delta * at.pose.position_m.norm_squared(),
+        orientation_covariance_rad2: turn,
         hypothesis,
-        yaw_rad,
-    })
+        yaw_rad: 0.0,
+    }
 }

@@ -6,10 +6,13 @@
 //! ```text
 //! hypotheses    which spot may be which marker, with a first guess of the pose
 //! problem       what a pose costs: bearings, light, tilt; with its derivatives
-//! refine        downhill to the mode of each hypothesis                      (p3p, pnp: closed forms)
+//! refine        downhill to the mode of each hypothesis
 //! along_yaw     slices along the valley where the yaw is uncertain
 //! mixture       weights, truncation to the strict bounds, moments, modes
 //! ```
+//!
+//! Beside the flow stand [`p3p`] and [`pnp`], closed forms for callers who know which bearing is which marker; first guesses
+//! of hypotheses come from the locator's views instead.
 //!
 //! The prior prefers no direction, no yaw and no scale (even over the logarithm of distance): of all priors it is the one
 //! under which a mean and covariance are as good at every range. Where gravity is known the body is upright but for a tilt;

@@ -14,6 +14,8 @@ const RING_PX: i32 = 2;
 const STEEPEST_HALO: f64 = 2.0;
 /// The pixels of a narrow spot outshine those around them on average by this factor: a Gaussian of 1.1 px does not.
 const CORE_OVER_HALO: f64 = 4.0;
+/// Squared radius of the core of a spot that scatters, px^2: no halo is read from there.
+const CORE_PX2: f64 = 4.5;
 /// Fewer background pixels tell no level.
 const FEWEST_PX: i32 = 8;
 
@@ -127,7 +129,7 @@ impl Patch {
         for dv in -reach..=reach {
             for du in -reach..=reach {
                 let (x, y) = (f64::from(u + du) - beside.u, f64::from(v + dv) - beside.v);
-                let is_core = x * x + y * y < 4.5;
+                let is_core = x * x + y * y < CORE_PX2;
                 if is_core || f64::from(du * du + dv * dv) > radius_px * radius_px {
                     self.turned.push(f32::NAN);
                     continue;

@@ -10,7 +10,7 @@ use core::f64::consts::{PI, TAU};
 use nalgebra::{Matrix3, SMatrix, Vector3};
 
 use super::mixture::Component;
-use super::problem::Problem;
+use super::problem::{Pose, Problem};
 use super::refine::{Refined, following, turned, without_yaw, yaw_sigma_rad};
 
 /// Yaw surer than this needs no slices, rad.
@@ -69,8 +69,9 @@ pub(super) fn spread(
 
 /// Whether a marker comes into sight or goes out of it within a slice of the mode: by more than a normal distribution falls.
 fn changes_abruptly(problem: &Problem<'_>, mode: &Refined, step_rad: f64) -> bool {
-    let here = problem.visibility_nats(&mode.pose);
-    let changes = |there| (problem.visibility_nats(&there) - here).abs() > ABRUPT_NATS;
+    let nats = |pose: &Pose| problem.visibility_nats(pose, mode.normal.log_power);
+    let here = nats(&mode.pose);
+    let changes = |there| (nats(&there) - here).abs() > ABRUPT_NATS;
     [step_rad, -step_rad].into_iter().any(|side| following(mode, side).is_some_and(changes))
 }
 
@@ -131,7 +132,7 @@ fn component(
     turn: Matrix3<f64>,
 ) -> Component {
     Component {
-        log_weight: log_volume - at.normal.nats - problem.visibility_nats(&at.pose),
+        log_weight: log_volume - at.normal.nats - problem.visibility_nats(&at.pose, at.normal.log_power),
         pose: at.pose,
         position_covariance_m2: delta * at.pose.position_m.norm_squared(),
         orientation_covariance_rad2: turn,

@@ -11,6 +11,7 @@ use super::problem::{LogDistance, Pose, Problem};
 use super::refine::{Refined, following, refine, yaw_sigma_rad};
 use super::settings::{Settings, SettingsError};
 use super::symmetry::Symmetry;
+use super::visibility::Visible;
 use crate::airframe::Airframe;
 use crate::ranging::Interval;
 
@@ -20,16 +21,16 @@ const HOPELESS_NATS: f64 = 8.0;
 const MOST_ROUNDS: usize = 10;
 
 /// What is known of a neighbour besides its spots.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Known {
+#[derive(Clone, Copy, Debug)]
+pub struct Known<'a> {
     /// Away from the ground, camera frame.
     pub up: Option<Unit<Vector3<f64>>>,
     /// Truth is between these.
     pub bounds: Interval,
     /// What spot size says of distance, where nothing better does.
     pub size: Option<LogDistance>,
-    /// Light below which a marker is not found, in the units of the observations; 0 where unknown.
-    pub faintest_light: f64,
+    /// Which markers are found.
+    pub visible: Visible<'a>,
 }
 
 /// What the spots of one neighbour tell.
@@ -105,7 +106,7 @@ impl Estimator {
         &mut self,
         observations: &[Observation],
         hypotheses: &mut Hypotheses,
-        known: &Known,
+        known: &Known<'_>,
     ) -> &Posterior {
         self.posterior.summary = None;
         self.posterior.modes.clear();
@@ -144,7 +145,7 @@ impl Estimator {
         &self.posterior
     }
 
-    fn find_modes(&mut self, observations: &[Observation], hypotheses: &mut Hypotheses, known: &Known) {
+    fn find_modes(&mut self, observations: &[Observation], hypotheses: &mut Hypotheses, known: &Known<'_>) {
         self.modes.clear();
         self.nats.clear();
         for index in 0..hypotheses.len() {
@@ -163,13 +164,15 @@ impl Estimator {
                 refine(&problem.assigned(hypotheses.markers(index), &start), start)
             };
             let problem = problem.assigned(hypotheses.markers(index), &mode.pose);
-            let mut unseen = problem.visibility_nats(&mode.pose);
+            let mut unseen = problem.visibility_nats(&mode.pose, mode.normal.log_power);
             if unseen > HOPELESS_NATS {
                 // Light pulls little on a marker that hardly shows: the mode may sit where it no longer does, a sigma beside
                 // where it must.
                 let sigma_rad = yaw_sigma_rad(&mode).unwrap_or(0.0);
                 for beside in [sigma_rad, -sigma_rad].map(|yaw_rad| following(&mode, yaw_rad)) {
-                    let nats = beside.map_or(f64::INFINITY, |pose| 0.5 + problem.visibility_nats(&pose));
+                    let nats = beside.map_or(f64::INFINITY, |pose| {
+                        0.5 + problem.visibility_nats(&pose, mode.normal.log_power)
+                    });
                     unseen = unseen.min(nats);
                 }
             }
@@ -202,7 +205,7 @@ impl Estimator {
         self.components.drain(first..last);
     }
 
-    fn tell(&mut self, observations: &[Observation], known: &Known) {
+    fn tell(&mut self, observations: &[Observation], known: &Known<'_>) {
         let Self { components, posterior, whitened, .. } = self;
         mixture::truncate(components, &known.bounds);
         let log_sigmas: f64 = whitened.iter().map(|seen| seen.log_sigmas).sum();
@@ -222,7 +225,7 @@ fn problem<'a>(
     settings: &'a Settings,
     observations: &'a [Observation],
     whitened: &'a [Whitened],
-    known: &Known,
+    known: &Known<'a>,
 ) -> Problem<'a> {
     Problem {
         airframe,
@@ -232,7 +235,7 @@ fn problem<'a>(
         markers: &[],
         up: known.up,
         size: known.size,
-        faintest_light: known.faintest_light,
+        visible: known.visible,
         melting: true,
     }
 }

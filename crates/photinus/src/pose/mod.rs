@@ -23,6 +23,7 @@ mod assignment;
 mod estimator;
 mod hypotheses;
 mod light;
+mod melting;
 mod mixture;
 mod observation;
 mod p3p;
@@ -34,6 +35,7 @@ mod signals;
 mod symmetry;
 #[cfg(test)]
 mod tests;
+mod visibility;
 
 pub use estimator::{Estimator, Known, Posterior};
 pub use hypotheses::Hypotheses;
@@ -45,3 +47,4 @@ pub(crate) use problem::STRANGER_LOG_DENSITY;
 pub use problem::{LogDistance, Pose};
 pub use settings::{Settings, SettingsError};
 pub use symmetry::Symmetry;
+pub use visibility::Visible;

@@ -13,7 +13,7 @@ pub struct Observation {
     pub covariance_rad2: Matrix3<f64>,
     /// Logarithm of its light, in units of any kind that are the same for all spots of the frame; `None` where unknown.
     pub log_light: Option<LogLight>,
-    /// Markers nearer to each other than this are one spot, rad; 0 where all are told apart.
+    /// Two markers so far apart are told apart half of the time, rad; 0 where all are.
     pub resolution_rad: f64,
     /// Which of the airframe's signals it was seen to blink, where that was decoded.
     pub signal: Option<u32>,

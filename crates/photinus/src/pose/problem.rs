@@ -15,11 +15,13 @@
 //! size      (ln distance - mean) / sigma                                  one, where nothing else tells distance
 //! ```
 
-use nalgebra::{Matrix3, Matrix6, Rotation3, RowVector3, Unit, Vector3, Vector6};
+use nalgebra::{Matrix3, Matrix6, Rotation3, Unit, Vector3, Vector6};
 
 use super::light::Light;
+use super::melting::LightCentre;
 use super::observation::{Observation, Whitened};
 use super::settings::Settings;
+use super::visibility::Visible;
 use crate::airframe::Airframe;
 
 /// Beyond so many sigma the pull of a bearing no longer grows.
@@ -29,10 +31,6 @@ const ELEVATION_SIGMA: f64 = 0.6;
 /// Without gravity: how far a neighbour is from upright in the image, the sine's sigma. It keeps what nothing tells from
 /// being anything.
 const IMAGE_TILT_SIGMA: f64 = 1.0;
-/// The place of the light of markers that melt into one spot is known to this share of how far it is from the first of them.
-const MELTED_SHARE: f64 = 0.1;
-/// How much farther than a pose markers are looked from to tell whether any melt near it.
-const MELTING_ROOM: f64 = 1.5;
 /// What it costs, nats, that a spot among an airframe's own is none of its markers: a spot that is one is likelier by its
 /// sigma of a third of a milliradian against the few hundredths of a radian around the others, and strangers are rare.
 const STRANGER_NATS: f64 = 14.0;
@@ -86,8 +84,7 @@ pub(super) struct Problem<'a> {
     /// Away from the ground, camera frame.
     pub(super) up: Option<Unit<Vector3<f64>>>,
     pub(super) size: Option<LogDistance>,
-    /// Light below which a marker is not found; 0 where unknown.
-    pub(super) faintest_light: f64,
+    pub(super) visible: Visible<'a>,
     /// Whether markers may melt into one spot.
     pub(super) melting: bool,
 }
@@ -98,11 +95,13 @@ pub(super) struct Normal {
     pub(super) nats: f64,
     pub(super) gradient: Vector6<f64>,
     pub(super) information: Matrix6<f64>,
+    /// Logarithm of the light of an LED of intensity 1 at 1 m that fits best; `None` where no spot has a light.
+    pub(super) log_power: Option<f64>,
 }
 
 impl Normal {
     pub(super) fn zero() -> Self {
-        Self { nats: 0.0, gradient: Vector6::zeros(), information: Matrix6::zeros() }
+        Self { nats: 0.0, gradient: Vector6::zeros(), information: Matrix6::zeros(), log_power: None }
     }
 
     /// Adds a residual of unit variance with its row of derivatives.
@@ -134,7 +133,9 @@ impl Problem<'_> {
         normal.nats = STRANGER_NATS * self.markers.iter().filter(|marker| marker.is_none()).count() as f64;
         self.add_bearings(pose, &mut normal);
         if self.settings.use_brightness {
-            Light::of(self, pose).add_to(&mut normal);
+            let light = Light::of(self, pose);
+            light.add_to(&mut normal);
+            normal.log_power = light.log_power();
         }
         self.add_attitude(pose, &mut normal);
         if let Some(LogDistance { mean, sigma }) = self.size {
@@ -153,65 +154,17 @@ impl Problem<'_> {
         self.markers.iter().enumerate().filter_map(marker)
     }
 
+    /// Whether a marker has a spot.
+    pub(super) fn is_used(&self, marker: usize) -> bool {
+        self.markers.contains(&u16::try_from(marker).ok())
+    }
+
     /// Squared misfit of a spot's bearing, in units of its variance.
     pub(super) fn misfit(&self, pose: &Pose, spot: usize, marker: usize) -> f64 {
         let Whitened { direction, map, .. } = &self.whitened[spot];
-        let (arm_m, factor) = self.seen_at_m(spot, marker, &pose.camera_in_body_m());
-        let place_m = pose.camera_from_body * arm_m + pose.position_m;
+        let LightCentre { at_m, factor, .. } = self.light_centre(spot, marker, &pose.camera_in_body_m());
+        let place_m = pose.camera_from_body * at_m + pose.position_m;
         (map * (place_m.normalize() - direction) * factor).norm_squared()
-    }
-
-    /// Whether a marker without a spot may melt into one that has, anywhere near a pose.
-    pub(super) fn may_melt(&self, pose: &Pose) -> bool {
-        let camera_in_body_m = pose.camera_in_body_m() * MELTING_ROOM;
-        let free = |marker: &usize| !self.markers.contains(&u16::try_from(*marker).ok());
-        let melts = |(spot, seen)| {
-            let mut others = (0..self.airframe.markers().len()).filter(free);
-            others.any(|other| self.are_one(spot, seen, other, &camera_in_body_m))
-        };
-        self.used().any(melts)
-    }
-
-    /// Whether two markers are one spot for a camera at a place in the body frame.
-    pub(super) fn are_one(&self, spot: usize, a: usize, b: usize, camera_in_body_m: &Vector3<f64>) -> bool {
-        let [a_m, b_m] = [a, b].map(|marker| self.airframe.markers()[marker].position_m);
-        let between_m = b_m - a_m;
-        let range2_m2 = (camera_in_body_m - a_m).norm_squared();
-        let along_m = between_m.dot(&(camera_in_body_m - a_m));
-        let across2_m2 = between_m.norm_squared() - along_m * along_m / range2_m2;
-        let limit_rad = self.observations[spot].resolution_rad;
-        across2_m2 < limit_rad * limit_rad * range2_m2
-    }
-
-    /// Where the light of a spot comes from in the body frame, m: its marker, with those that melt into it and have no spot
-    /// of their own; and how far that is known, as a factor on its residual.
-    fn seen_at_m(&self, spot: usize, marker: usize, camera_in_body_m: &Vector3<f64>) -> (Vector3<f64>, f64) {
-        let markers = self.airframe.markers();
-        let alone_m = markers[marker].position_m;
-        if !self.melting {
-            return (alone_m, 1.0);
-        }
-        let mut at_m = alone_m;
-        let mut light = None;
-        for (other, beside) in markers.iter().enumerate() {
-            if other == marker
-                || !self.are_one(spot, marker, other, camera_in_body_m)
-                || self.markers.contains(&u16::try_from(other).ok())
-            {
-                continue;
-            }
-            let more = self.airframe.intensity(other, camera_in_body_m);
-            let light =
-                light.get_or_insert_with(|| self.airframe.intensity(marker, camera_in_body_m).max(1e-3));
-            *light += more;
-            at_m += (beside.position_m - at_m) * (more / *light);
-        }
-        if light.is_none() {
-            return (at_m, 1.0);
-        }
-        let off_rad = MELTED_SHARE * (at_m - alone_m).norm() / camera_in_body_m.norm();
-        let sigma2_rad2 = self.observations[spot].covariance_rad2.trace() / 2.0;
-        (at_m, (sigma2_rad2 / (sigma2_rad2 + off_rad * off_rad)).sqrt())
     }
 
     fn add_bearings(&self, pose: &Pose, normal: &mut Normal) {
@@ -219,8 +172,8 @@ impl Problem<'_> {
         let camera_from_body = pose.camera_from_body.matrix();
         let camera_in_body_m = pose.camera_in_body_m();
         for (spot, marker) in self.used() {
-            let (arm_m, factor) = self.seen_at_m(spot, marker, &camera_in_body_m);
-            let place_m = camera_from_body * arm_m + pose.position_m;
+            let LightCentre { at_m, by_camera, factor } = self.light_centre(spot, marker, &camera_in_body_m);
+            let place_m = camera_from_body * at_m + pose.position_m;
             let range_m = place_m.norm();
             let seen = place_m / range_m;
             let Whitened { direction, map, .. } = &self.whitened[spot];
@@ -240,11 +193,13 @@ impl Problem<'_> {
                 1.0
             };
             for axis in 0..2 {
-                let across = by_place.row(axis) * distance_m;
-                let turn: RowVector3<f64> = by_turn.row(axis).into_owned();
+                let in_body = by_turn.row(axis).transpose();
+                // The camera in the body frame moves by -R' distance delta, and by c x omega.
+                let by_melting = by_camera.transpose() * in_body;
+                let across = (by_place.row(axis).transpose() - camera_from_body * by_melting) * distance_m;
                 // d(R exp(omega) p) = R (omega x p), so that the row by omega is p x (R' row').
-                let turn = arm_m.cross(&turn.transpose());
-                let row = Vector6::new(across[0], across[1], across[2], turn.x, turn.y, turn.z);
+                let turn = at_m.cross(&in_body) + by_melting.cross(&camera_in_body_m);
+                let row = Vector6::new(across.x, across.y, across.z, turn.x, turn.y, turn.z);
                 normal.add_weighted(weight, residual[axis], &row);
             }
         }

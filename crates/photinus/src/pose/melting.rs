@@ -18,13 +18,16 @@ use super::problem::{Pose, Problem};
 /// Radius of the window in resolutions.
 const WINDOW: f64 = 1.32;
 /// Beyond so many resolutions markers have nothing to do with each other.
-const FAR: f64 = 2.5;
+const FAR: f64 = 2.0;
 /// How much farther than a pose markers are looked from to tell whether any melt near it.
 const ROOM: f64 = 1.5;
 
-/// The odds that two markers are told apart: the fifth power of their gap, given squared.
-fn odds_apart(gap2: f64) -> f64 {
-    gap2 * gap2 * gap2.sqrt()
+/// How likely two markers at a squared gap are one spot: the odds fall with the sixth power of the gap, to nothing at
+/// [`FAR`].
+fn one_spot(gap2: f64) -> f64 {
+    let even = |gap2: f64| 1.0 / (1.0 + gap2 * gap2 * gap2);
+    let least = even(FAR * FAR);
+    (even(gap2) - least).max(0.0) / (1.0 - least)
 }
 
 /// Where the light of a spot comes from, as far as its centre tells.
@@ -71,7 +74,7 @@ impl Problem<'_> {
 
     /// How likely the detector makes one spot of two markers.
     pub(super) fn melted(&self, spot: usize, seen: usize, other: usize, camera_m: &Vector3<f64>) -> f64 {
-        self.gap2(spot, seen, other, camera_m).map_or(0.0, |(gap2, _)| 1.0 / (1.0 + odds_apart(gap2)))
+        self.gap2(spot, seen, other, camera_m).map_or(0.0, |(gap2, _)| one_spot(gap2))
     }
 
     /// Whether any marker may melt into a spot, anywhere near a pose.

@@ -63,7 +63,7 @@ impl Problem<'_> {
             // Of two markers that melt the spot is said to be the brighter one.
             let into = |(spot, seen): (usize, usize)| {
                 let other = intensity(seen).max(1e-3);
-                self.melted(spot, seen, marker, &camera_m) * other / (other + shines)
+                self.melted(spot, seen, marker, &camera_m) * probability(odds(other / shines))
             };
             let melted = if self.melting { self.used().map(into).fold(0.0, f64::max) } else { 0.0 };
             -libm::log(1.0 - found * (1.0 - melted))

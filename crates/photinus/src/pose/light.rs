@@ -4,8 +4,6 @@ use nalgebra::Vector6;
 
 use super::problem::{Normal, Pose, Problem};
 
-/// An intensity is known to no better than this, 1 being one LED straight ahead: lobes are not exactly cosines.
-const LOBE_ERROR: f64 = 0.02;
 /// A marker that shines with less than this towards the camera shines away.
 const DARK: f64 = 0.01;
 
@@ -45,7 +43,7 @@ impl Light {
             if intensity > DARK {
                 by_camera += gradient / intensity;
             }
-            let lobe = LOBE_ERROR / shines;
+            let lobe = problem.settings.lobe_sigma / shines;
             let unit = problem.settings.unit_sigma;
             let variance = seen.sigma * seen.sigma + unit * unit + lobe * lobe;
             light.log_sigmas += 0.5 * libm::log(variance / (unit * unit));

@@ -5,8 +5,6 @@ use crate::camera::{Bearing, Watched};
 
 /// Light at which a marker is found half of the time when nothing tells what is faintest, 1 being one LED straight ahead.
 const FAINTEST_SHARE: f64 = 0.15;
-/// Light known to no better than this, 1 being one LED straight ahead, decides nothing.
-const FAINTEST_KNOWN: f64 = 0.02;
 
 /// Which markers a detector finds.
 #[derive(Clone, Copy, Debug, Default)]
@@ -41,15 +39,15 @@ impl Problem<'_> {
         let faintest_light = self.visible.faintest_light;
         let half = match log_power {
             // The intensity at which a marker at the origin's distance gives the faintest light.
-            Some(power) if faintest_light > 0.0 => {
-                (faintest_light * camera_m.norm_squared() / libm::exp(power)).clamp(FAINTEST_KNOWN, 1.0)
-            }
+            Some(power) if faintest_light > 0.0 => (faintest_light * camera_m.norm_squared()
+                / libm::exp(power))
+            .clamp(self.settings.lobe_sigma.max(1e-4), 1.0),
             _ => FAINTEST_SHARE,
         };
         let intensity = |marker: usize| self.airframe.intensity(marker, &camera_m);
         let brightest = self.used().map(|(_, marker)| intensity(marker)).fold(0.0, f64::max);
         let nats = |marker: usize| {
-            let shines = intensity(marker).max(1e-3);
+            let shines = intensity(marker).max(1e-4);
             let stands_out = odds(shines / (self.visible.outshone * brightest))
                 + odds(shines / (self.visible.certain * half));
             let found =

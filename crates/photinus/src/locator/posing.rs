@@ -19,8 +19,9 @@ use crate::spots::{self, Brightness};
 
 /// A spot far from the pose, in sigma: the group is looked at without it.
 const STRANGE_SIGMAS: f64 = 5.0;
-/// Light of a spot whose core is saturated: how far its logarithm can be off.
-const SATURATED_LOG_SIGMA: f64 = 0.2;
+/// Light that a saturated pixel hides, as a logarithm, up to so many pixels (rendered frames); known to half of itself.
+const HIDDEN_LOG: f64 = 0.037;
+const MOST_HIDING_PX: u32 = 7;
 
 /// Error of the logarithm of a spot's light per error of its centre, 1/px (rendered frames, beside other spots).
 const LOG_SIGMA_PER_PX: f64 = 1.5;
@@ -231,13 +232,11 @@ fn visible(settings: &spots::Settings) -> Visible<'static> {
 fn observe(sighting: &Sighting) -> Observation {
     let spot = &sighting.spot;
     // A detector that measures no light says nothing by it.
+    let hidden = HIDDEN_LOG * f64::from(spot.saturated_px.min(MOST_HIDING_PX));
     let log_light = (spot.flux > 0.0).then(|| LogLight {
-        value: libm::log(spot.flux),
+        value: libm::log(spot.flux) + hidden,
         // What is uncertain of the centre is so of the light: noise, and other light in the window.
-        sigma: libm::hypot(
-            LOG_SIGMA_PER_PX * spot.sigma_px(),
-            if spot.saturated_px > 0 { SATURATED_LOG_SIGMA } else { 0.0 },
-        ),
+        sigma: libm::hypot(LOG_SIGMA_PER_PX * spot.sigma_px(), 0.5 * hidden),
     });
     Observation {
         bearing: sighting.bearing,

@@ -19,8 +19,10 @@ use crate::spots::{self, Brightness};
 
 /// A spot far from the pose, in sigma: the group is looked at without it.
 const STRANGE_SIGMAS: f64 = 5.0;
-/// Light that a saturated pixel hides, as a logarithm, up to so many pixels (rendered frames); known to half of itself.
+/// Light that a saturated pixel hides, as a logarithm, up to so many pixels, and how far that is known (rendered
+/// frames).
 const HIDDEN_LOG: f64 = 0.037;
+const HIDDEN_SIGMA: f64 = 0.3;
 const MOST_HIDING_PX: u32 = 7;
 
 /// Error of the logarithm of a spot's light per error of its centre, 1/px (rendered frames, beside other spots).
@@ -29,6 +31,10 @@ const LOG_SIGMA_PER_PX: f64 = 1.5;
 const RESOLUTION_PX: f64 = 2.5;
 /// Light of a spot that is found half of the time over the step that makes a pixel bright, px (rendered frames).
 const FAINTEST_PX: f64 = 2.5;
+/// The same of a spot that is taken for a reflection half of the time over the height that makes it certain, and how much
+/// fainter than others it is then over the share that is asked for.
+const CERTAIN_PX: f64 = 2.9;
+const OUTSHONE_SHARE: f64 = 0.9;
 
 /// Over so much of the field the error of a calibration changes by itself.
 const CALIBRATION_LENGTH_RAD: f64 = 0.5;
@@ -223,10 +229,11 @@ fn of_calibration(sightings: &[Sighting], group: &[usize], position_m: &Vector3<
 fn visible(settings: &spots::Settings) -> Visible<'static> {
     let (step, outshone) = match settings.brightness {
         Brightness::Threshold(level) => (f64::from(level), 0.0),
-        Brightness::Contrast(step) => (f64::from(step), settings.shape.faintest),
+        Brightness::Contrast(step) => (f64::from(step), OUTSHONE_SHARE * settings.shape.faintest),
     };
-    let certain = settings.shape.faint_dn / step;
-    Visible { faintest_light: FAINTEST_PX * step, outshone, certain, watched: None }
+    let faintest_light = FAINTEST_PX * step;
+    let certain = CERTAIN_PX * settings.shape.faint_dn / faintest_light;
+    Visible { faintest_light, outshone, certain, watched: None }
 }
 
 fn observe(sighting: &Sighting) -> Observation {
@@ -236,7 +243,7 @@ fn observe(sighting: &Sighting) -> Observation {
     let log_light = (spot.flux > 0.0).then(|| LogLight {
         value: libm::log(spot.flux) + hidden,
         // What is uncertain of the centre is so of the light: noise, and other light in the window.
-        sigma: libm::hypot(LOG_SIGMA_PER_PX * spot.sigma_px(), 0.5 * hidden),
+        sigma: libm::hypot(LOG_SIGMA_PER_PX * spot.sigma_px(), HIDDEN_SIGMA * hidden),
     });
     Observation {
         bearing: sighting.bearing,

@@ -41,6 +41,7 @@ pub use estimator::{Estimator, Known, Posterior};
 pub use hypotheses::Hypotheses;
 pub use mixture::{Mode, Summary};
 pub use observation::{LogLight, Observation};
+pub(crate) use p3p::p3p_with_near_misses;
 pub use p3p::{P3pSolutions, p3p};
 pub use pnp::pnp;
 pub(crate) use problem::STRANGER_LOG_DENSITY;

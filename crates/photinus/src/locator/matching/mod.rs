@@ -8,11 +8,12 @@ mod image;
 mod ordered;
 mod outlined;
 mod size;
+mod triples;
 
 use nalgebra::{Unit, Vector2, Vector3};
 
 use super::Sighting;
-use super::views::{ELEVATION_STEP_RAD, Spread, Views};
+use super::views::{ELEVATION_STEP_RAD, Spread, UNSEEN_NATS, Views};
 use crate::airframe::Airframe;
 use crate::lanes::{self, LANES, Lanes};
 use crate::pose::{Hypotheses, LogDistance, Pose, Symmetry};
@@ -21,6 +22,7 @@ use image::Image;
 use ordered::Ordered;
 use outlined::overlay;
 use size::{plausible_m, size_nats};
+use triples::Triples;
 
 /// What a neighbour costs, nats: fewer neighbours are the better explanation.
 pub(super) const NEIGHBOUR_NATS: f64 = 8.0;
@@ -33,6 +35,10 @@ const LOG_POWER_SIGMA: f64 = 0.35;
 const CUT_OFF_LOG: f64 = 0.7;
 /// Light alone does not rule a neighbour out.
 const MOST_POWER_NATS: f64 = 10.0;
+/// An outline that costs so much, nats, may be that of a neighbour that is not seen whole.
+const POOR_OUTLINE_NATS: f64 = 6.0;
+/// So many spots have closed forms.
+const FEWEST_IN_PART: usize = 3;
 /// What cannot be, nats.
 pub(super) const IMPOSSIBLE: f64 = 1e9;
 
@@ -40,6 +46,7 @@ pub(super) const IMPOSSIBLE: f64 = 1e9;
 #[derive(Debug)]
 pub(super) struct Matcher {
     views: Views,
+    triples: Triples,
     bounds: DistanceBounds,
     symmetry: Symmetry,
     tilt_sigma_rad: f64,
@@ -56,6 +63,7 @@ impl Matcher {
         let symmetry = Symmetry::of(airframe);
         Self {
             views: Views::of(airframe, &symmetry),
+            triples: Triples::of(airframe, &symmetry),
             symmetry,
             bounds: DistanceBounds::new(airframe, max_tilt_rad),
             // The tilt limit is taken for two sigma; the grid of views adds half a step.
@@ -161,8 +169,13 @@ impl Matcher {
         }
         let Some(image) = Image::of(sightings, group, gravity, &mut self.places) else { return IMPOSSIBLE };
         let Some(arrangements) = self.views.arrangements(group.len()) else {
-            let nats = outlined_nats(&self.views, &image, self.tilt_sigma_rad);
-            return nats.map_or(IMPOSSIBLE, |(nats, distance_m)| {
+            let whole = outlined_nats(&self.views, &image, self.tilt_sigma_rad);
+            let part = match whole {
+                Some((nats, _)) if nats < POOR_OUTLINE_NATS => None,
+                _ => self.partly_seen_nats(sightings, group, gravity),
+            };
+            let cheapest = whole.into_iter().chain(part).min_by(|a, b| a.0.total_cmp(&b.0));
+            return cheapest.map_or(IMPOSSIBLE, |(nats, distance_m)| {
                 NEIGHBOUR_NATS + nats + size_nats(sightings, group, distance_m)
             });
         };
@@ -178,6 +191,26 @@ impl Matcher {
             + views
             + size_nats(sightings, group, distance_m)
             + self.power_nats(sightings, group, distance_m)
+    }
+
+    /// What it costs that a group is some of the markers of a view, nats, and the distance at which it fits best, m.
+    fn partly_seen_nats(
+        &self,
+        sightings: &[Sighting],
+        group: &[usize],
+        gravity: Option<&Unit<Vector3<f64>>>,
+    ) -> Option<(f64, f64)> {
+        let missing = self.views.most_visible - group.len();
+        if group.len() < FEWEST_IN_PART || missing == 0 {
+            return None;
+        }
+        let mut best: Option<(f64, f64)> = None;
+        self.triples.each_start(sightings, group, gravity, self.tilt_sigma_rad, |start| {
+            if best.is_none_or(|(nats, _)| start.nats < nats) {
+                best = Some((start.nats, start.pose.position_m.norm()));
+            }
+        });
+        best.map(|(nats, distance_m)| (nats + UNSEEN_NATS * missing as f64, distance_m))
     }
 
     /// Which markers the spots of a group of at least two may be.
@@ -201,6 +234,11 @@ impl Matcher {
                     let pose = image.pose(&place_m, turn, outline.yaw_rad, outline.elevation_rad);
                     hypotheses.offer_loose(pose, fit.nats + nats);
                 }
+            }
+            if (FEWEST_IN_PART..self.views.most_visible).contains(&group.len()) {
+                self.triples.each_start(sightings, group, gravity, self.tilt_sigma_rad, |start| {
+                    hypotheses.offer_loose(start.pose, start.nats);
+                });
             }
             return;
         };

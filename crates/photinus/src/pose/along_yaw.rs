@@ -23,8 +23,10 @@ const STEP_SIGMAS: f64 = 1.2;
 /// halved, down to so much, rad.
 const ABRUPT_NATS: f64 = 1.0;
 const FINEST_STEP_RAD: f64 = 0.015;
-/// A slice this much worse than the best, nats, is one of two that end the walk.
+/// A slice this much worse than the best, nats, is one of two that end the walk ...
 const LITTLE_NATS: f64 = 5.0;
+/// ... or of so many where one spot alone is seen: it may be any marker whose neighbours are out of sight.
+const MOST_POOR_ALONE: usize = 16;
 /// Most slices on one side.
 const MOST_SLICES: usize = 36;
 
@@ -49,12 +51,13 @@ pub(super) fn spread(
     }
     let Some(middle) = slice(problem, mode, hypothesis, 0.0, step_rad) else { return };
     components.push(middle);
+    let most_poor = if problem.used().nth(1).is_some() { 2 } else { MOST_POOR_ALONE };
     for side in [step_rad, -step_rad] {
         // Each side has a summit of its own: a spot alone is likelier a marker at the edge of those that show.
         let (mut here, mut poor, mut best) = (*mode, 0, middle.log_weight);
         for number in 1..=MOST_SLICES {
             let yaw_rad = side * number as f64;
-            if yaw_rad.abs() > PI || poor == 2 {
+            if yaw_rad.abs() > PI || poor == most_poor {
                 break;
             }
             let Some(there) = turned(problem, &here, side) else { break };

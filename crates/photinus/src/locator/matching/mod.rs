@@ -119,9 +119,11 @@ impl Matcher {
         let plausible = plausible_m(sighting);
         let nearest_m = bounds.min_m().max(plausible.nearest_m.min(bounds.max_m()));
         let farthest_m = bounds.max_m().min(plausible.farthest_m.max(bounds.min_m())).max(1.01 * nearest_m);
-        // Even over the logarithm of distance: neither near nor far is favoured.
-        let (near, far) = (libm::log(nearest_m), libm::log(farthest_m));
-        LogDistance { mean: 0.5 * (near + far), sigma: (far - near) / 12f64.sqrt() }
+        // Even over the logarithm of distance, neither near nor far is favoured: the mean and the mean square.
+        let spread = libm::log(farthest_m / nearest_m);
+        let mean_m = (farthest_m - nearest_m) / spread;
+        let square_m2 = (farthest_m * farthest_m - nearest_m * nearest_m) / (2.0 * spread);
+        LogDistance { mean: libm::log(mean_m), sigma: (square_m2 / (mean_m * mean_m) - 1.0).max(1e-6).sqrt() }
     }
 
     /// Sets what is known of the light of this frame's LEDs.

@@ -210,7 +210,7 @@ impl Problem<'_> {
             return (at_m, 1.0);
         }
         let off_rad = MELTED_SHARE * (at_m - alone_m).norm() / camera_in_body_m.norm();
-        let sigma2_rad2 = self.observations[spot].covariance_rad2.trace() / 2.0;
+        let sigma2_rad2 = self.observations[spot].variance_rad2();
         (at_m, (sigma2_rad2 / (sigma2_rad2 + off_rad * off_rad)).sqrt())
     }
 

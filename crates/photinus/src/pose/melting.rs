@@ -135,7 +135,7 @@ impl Problem<'_> {
         let off_m = pull_m / total;
         centre.at_m += off_m;
         centre.by_camera = (pull_by_camera - off_m * total_gradient.transpose()) / total;
-        let sigma2_rad2 = self.observations[spot].covariance_rad2.trace() / 2.0;
+        let sigma2_rad2 = self.observations[spot].variance_rad2();
         let unsure_rad2 = unsure_m2 / (total * total * camera_m.norm_squared());
         centre.factor = (sigma2_rad2 / (sigma2_rad2 + unsure_rad2)).sqrt();
         centre

@@ -167,7 +167,8 @@ fn moments(components: &[Component], reference: &Rotation3<f64>, turns: usize) -
         let weight = libm::exp(component.log_weight);
         let position_m = component.pose.position_m;
         let away_m = position_m.norm();
-        let ahead = position_m / away_m;
+        // Bounds of 0 leave a component no direction.
+        let ahead = position_m.try_normalize(0.0).unwrap_or_default();
         let covariance = component.position_covariance_m2;
         total += weight;
         first_m += weight * position_m;

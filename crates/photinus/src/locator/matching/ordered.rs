@@ -117,7 +117,7 @@ impl Ordered {
         }
         // A match that is hardly one still gives a place, at most a thousand times as far as it looks.
         let agreement = f64::sqrt(dot * dot + cross * cross).max(1e-3 * square.sqrt());
-        let turn = Vector2::new(dot, cross) / agreement;
+        let turn = Vector2::new(dot, cross).try_normalize(1e-12).unwrap_or_else(Vector2::x);
         let depth_m = square / (agreement * image.size);
         let mean_larger = larger.iter().take(self.count).sum::<f64>() * per_spot;
         let beside_m =

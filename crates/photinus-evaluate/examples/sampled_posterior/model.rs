@@ -111,7 +111,8 @@ impl Model<'_> {
             let off_m = self.airframe.markers()[other].position_m - own_m;
             total += light;
             pull_m += off_m * light;
-            unsure_m2 += ((1.0 - weight).powi(2) + 2.0 * self.unit_sigma.powi(2)) * (off_m * light).norm_squared();
+            unsure_m2 +=
+                ((1.0 - weight).powi(2) + 2.0 * self.unit_sigma.powi(2)) * (off_m * light).norm_squared();
         }
         let place_m = own_m + pull_m / total;
         let off_rad = unsure_m2.sqrt() / total / camera_m.norm();
@@ -173,7 +174,7 @@ impl Model<'_> {
         let intensity = |marker| self.airframe.intensity(marker, camera_m);
         let half = (self.faintest * camera_m.norm_squared() / power).clamp(LOBE_SIGMA, 1.0);
         let brightest = intensity(markers[0]).max(intensity(markers[1]));
-        let chance = |odds: f64| odds / (1.0 + odds);
+        let chance = |odds: f64| 1.0 - 1.0 / (1.0 + odds);
         let log_chance = |marker: usize| {
             let shines = intensity(marker).max(1e-4);
             let stands_out = (shines / (OUTSHONE * brightest)).powi(7) + (shines / (CERTAIN * half)).powi(7);

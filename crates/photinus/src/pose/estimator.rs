@@ -44,7 +44,7 @@ pub struct Posterior {
     pub log_evidence: f64,
     /// The markers that the spots are in the best hypothesis.
     pub markers: Vec<Option<u16>>,
-    /// Largest misfit of a spot in the best mode, in sigma.
+    /// Largest misfit in the best mode, in sigma: of a spot, or of the bounds on distance.
     pub worst_sigma: f64,
 }
 
@@ -207,6 +207,7 @@ impl Estimator {
 
     fn tell(&mut self, observations: &[Observation], known: &Known<'_>) {
         let Self { components, posterior, whitened, .. } = self;
+        posterior.worst_sigma = posterior.worst_sigma.max(mixture::beyond_sigmas(components, &known.bounds));
         mixture::truncate(components, &known.bounds);
         let log_sigmas: f64 = whitened.iter().map(|seen| seen.log_sigmas).sum();
         posterior.log_evidence = mixture::log_evidence(components) - log_sigmas;

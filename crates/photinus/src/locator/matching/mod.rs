@@ -34,7 +34,7 @@ const LOG_POWER_SIGMA: f64 = 0.35;
 /// So much of the logarithm of light saturation may hide.
 const CUT_OFF_LOG: f64 = 0.7;
 /// Light alone does not rule a neighbour out.
-const MOST_POWER_NATS: f64 = 10.0;
+const MOST_POWER_NATS: f64 = 30.0;
 /// An outline that costs so much, nats, may be that of a neighbour that is not seen whole.
 const POOR_OUTLINE_NATS: f64 = 6.0;
 /// So many spots have closed forms.

@@ -24,7 +24,7 @@ use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 use crate::airframe::Airframe;
 use crate::camera::{Bearing, Camera, Watched};
 use crate::frame::{FrameError, FrameView, Mask};
-use crate::pose::{self, Mode};
+use crate::pose::{self, LogLight, Mode};
 use crate::ranging::{DistanceBounds, Estimate, Interval, SpotCurve};
 use crate::spots::{self, Detector, Reason, Rejected, Spot};
 use grouping::Groups;
@@ -109,6 +109,9 @@ pub struct Sighting {
     pub spot: Spot,
     /// Which of the airframe's signals it was seen to blink, where that is known.
     pub signal: Option<u32>,
+    /// Its light, in units that are the same all over the frame, with what a saturated core hides put back; `None` where none
+    /// was measured.
+    pub log_light: Option<LogLight>,
     /// Its direction in the camera frame.
     pub bearing: Bearing,
     /// Covariance of the direction, rad^2, tangent to the sphere (rank 2): from the spot and, where the camera's file says

@@ -11,22 +11,14 @@ use super::{Distance, Neighbour, Orientation, Position, Sighting};
 use crate::airframe::Airframe;
 use crate::camera::{Bearing, Watched};
 use crate::pose::{
-    self, Estimator, Hypotheses, Known, LogDistance, LogLight, Observation, Pose, Posterior, SettingsError,
-    Summary, Visible,
+    self, Estimator, Hypotheses, Known, LogDistance, Observation, Pose, Posterior, SettingsError, Summary,
+    Visible,
 };
 use crate::ranging::Interval;
 use crate::spots::{self, Brightness};
 
 /// A spot far from the pose, in sigma: the group is looked at without it.
 const STRANGE_SIGMAS: f64 = 5.0;
-/// Light that a saturated pixel hides, as a logarithm, up to so many pixels, and how far that is known (rendered
-/// frames).
-const HIDDEN_LOG: f64 = 0.037;
-const HIDDEN_SIGMA: f64 = 0.3;
-const MOST_HIDING_PX: u32 = 7;
-
-/// Error of the logarithm of a spot's light per error of its centre, 1/px (rendered frames, beside other spots).
-const LOG_SIGMA_PER_PX: f64 = 1.5;
 /// Two markers so far apart are told apart half of the time, px (rendered frames).
 const RESOLUTION_PX: f64 = 2.5;
 /// Light of a spot that is found half of the time over the step that makes a pixel bright, px (rendered frames).
@@ -237,18 +229,10 @@ fn visible(settings: &spots::Settings) -> Visible<'static> {
 }
 
 fn observe(sighting: &Sighting) -> Observation {
-    let spot = &sighting.spot;
-    // A detector that measures no light says nothing by it.
-    let hidden = HIDDEN_LOG * f64::from(spot.saturated_px.min(MOST_HIDING_PX));
-    let log_light = (spot.flux > 0.0).then(|| LogLight {
-        value: libm::log(spot.flux) + hidden,
-        // What is uncertain of the centre is so of the light: noise, and other light in the window.
-        sigma: libm::hypot(LOG_SIGMA_PER_PX * spot.sigma_px(), HIDDEN_SIGMA * hidden),
-    });
     Observation {
         bearing: sighting.bearing,
         covariance_rad2: sighting.spot_covariance_rad2,
-        log_light,
+        log_light: sighting.log_light,
         resolution_rad: RESOLUTION_PX * sighting.rad_per_px,
         signal: sighting.signal,
     }

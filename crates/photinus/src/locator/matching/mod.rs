@@ -31,8 +31,6 @@ pub(super) const NEIGHBOUR_NATS: f64 = 8.0;
 const POOR_NATS: f32 = 9.0;
 /// Spread of the logarithm of light between neighbours: lobes, units, the lens towards its edge.
 const LOG_POWER_SIGMA: f64 = 0.35;
-/// So much of the logarithm of light saturation may hide.
-const CUT_OFF_LOG: f64 = 0.7;
 /// Light alone does not rule a neighbour out.
 const MOST_POWER_NATS: f64 = 30.0;
 /// An outline that costs so much, nats, may be that of a neighbour that is not seen whole.
@@ -150,9 +148,6 @@ impl Matcher {
     fn power_nats(&self, sightings: &[Sighting], group: &[usize], distance_m: f64) -> f64 {
         let Some((power, light)) = self.log_power.zip(mean_log_light(sightings, group)) else { return 0.0 };
         let off = light + 2.0 * libm::log(distance_m) - power;
-        let saturated = group.iter().any(|&spot| sightings[spot].spot.saturated_px > 0);
-        // Light that is cut off makes a spot look fainter than it is, up to a point.
-        let off = if saturated && off < 0.0 { (off + CUT_OFF_LOG).min(0.0) } else { off };
         (0.5 * (off / LOG_POWER_SIGMA) * (off / LOG_POWER_SIGMA)).min(MOST_POWER_NATS)
     }
 
@@ -279,9 +274,8 @@ fn outlined_nats(views: &Views, image: &Image<'_>, tilt_sigma_rad: f64) -> Optio
 
 /// Mean logarithm of the light of spots; `None` where one has none.
 fn mean_log_light(sightings: &[Sighting], group: &[usize]) -> Option<f64> {
-    let light = |&spot: &usize| sightings[spot].spot.flux;
-    let all = group.iter().all(|spot| light(spot) > 0.0);
-    all.then(|| group.iter().map(|spot| libm::log(light(spot))).sum::<f64>() / group.len() as f64)
+    let sum = group.iter().try_fold(0.0, |sum, &spot| Some(sum + sightings[spot].log_light?.value));
+    sum.map(|sum| sum / group.len() as f64)
 }
 
 fn widened(range: &Interval, reach_m: f64) -> Option<Interval> {

@@ -3,7 +3,7 @@
 use std::cell::RefCell;
 use std::f64::consts::PI;
 
-use nalgebra::Matrix2;
+use nalgebra::{Matrix2, Vector3};
 use photinus::airframe::Airframe;
 use photinus::camera::{Camera, Ideal, IdealLaw, Model, Pixel};
 use photinus::locator::{Located, Locator, Settings};
@@ -116,8 +116,8 @@ fn check_located(located: &Located) -> Result<(), TestCaseError> {
     Ok(())
 }
 
-#[test]
-fn a_locator_tells_numbers_within_bounds_or_nothing() {
+/// A locator per airframe, of all beliefs that there are.
+fn locators() -> Vec<Locator> {
     let (first, last) = (
         Settings::default(),
         Settings {
@@ -150,7 +150,12 @@ fn a_locator_tells_numbers_within_bounds_or_nothing() {
         let settings = [first, last, strict][number % 3];
         Locator::new(camera(), airframe, curves[number % 2], settings).expect("a locator")
     };
-    let locators: RefCell<Vec<Locator>> = RefCell::new(airframes().iter().enumerate().map(locator).collect());
+    airframes().iter().enumerate().map(locator).collect()
+}
+
+#[test]
+fn a_locator_tells_numbers_within_bounds_or_nothing() {
+    let locators = RefCell::new(locators());
     let told = RefCell::new([0; 2]);
     let inputs = (any::<Index>(), with_twins(spot(), MOST_SPOTS), up());
     let outcome = runner(800).run(&inputs, |(which, spots, down)| {
@@ -167,4 +172,33 @@ fn a_locator_tells_numbers_within_bounds_or_nothing() {
     println!("{with} neighbours with a pose, {without} without");
     outcome.unwrap_or_else(|error| panic!("{error}"));
     assert!(with > 10 * without, "{with} with a pose, {without} without");
+}
+
+#[test]
+fn spots_all_in_one_place_tell_numbers_or_nothing() {
+    // Rounding leaves three spots in this place a shape of their own.
+    let one = Spot {
+        centre: Pixel::new(453.17772437562195, 476.42743007739676),
+        covariance_px2: Matrix2::new(
+            0.2413099317347277,
+            0.3817888475197341,
+            0.3817888475197341,
+            2.5437977732589285,
+        ),
+        area_px: 2,
+        peak: 0,
+        saturated_px: 0,
+        flux: 10.0,
+        background: 0.0,
+        middle: (453, 476),
+        extent: Extent { left: 453, top: 476, right: 453, bottom: 480 },
+    };
+    for mut locator in locators() {
+        for copies in 2..=5 {
+            for down in [None, Some(Vector3::y_axis())] {
+                let located = locator.locate_spots(&vec![one.clone(); copies], down.as_ref(), &mut |_| ());
+                check_located(located).unwrap_or_else(|error| panic!("{copies} copies: {error}"));
+            }
+        }
+    }
 }

@@ -5,6 +5,7 @@
 
 use nalgebra::{Matrix3, Unit, Vector3};
 
+use super::grouping::CLEAR_SPOTS;
 use super::matching::Matcher;
 use super::pairs::Pairs;
 use super::{Distance, Neighbour, Orientation, Position, Sighting};
@@ -99,7 +100,10 @@ impl Poser {
         } else {
             matcher.hypotheses(sightings, group, gravity, &mut self.hypotheses);
         }
-        let known = Known { up, bounds, size, visible: Visible { watched: Some(watched), ..self.visible } };
+        // Who tells the light of the frame's LEDs is not told by it.
+        let power = if group.len() < CLEAR_SPOTS { matcher.known_power() } else { None };
+        let known =
+            Known { up, bounds, size, power, visible: Visible { watched: Some(watched), ..self.visible } };
         self.estimator.estimate(&self.observations, &mut self.hypotheses, &known);
         bounds
     }

@@ -6,7 +6,7 @@ use super::along_yaw;
 use super::assignment::Assignment;
 use super::hypotheses::Hypotheses;
 use super::mixture::{self, Component, Mode, Summary};
-use super::observation::{Observation, Whitened};
+use super::observation::{LogLight, Observation, Whitened};
 use super::problem::{LogDistance, Pose, Problem};
 use super::refine::{Refined, following, refine, yaw_sigma_rad};
 use super::settings::{Settings, SettingsError};
@@ -29,6 +29,8 @@ pub struct Known<'a> {
     pub bounds: Interval,
     /// What spot size says of distance, where nothing better does.
     pub size: Option<LogDistance>,
+    /// Light of an LED of intensity 1 at 1 m, in the units of the observations, where other neighbours tell it.
+    pub power: Option<LogLight>,
     /// Which markers are found.
     pub visible: Visible<'a>,
 }
@@ -236,6 +238,7 @@ fn problem<'a>(
         markers: &[],
         up: known.up,
         size: known.size,
+        power: known.power,
         visible: known.visible,
         melting: true,
     }

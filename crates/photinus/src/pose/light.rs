@@ -2,6 +2,7 @@
 
 use nalgebra::Vector6;
 
+use super::observation::LogLight;
 use super::problem::{Normal, Pose, Problem};
 
 /// A marker that shines with less than this towards the camera shines away.
@@ -28,6 +29,9 @@ impl Light {
             normal: Normal::zero(),
             log_sigmas: 0.0,
         };
+        if let Some(LogLight { value, sigma }) = problem.power {
+            light.add(1.0 / (sigma * sigma), value, &Vector6::zeros());
+        }
         let camera_in_body_m = pose.camera_in_body_m();
         let camera_from_body = pose.camera_from_body.matrix();
         let distance_m = pose.position_m.norm();

@@ -9,7 +9,7 @@
 //!
 //! ```text
 //! bearing   map (x / |x| - direction), x = R p + t                        two per spot, Huber beyond 3.5 sigma
-//! light     ln f - ln I(camera in body) + 2 ln |x| - c                    one per spot, c (the LED's power) solved for
+//! light     ln f - ln I(camera in body) + 2 ln |x| - c                    one per spot, c (the LED's power) solved for, with its prior
 //! tilt      x and y of "up" in the body frame over the tilt's sigma       two, where gravity is known
 //! elevation z of the direction to the camera in the body frame, weak      one, where it is not; and "up" is the image's, weak
 //! size      (ln distance - mean) / sigma                                  one, where nothing else tells distance
@@ -19,7 +19,7 @@ use nalgebra::{Matrix3, Matrix6, Rotation3, Unit, Vector3, Vector6};
 
 use super::light::Light;
 use super::melting::LightCentre;
-use super::observation::{Observation, Whitened};
+use super::observation::{LogLight, Observation, Whitened};
 use super::settings::Settings;
 use super::visibility::Visible;
 use crate::airframe::Airframe;
@@ -84,6 +84,7 @@ pub(super) struct Problem<'a> {
     /// Away from the ground, camera frame.
     pub(super) up: Option<Unit<Vector3<f64>>>,
     pub(super) size: Option<LogDistance>,
+    pub(super) power: Option<LogLight>,
     pub(super) visible: Visible<'a>,
     /// Whether markers may melt into one spot.
     pub(super) melting: bool,

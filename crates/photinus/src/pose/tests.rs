@@ -60,7 +60,7 @@ proptest! {
         let problem = Problem {
             airframe: &airframe, settings: &settings, observations: &observations, whitened: &whitened, markers: &markers,
             up: with_up.then(|| Unit::new_normalize(Vector3::new(0.05, -1.0, 0.02))),
-            size: Some(LogDistance { mean: 1.0, sigma: 0.5 }), visible: Visible::default(), melting: false,
+            size: Some(LogDistance { mean: 1.0, sigma: 0.5 }), power: None, visible: Visible::default(), melting: false,
         };
         let normal = problem.normal(&pose);
         prop_assert!((normal.information - normal.information.transpose()).norm() == 0.0);
@@ -111,7 +111,7 @@ proptest! {
         let (settings, markers) = (Settings::default(), [Some(brightest as u16)]);
         let problem = Problem {
             airframe: &airframe, settings: &settings, observations: &observations, whitened: &whitened, markers: &markers,
-            up: None, size: None, visible: Visible::default(), melting: true,
+            up: None, size: None, power: None, visible: Visible::default(), melting: true,
         };
         let centre = |at: &Vector3<f64>| problem.light_centre(0, brightest, at);
         let light = |at: &Vector3<f64>| problem.light(0, brightest, at);
@@ -145,7 +145,7 @@ proptest! {
         let (settings, markers) = (Settings::default(), [Some(0)]);
         let problem = Problem {
             airframe: &airframe, settings: &settings, observations: &observations, whitened: &whitened, markers: &markers,
-            up: None, size: None, visible: Visible::default(), melting: true,
+            up: None, size: None, power: None, visible: Visible::default(), melting: true,
         };
         let centre = problem.light_centre(0, 0, &camera_m);
         let melted = problem.melted(0, 0, 1, &camera_m);

@@ -16,7 +16,7 @@ use super::Sighting;
 use super::views::{ELEVATION_STEP_RAD, Spread, UNSEEN_NATS, Views};
 use crate::airframe::Airframe;
 use crate::lanes::{self, LANES, Lanes};
-use crate::pose::{Hypotheses, LogDistance, Pose, Symmetry};
+use crate::pose::{Hypotheses, LogDistance, LogLight, Pose, Symmetry};
 use crate::ranging::{BoundedBearing, DistanceBounds, Interval};
 use image::Image;
 use ordered::Ordered;
@@ -48,7 +48,6 @@ pub(super) struct Matcher {
     bounds: DistanceBounds,
     symmetry: Symmetry,
     tilt_sigma_rad: f64,
-    /// Logarithm of the light of this frame's LEDs at 1 m, where some neighbours tell it.
     log_power: Option<f64>,
     bearings: Vec<BoundedBearing>,
     places: Vec<Vector2<f64>>,
@@ -124,12 +123,17 @@ impl Matcher {
         LogDistance { mean: libm::log(mean_m), sigma: (square_m2 / (mean_m * mean_m) - 1.0).max(1e-6).sqrt() }
     }
 
-    /// Sets what is known of the light of this frame's LEDs.
+    /// Sets what is known of the light of this frame's LEDs: the logarithm of that of one straight ahead at 1 m.
     pub(super) fn set_log_power(&mut self, log_power: Option<f64>) {
         self.log_power = log_power;
     }
 
-    /// The light that a group's LEDs would have at 1 m if it is the neighbour it looks like, as a logarithm.
+    /// What is known of the light of this frame's LEDs, as a logarithm with its spread.
+    pub(super) fn known_power(&self) -> Option<LogLight> {
+        self.log_power.map(|value| LogLight { value, sigma: LOG_POWER_SIGMA })
+    }
+
+    /// The light that an LED of a group would have straight ahead at 1 m if it is the neighbour it looks like, as a logarithm.
     pub(super) fn log_power(
         &mut self,
         sightings: &[Sighting],
@@ -140,14 +144,22 @@ impl Matcher {
         let arrangements = self.views.arrangements(group.len())?;
         let seen = Ordered::of(&image, sightings, group);
         let best = seen.costs(&arrangements.quads, &image, self.tilt_sigma_rad, &mut self.costs);
-        let distance_m = seen.place(&arrangements.all[best.arrangement], &image).0.norm();
-        mean_log_light(sightings, group).map(|light| light + 2.0 * libm::log(distance_m))
+        let arrangement = &arrangements.all[best.arrangement];
+        let distance_m = seen.place(arrangement, &image).0.norm();
+        log_power(sightings, group, distance_m, arrangement.mean_log_intensity)
     }
 
-    /// What it costs that spots of this light are at a distance, nats.
-    fn power_nats(&self, sightings: &[Sighting], group: &[usize], distance_m: f64) -> f64 {
-        let Some((power, light)) = self.log_power.zip(mean_log_light(sightings, group)) else { return 0.0 };
-        let off = light + 2.0 * libm::log(distance_m) - power;
+    /// What it costs that spots of this light are markers of that intensity at a distance, nats.
+    fn power_nats(
+        &self,
+        sightings: &[Sighting],
+        group: &[usize],
+        distance_m: f64,
+        log_intensity: f64,
+    ) -> f64 {
+        let own = log_power(sightings, group, distance_m, log_intensity);
+        let Some((known, own)) = self.log_power.zip(own) else { return 0.0 };
+        let off = own - known;
         (0.5 * (off / LOG_POWER_SIGMA) * (off / LOG_POWER_SIGMA)).min(MOST_POWER_NATS)
     }
 
@@ -182,12 +194,13 @@ impl Matcher {
             .costs
             .iter()
             .fold(Lanes::ZERO, |sum, &four| sum + lanes::exp(Lanes::splat(best.nats) - four));
-        let distance_m = seen.place(&arrangements.all[best.arrangement], &image).0.norm();
+        let arrangement = &arrangements.all[best.arrangement];
+        let distance_m = seen.place(arrangement, &image).0.norm();
         let views = f64::from(best.nats) - libm::log(f64::from(lanes::sum(weight)));
         NEIGHBOUR_NATS
             + views
             + size_nats(sightings, group, distance_m)
-            + self.power_nats(sightings, group, distance_m)
+            + self.power_nats(sightings, group, distance_m, arrangement.mean_log_intensity)
     }
 
     /// What it costs that a group is some of the markers of a view, nats, and the distance at which it fits best, m.
@@ -272,10 +285,11 @@ fn outlined_nats(views: &Views, image: &Image<'_>, tilt_sigma_rad: f64) -> Optio
     Some((best.nats - libm::log(weight), best.place_m.norm()))
 }
 
-/// Mean logarithm of the light of spots; `None` where one has none.
-fn mean_log_light(sightings: &[Sighting], group: &[usize]) -> Option<f64> {
-    let sum = group.iter().try_fold(0.0, |sum, &spot| Some(sum + sightings[spot].log_light?.value));
-    sum.map(|sum| sum / group.len() as f64)
+/// Logarithm of the light of an LED straight ahead at 1 m if these spots are markers of this mean logarithm of intensity at a
+/// distance; `None` where one has no light.
+fn log_power(sightings: &[Sighting], group: &[usize], distance_m: f64, log_intensity: f64) -> Option<f64> {
+    let sum = group.iter().try_fold(0.0, |sum, &spot| Some(sum + sightings[spot].log_light?.value))?;
+    Some(sum / group.len() as f64 + 2.0 * libm::log(distance_m) - log_intensity)
 }
 
 fn widened(range: &Interval, reach_m: f64) -> Option<Interval> {

@@ -1,39 +1,21 @@
 //! Observations and hypotheses of one neighbour -> its posterior.
 
-use nalgebra::{Unit, Vector3};
-
 use super::along_yaw;
 use super::assignment::Assignment;
 use super::hypotheses::Hypotheses;
+use super::known::Known;
 use super::mixture::{self, Component, Mode, Summary};
-use super::observation::{LogLight, Observation, Whitened};
-use super::problem::{LogDistance, Pose, Problem};
+use super::observation::{Observation, Whitened};
+use super::problem::{Pose, Problem};
 use super::refine::{Refined, following, refine, yaw_sigma_rad};
 use super::settings::{Settings, SettingsError};
 use super::symmetry::Symmetry;
-use super::visibility::Visible;
 use crate::airframe::Airframe;
-use crate::ranging::Interval;
 
 /// A mode this much worse than the best, nats, has no weight.
 const HOPELESS_NATS: f64 = 8.0;
 /// Most rounds of assigning spots to markers and refining the pose.
 const MOST_ROUNDS: usize = 10;
-
-/// What is known of a neighbour besides its spots.
-#[derive(Clone, Copy, Debug)]
-pub struct Known<'a> {
-    /// Away from the ground, camera frame.
-    pub up: Option<Unit<Vector3<f64>>>,
-    /// Truth is between these.
-    pub bounds: Interval,
-    /// What spot size says of distance, where nothing better does.
-    pub size: Option<LogDistance>,
-    /// Light of an LED of intensity 1 at 1 m, in the units of the observations, where other neighbours tell it.
-    pub power: Option<LogLight>,
-    /// Which markers are found.
-    pub visible: Visible<'a>,
-}
 
 /// What the spots of one neighbour tell.
 #[derive(Clone, Debug, Default)]
@@ -228,20 +210,9 @@ fn problem<'a>(
     settings: &'a Settings,
     observations: &'a [Observation],
     whitened: &'a [Whitened],
-    known: &Known<'a>,
+    known: &'a Known<'a>,
 ) -> Problem<'a> {
-    Problem {
-        airframe,
-        settings,
-        observations,
-        whitened,
-        markers: &[],
-        up: known.up,
-        size: known.size,
-        power: known.power,
-        visible: known.visible,
-        melting: true,
-    }
+    Problem { airframe, settings, observations, whitened, known, markers: &[], melting: true }
 }
 
 /// Assigns spots to the nearest markers and refines the pose in turns, until nothing changes.

@@ -29,7 +29,7 @@ impl Light {
             normal: Normal::zero(),
             log_sigmas: 0.0,
         };
-        if let Some(LogLight { value, sigma }) = problem.power {
+        if let Some(LogLight { value, sigma }) = problem.known.power {
             light.add(1.0 / (sigma * sigma), value, &Vector6::zeros());
         }
         let camera_in_body_m = pose.camera_in_body_m();

@@ -34,6 +34,11 @@ fn observation(direction: Vector3<f64>, sigma_rad: f64, light: f64) -> Observati
     }
 }
 
+fn nothing() -> Known<'static> {
+    let bounds = crate::ranging::Interval::new(0.0, f64::INFINITY).unwrap();
+    Known { up: None, bounds, size: None, power: None, visible: Visible::default() }
+}
+
 proptest! {
     #[test]
     fn derivatives_agree_with_finite_differences(
@@ -57,10 +62,14 @@ proptest! {
         let whitened: Vec<Whitened> = observations.iter().map(|seen| Whitened::of(seen, 0.0)).collect();
         let markers: Vec<Option<u16>> = seen.into_iter().map(Some).collect();
         let settings = Settings::default();
+        let known = Known {
+            up: with_up.then(|| Unit::new_normalize(Vector3::new(0.05, -1.0, 0.02))),
+            size: Some(LogDistance { mean: 1.0, sigma: 0.5 }),
+            ..nothing()
+        };
         let problem = Problem {
             airframe: &airframe, settings: &settings, observations: &observations, whitened: &whitened, markers: &markers,
-            up: with_up.then(|| Unit::new_normalize(Vector3::new(0.05, -1.0, 0.02))),
-            size: Some(LogDistance { mean: 1.0, sigma: 0.5 }), power: None, visible: Visible::default(), melting: false,
+            known: &known, melting: false,
         };
         let normal = problem.normal(&pose);
         prop_assert!((normal.information - normal.information.transpose()).norm() == 0.0);
@@ -111,7 +120,7 @@ proptest! {
         let (settings, markers) = (Settings::default(), [Some(brightest as u16)]);
         let problem = Problem {
             airframe: &airframe, settings: &settings, observations: &observations, whitened: &whitened, markers: &markers,
-            up: None, size: None, power: None, visible: Visible::default(), melting: true,
+            known: &nothing(), melting: true,
         };
         let centre = |at: &Vector3<f64>| problem.light_centre(0, brightest, at);
         let light = |at: &Vector3<f64>| problem.light(0, brightest, at);
@@ -145,7 +154,7 @@ proptest! {
         let (settings, markers) = (Settings::default(), [Some(0)]);
         let problem = Problem {
             airframe: &airframe, settings: &settings, observations: &observations, whitened: &whitened, markers: &markers,
-            up: None, size: None, power: None, visible: Visible::default(), melting: true,
+            known: &nothing(), melting: true,
         };
         let centre = problem.light_centre(0, 0, &camera_m);
         let melted = problem.melted(0, 0, 1, &camera_m);

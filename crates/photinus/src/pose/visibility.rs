@@ -1,23 +1,10 @@
 //! What should shine and is not seen tells against a pose, and so does what is seen and should not shine.
 
 use super::problem::{Pose, Problem};
-use crate::camera::{Bearing, Watched};
+use crate::camera::Bearing;
 
 /// Light at which a marker is found half of the time when nothing tells what is faintest, 1 being one LED straight ahead.
 const FAINTEST_SHARE: f64 = 0.15;
-
-/// Which markers a detector finds.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Visible<'a> {
-    /// Light at which a marker is found half of the time, in the units of the observations; 0 where unknown.
-    pub faintest_light: f64,
-    /// A marker fainter than this share of the brightest beside it is taken for its reflection; 0 where none is.
-    pub outshone: f64,
-    /// ... but not from so many times the faintest light on.
-    pub certain: f64,
-    /// Where the camera looks; everywhere where that is `None`.
-    pub watched: Option<Watched<'a>>,
-}
 
 /// The odds of finding a marker whose light is so many times that at which they are even. On rendered frames 39, 71, 86, 96
 /// and 99 % are found at 0.9, 1.1, 1.3, 1.6 and 1.9 times.
@@ -36,7 +23,7 @@ impl Problem<'_> {
     /// of this logarithm.
     pub(super) fn visibility_nats(&self, pose: &Pose, log_power: Option<f64>) -> f64 {
         let camera_m = pose.camera_in_body_m();
-        let faintest_light = self.visible.faintest_light;
+        let faintest_light = self.known.visible.faintest_light;
         let half = match log_power {
             // The intensity at which a marker at the origin's distance gives the faintest light.
             Some(power) if faintest_light > 0.0 => (faintest_light * camera_m.norm_squared()
@@ -48,8 +35,8 @@ impl Problem<'_> {
         let brightest = self.used().map(|(_, marker)| intensity(marker)).fold(0.0, f64::max);
         let nats = |marker: usize| {
             let shines = intensity(marker).max(1e-4);
-            let stands_out = odds(shines / (self.visible.outshone * brightest))
-                + odds(shines / (self.visible.certain * half));
+            let stands_out = odds(shines / (self.known.visible.outshone * brightest))
+                + odds(shines / (self.known.visible.certain * half));
             let found =
                 (1.0 - self.settings.missed) * probability(odds(shines / half)) * probability(stands_out);
             if self.is_used(marker) {
@@ -86,7 +73,7 @@ impl Problem<'_> {
     }
 
     fn is_watched(&self, pose: &Pose, marker: usize) -> bool {
-        let Some(watched) = &self.visible.watched else { return true };
+        let Some(watched) = &self.known.visible.watched else { return true };
         let place_m = pose.camera_from_body * self.airframe.markers()[marker].position_m + pose.position_m;
         Bearing::new(place_m).is_some_and(|bearing| watched.sees(&bearing))
     }

@@ -62,8 +62,8 @@ impl Problem<'_> {
         let across = between_m.norm_squared() * range2_m2 - along * along;
         let scale = 1.0 / (range2_m2 * range2_m2 * resolution2);
         let gap2 = across * scale;
-        // A negation, so that no resolution and no range is far.
-        if !(gap2 < FAR * FAR) {
+        // No resolution, or no range, is no number, and far.
+        if gap2.is_nan() || gap2 >= FAR * FAR {
             return None;
         }
         let slope = ray_m * (2.0 * between_m.norm_squared())

@@ -1,5 +1,7 @@
 //! What should shine and is not seen tells against a pose, and so does what is seen and should not shine.
 
+use nalgebra::Vector3;
+
 use super::problem::{Pose, Problem};
 use crate::camera::Bearing;
 
@@ -57,7 +59,7 @@ impl Problem<'_> {
     }
 
     /// What it costs that markers beside each other are seen as two spots.
-    fn told_apart_nats(&self, camera_m: &nalgebra::Vector3<f64>) -> f64 {
+    fn told_apart_nats(&self, camera_m: &Vector3<f64>) -> f64 {
         if !self.melting {
             return 0.0;
         }

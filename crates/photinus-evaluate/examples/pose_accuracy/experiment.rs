@@ -7,6 +7,7 @@ use photinus::airframe::{Airframe, Ring};
 use photinus::camera::{Camera, Ideal, IdealLaw, Model, Pixel};
 use photinus::locator::{Located, Locator, Neighbour, Settings};
 use photinus::pose;
+use photinus::spots;
 use rand_pcg::Pcg64;
 
 use crate::render;
@@ -104,7 +105,9 @@ pub(crate) enum Source {
 impl Source {
     fn camera(self) -> Camera {
         match self {
-            Self::Rendered => render::scene("hexarotor-0.4", 0, None).cameras[0].camera.clone(),
+            Self::Rendered => {
+                render::scene(&render::PAPER, "hexarotor-0.4", 0, None).cameras[0].camera.clone()
+            }
             Self::Geometry { .. } => {
                 let centre = Pixel::new(375.5, 239.5);
                 let lens = Ideal::new(IdealLaw::Equidistant, [1.0 / 3.7673e-3; 2], centre).expect("a lens");
@@ -125,7 +128,7 @@ pub(crate) fn run(
     let camera = source.camera();
     let unit_sigma = if source == Source::Rendered { 0.06 } else { UNIT_SIGMA };
     let tilt_sigma_rad = libm::hypot(TILT_RAD, GRAVITY_RAD);
-    // The airframe is exact, no LED is dead, and how it tilts is known.
+    // The airframe is exact, no LED is dead, and how it tilts and what noise pixels have is known.
     let pose = pose::Settings {
         tilt_sigma_rad,
         marker_sigma_m: 0.0,
@@ -133,7 +136,8 @@ pub(crate) fn run(
         missed: 1e-5,
         ..pose::Settings::default()
     };
-    let settings = Settings { pose, ..Settings::default() };
+    let spots = spots::Settings { noise: render::noise(&render::PAPER), ..spots::Settings::default() };
+    let settings = Settings { pose, spots, ..Settings::default() };
     let mut locator = Locator::new(camera.clone(), airframe, None, settings).expect("a locator");
     let mut tallies = [Tally::default(); MOST_SPOTS + 1];
     let mut nothing = 0;
@@ -150,8 +154,10 @@ pub(crate) fn run(
     while done < count {
         match source {
             Source::Rendered => {
-                for (view, image) in render::batch(airframe, distance_m, done as u64, &mut rng) {
-                    let located = locator.locate(&image.view(), Some(&view.gravity), &mut |_| ());
+                for (view, frame) in
+                    render::batch(&render::PAPER, airframe, distance_m, done as u64, &mut rng)
+                {
+                    let located = locator.locate(&frame.image.view(), Some(&view.gravity), &mut |_| ());
                     let located = located.expect("the camera's size");
                     add(&view, located, &view.matched(airframe, located));
                     done += 1;

@@ -289,17 +289,15 @@ mod tests {
 
     /// Share of a Gaussian in a pixel.
     fn share(pixel: usize, centre: f64, sigma_px: f64) -> f64 {
-        let below =
-            |edge: f64| 0.5 * libm::erfc((centre - edge) / (sigma_px * std::f64::consts::SQRT_2));
+        let below = |edge: f64| 0.5 * libm::erfc((centre - edge) / (sigma_px * std::f64::consts::SQRT_2));
         below(pixel as f64 + 0.5) - below(pixel as f64 - 0.5)
     }
 
     /// A core with a halo as bright, of 2.2 px, integrated over pixels and rounded.
     fn pixels(centre: Pixel, core_px: f64, light: f64) -> Vec<u8> {
         let value = |i: usize| {
-            let part = |sigma_px: f64| {
-                share(i % SIDE, centre.u, sigma_px) * share(i / SIDE, centre.v, sigma_px)
-            };
+            let part =
+                |sigma_px: f64| share(i % SIDE, centre.u, sigma_px) * share(i / SIDE, centre.v, sigma_px);
             (5.0 + light / 2.0 * (part(core_px) + part(2.2))).round().min(255.0) as u8
         };
         (0..SIDE * SIDE).map(value).collect()
@@ -317,7 +315,9 @@ mod tests {
                 let frame = FrameView::packed(&pixels, SIDE, SIDE).unwrap();
                 let mut patch = Patch::default();
                 patch.read(&frame, (8, 8), 6, &around);
-                let guess = Guess { centre: Pixel::new(8.0, 8.0), flux: light, beside: None };
+                // About as far off as the middle of a part's light.
+                let centre = Pixel::new(truth.u + 0.15, truth.v - 0.15);
+                let guess = Guess { centre, flux: light, beside: None };
                 let found = fit(&patch, &guess, 5.0, 249.5, variance).unwrap();
                 let off_px = libm::hypot(found.fit.centre.u - truth.u, found.fit.centre.v - truth.v);
                 worst_px = worst_px.max(off_px);

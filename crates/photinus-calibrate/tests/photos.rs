@@ -1,51 +1,16 @@
 //! Real photos of an LED grid: what a calibration reaches on them. Skips without the data.
 
-#![allow(clippy::print_stdout, reason = "a test that is skipped says so")]
+mod grid_photos;
 
-use std::path::PathBuf;
-
+use grid_photos::{Set, eight_by_six, seven_by_five};
 use nalgebra::Vector2;
-use photinus::spots::Detector;
 use photinus_calibrate::adjust::View;
 use photinus_calibrate::camera::{
     BoardChoice, CalibrateError, Calibration, Choices, MisfitReason, Summary, Warning, calibrate,
 };
-use photinus_calibrate::grid::Grid;
 use photinus_calibrate::lens::LensModel;
-use photinus_calibrate::photo::{Photo, board_settings};
+use photinus_calibrate::photo::Photo;
 use photinus_calibrate::solve::Board;
-
-/// Photos of one camera.
-struct Set {
-    grid: Grid,
-    photos: Vec<Photo>,
-    views: Vec<View>,
-}
-
-/// The photos of a folder of the data, with the grid found in every one; `None` where there is no data.
-fn set(folder: &str, ending: &str, columns: usize, rows: usize) -> Option<Set> {
-    let data = std::env::var_os("PHOTINUS_DATA").map_or_else(
-        || PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data")),
-        PathBuf::from,
-    );
-    let Ok(entries) = std::fs::read_dir(data.join(folder)) else {
-        println!("skipped: no photos in {}", data.join(folder).display());
-        return None;
-    };
-    let mut paths: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
-    paths.retain(|path| path.extension().is_some_and(|end| end == ending));
-    paths.sort();
-    let grid = Grid::new(columns, rows, 0.05).expect("a grid");
-    let mut detector = Detector::new(board_settings()).expect("settings");
-    let photo = |path: &PathBuf| {
-        let image = photinus_io::image::read_image(path).expect("a photo").image;
-        Photo::of_frame(path.display().to_string(), &image.view(), &mut detector).expect("a frame")
-    };
-    let photos: Vec<Photo> = paths.iter().map(photo).collect();
-    let view = |(index, photo): (usize, &Photo)| photo.view(index, &grid).expect("the grid");
-    let views = photos.iter().enumerate().map(view).collect();
-    Some(Set { grid, photos, views })
-}
 
 impl Set {
     fn calibrate(&self, model: &str, board: BoardChoice) -> Result<Calibration, CalibrateError> {
@@ -69,15 +34,14 @@ fn summary(calibration: &Calibration) -> Summary {
 
 #[test]
 fn every_led_of_every_photo_is_found_and_ordered() {
-    for (folder, ending, columns, rows) in [("grid-960x600", "png", 7, 5), ("grid-752x480", "jpg", 8, 6)] {
-        let Some(set) = set(folder, ending, columns, rows) else { return };
-        assert!(set.views.iter().all(|view| view.observations.len() == columns * rows));
+    for set in [seven_by_five(), eight_by_six()].into_iter().flatten() {
+        assert!(set.views.iter().all(|view| view.observations.len() == set.grid.leds()));
     }
 }
 
 #[test]
 fn a_flat_board_gives_what_the_board_allows() {
-    let Some(set) = set("grid-960x600", "png", 7, 5) else { return };
+    let Some(set) = seven_by_five() else { return };
     let ocam = summary(&set.calibrate("ocam:4", BoardChoice::Flat).expect("a camera"));
     assert!(ocam.mean_px < 0.160, "{ocam:?}");
     let best = summary(&set.calibrate("kannala-brandt:2", BoardChoice::Flat).expect("a camera"));
@@ -86,7 +50,7 @@ fn a_flat_board_gives_what_the_board_allows() {
 
 #[test]
 fn the_solved_board_goes_down_to_the_scatter_of_the_spots() {
-    let Some(set) = set("grid-960x600", "png", 7, 5) else { return };
+    let Some(set) = seven_by_five() else { return };
     let calibration = set.calibrate("kannala-brandt:2", BoardChoice::Auto).expect("a camera");
     assert_eq!(calibration.board(), Board::Solved);
     let all = summary(&calibration);
@@ -117,7 +81,7 @@ fn the_solved_board_goes_down_to_the_scatter_of_the_spots() {
 
 #[test]
 fn photos_that_do_not_tell_the_board_say_so() {
-    let Some(set) = set("grid-752x480", "jpg", 8, 6) else { return };
+    let Some(set) = eight_by_six() else { return };
     let calibration = set.calibrate("kannala-brandt:1", BoardChoice::Auto).expect("a camera");
     assert_eq!(calibration.board(), Board::Flat);
     let all = summary(&calibration);
@@ -137,7 +101,7 @@ fn photos_that_do_not_tell_the_board_say_so() {
 
 #[test]
 fn small_subsets_converge_from_nothing() {
-    let Some(set) = set("grid-960x600", "png", 7, 5) else { return };
+    let Some(set) = seven_by_five() else { return };
     for first in 0..4 {
         let subset: Vec<View> = (0..8).map(|i| set.views[(first + i * (2 + first)) % 20].clone()).collect();
         let all =
@@ -157,7 +121,7 @@ fn mirrored(photo: &Photo) -> Photo {
 
 #[test]
 fn a_mirrored_photo_and_one_of_another_camera_are_left_out_by_name() {
-    let Some(set) = set("grid-960x600", "png", 7, 5) else { return };
+    let Some(set) = seven_by_five() else { return };
     let mut views = set.views.clone();
     views[3] = mirrored(&set.photos[3]).view(3, &set.grid).expect("the grid");
     for seen in &mut views[7].observations {
@@ -174,7 +138,7 @@ fn a_mirrored_photo_and_one_of_another_camera_are_left_out_by_name() {
 
 #[test]
 fn too_few_photos_and_one_pose_are_refused() {
-    let Some(set) = set("grid-960x600", "png", 7, 5) else { return };
+    let Some(set) = seven_by_five() else { return };
     let refused = |views: &[View]| {
         set.calibrate_views(views, "kannala-brandt:2", BoardChoice::Auto).expect_err("refused")
     };
@@ -186,7 +150,7 @@ fn too_few_photos_and_one_pose_are_refused() {
 
 #[test]
 fn a_blurred_photo_is_named() {
-    let Some(mut set) = set("grid-960x600", "png", 7, 5) else { return };
+    let Some(mut set) = seven_by_five() else { return };
     for spot in &mut set.photos[4].spots {
         spot.width_px2 = spot.width_px2.map(|area| 4.0 * area);
     }

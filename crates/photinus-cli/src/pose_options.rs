@@ -1,5 +1,7 @@
 //! What the user may believe of neighbours before a frame tells.
 
+use std::ops::RangeInclusive;
+
 use photinus::pose::Settings;
 
 /// Priors of a neighbour's pose.
@@ -12,6 +14,12 @@ pub(crate) struct PoseArgs {
     /// How far the LEDs are from where the airframe's file says: standard deviation per axis, in metres
     #[arg(long, value_name = "METRES", default_value_t = 0.001, value_parser = marker_sigma)]
     marker_sigma: f64,
+    /// How much the power of LEDs of one kind differs: standard deviation, as a share
+    #[arg(long, value_name = "SHARE", default_value_t = 0.12, value_parser = power_spread)]
+    power_spread: f64,
+    /// How often a marker that must show does not, dead or hidden
+    #[arg(long, value_name = "SHARE", default_value_t = 0.001, value_parser = missed)]
+    missed: f64,
     /// Leave the brightness of spots out of the pose: for LEDs whose power or lobes are not known
     #[arg(long)]
     no_brightness: bool,
@@ -23,6 +31,8 @@ impl PoseArgs {
         Settings {
             tilt_sigma_rad: self.tilt_sigma.to_radians(),
             marker_sigma_m: self.marker_sigma,
+            unit_sigma: self.power_spread,
+            missed: self.missed,
             use_brightness: !self.no_brightness,
             ..Settings::default()
         }
@@ -30,11 +40,22 @@ impl PoseArgs {
 }
 
 fn tilt_sigma(text: &str) -> Result<f64, String> {
-    let degrees: Option<f64> = text.parse().ok().filter(|degrees| (0.01..=180.0).contains(degrees));
-    degrees.ok_or_else(|| "give degrees, 0.01 to 180".to_owned())
+    number(text, 0.01..=180.0, "degrees")
 }
 
 fn marker_sigma(text: &str) -> Result<f64, String> {
-    let metres: Option<f64> = text.parse().ok().filter(|metres| (0.0..=1.0).contains(metres));
-    metres.ok_or_else(|| "give metres, 0 to 1".to_owned())
+    number(text, 0.0..=1.0, "metres")
+}
+
+fn power_spread(text: &str) -> Result<f64, String> {
+    number(text, 0.001..=10.0, "a share")
+}
+
+fn missed(text: &str) -> Result<f64, String> {
+    number(text, 1e-9..=0.5, "a share")
+}
+
+fn number(text: &str, within: RangeInclusive<f64>, what: &str) -> Result<f64, String> {
+    let number: Option<f64> = text.parse().ok().filter(|number| within.contains(number));
+    number.ok_or_else(|| format!("give {what}, {} to {}", within.start(), within.end()))
 }

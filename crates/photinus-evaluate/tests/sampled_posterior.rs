@@ -9,6 +9,9 @@ mod compare;
 mod experiment;
 #[path = "../examples/sampled_posterior/model.rs"]
 mod model;
+#[path = "../examples/pose_accuracy/view.rs"]
+#[allow(dead_code, reason = "bounds of accuracy are for the other example")]
+mod neighbour;
 #[path = "../examples/sampled_posterior/view.rs"]
 mod view;
 

@@ -15,9 +15,16 @@ pub(crate) const TILT_RAD: f64 = 4.0 * TAU / 360.0;
 pub(crate) const GRAVITY_RAD: f64 = 0.3 * TAU / 360.0;
 /// Spread of LEDs in pure geometry: sigma of the logarithm of their power.
 pub(crate) const UNIT_SIGMA: f64 = 0.1;
-/// Light of an LED straight ahead at 1 m, and the least that is found, grey levels.
-const POWER: f64 = 40_000.0;
-const FAINTEST: f64 = 84.0;
+/// Error of the logarithm of light in pure geometry, per pixel of error of the centre: of a Gaussian spot of sigma s px with N
+/// electrons the centre is known to s / root N and the light to 1 / root N.
+const LOG_LIGHT_PER_PX: f64 = 1.5;
+/// Light of an LED straight ahead at 1 m in pure geometry, grey levels, ...
+const POWER: f64 = 25_000.0;
+/// ... and that at which a marker is found half of the time, by itself and beside one that outshines it: as rendered frames
+/// have it, see [`is_found`].
+const FAINTEST: f64 = 50.0;
+const CERTAIN: f64 = 140.0;
+const OUTSHONE: f64 = 0.2;
 
 /// A neighbour, and what is known of the vertical.
 pub(crate) struct View {
@@ -32,6 +39,18 @@ fn normal(rng: &mut Pcg64) -> f64 {
 
 fn uniform(rng: &mut Pcg64, low: f64, high: f64) -> f64 {
     Uniform::new(low, high).expect("a range").sample(rng)
+}
+
+/// Spread of the logarithm of light in pure geometry: of the LEDs and of its measurement.
+pub(crate) fn log_light_sigma(sigma_px: f64) -> f64 {
+    libm::hypot(UNIT_SIGMA, LOG_LIGHT_PER_PX * sigma_px)
+}
+
+/// The probability that a marker is found, by its light and by its share of that of the brightest beside it.
+fn is_found(light: f64, share: f64) -> f64 {
+    let probability = |odds: f64| 1.0 - 1.0 / (1.0 + odds);
+    let stands_out = (share / OUTSHONE).powi(7) + (light / CERTAIN).powi(7);
+    probability((light / FAINTEST).powi(7)) * probability(stands_out)
 }
 
 impl View {
@@ -62,14 +81,17 @@ impl View {
         rng: &mut Pcg64,
     ) -> (Vec<Spot>, Vec<(usize, f64)>) {
         let camera_m = -(self.camera_from_body.inverse() * self.position_m);
+        let shining = (0..airframe.markers().len()).map(|marker| airframe.intensity(marker, &camera_m));
+        let brightest = shining.fold(0.0, f64::max);
         let (mut spots, mut markers) = (Vec::new(), Vec::new());
         for marker in 0..airframe.markers().len() {
             let arm_m = airframe.markers()[marker].position_m;
-            let flux = POWER * airframe.intensity(marker, &camera_m) / (camera_m - arm_m).norm_squared()
-                * libm::exp(UNIT_SIGMA * normal(rng));
-            if flux < FAINTEST {
+            let intensity = airframe.intensity(marker, &camera_m);
+            let light = POWER * intensity / (camera_m - arm_m).norm_squared();
+            if uniform(rng, 0.0, 1.0) > is_found(light, intensity / brightest) {
                 continue;
             }
+            let flux = light * libm::exp(log_light_sigma(sigma_px) * normal(rng));
             let place = self.camera_from_body * arm_m + self.position_m;
             let Some(pixel) = Bearing::new(place).and_then(|bearing| camera.pixel(&bearing)) else {
                 continue;
@@ -108,7 +130,12 @@ impl View {
     }
 
     /// The Cramer-Rao bound of the variance of distance, by numeric derivatives of all that is measured or believed.
-    pub(crate) fn bound_m2(&self, airframe: &Airframe, markers: &[(usize, f64)], unit_sigma: f64) -> f64 {
+    pub(crate) fn bound_m2(
+        &self,
+        airframe: &Airframe,
+        markers: &[(usize, f64)],
+        log_light_sigma: f64,
+    ) -> f64 {
         let measured = |step: &Vector6<f64>| -> Vec<f64> {
             let position_m = self.position_m + step.fixed_rows::<3>(0);
             let turn = Rotation3::new(step.fixed_rows::<3>(3).into_owned());
@@ -124,7 +151,7 @@ impl View {
                 lights.push(libm::log(intensity) - libm::log((camera_m - arm_m).norm_squared()));
             }
             let mean = lights.iter().sum::<f64>() / lights.len() as f64;
-            numbers.extend(lights.iter().map(|light| (light - mean) / unit_sigma));
+            numbers.extend(lights.iter().map(|light| (light - mean) / log_light_sigma));
             let up = camera_from_body.inverse() * -Vector3::y();
             let tilt = libm::hypot(TILT_RAD, GRAVITY_RAD);
             numbers.extend([up.x / tilt, up.y / tilt]);

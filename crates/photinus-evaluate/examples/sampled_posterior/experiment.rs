@@ -49,7 +49,7 @@ impl Experiment {
         let (modes, far_modes): (Vec<_>, Vec<_>) = modes.into_iter().partition(|part| part.is_main(main_m));
         let rest =
             [far_samples.len() as f64 / walked.len() as f64, far_modes.iter().map(|mode| mode.weight).sum()];
-        Self { truth_m: view.position_m, samples, modes, rest }
+        Self { truth_m: view.position_m(), samples, modes, rest }
     }
 
     pub(crate) fn plane(&self) -> Plane {

@@ -12,6 +12,9 @@ mod chain;
 mod compare;
 mod experiment;
 mod model;
+#[path = "../pose_accuracy/view.rs"]
+#[allow(dead_code, reason = "bounds of accuracy are for the other example")]
+mod neighbour;
 mod picture;
 mod view;
 

@@ -11,17 +11,17 @@ use photinus::ranging::Interval;
 
 /// The estimator's tolerances: of lobes (1 is one LED straight ahead), the intensity taken for none, the error of the logarithm
 /// of light per pixel of error of the centre, how often a marker that must show does not.
-const LOBE_ERROR: f64 = 0.02;
+pub(crate) const LOBE_SIGMA: f64 = 0.02;
 const DARK: f64 = 0.01;
 const LOG_LIGHT_PER_PX: f64 = 1.5;
 pub(crate) const MISSED: f64 = 0.001;
-/// A marker outshone by more than this is taken for a reflection, where the faintest light does not rule that out.
-const OUTSHONE: f64 = 0.22;
-/// The place of melted light is known to this share of how far it is from the spot's own marker.
-const MELTED_SHARE: f64 = 0.1;
-const CERTAIN: f64 = 0.4;
-/// Markers nearer to each other than this are one spot, px.
+/// A marker this much fainter than another is as often as not taken for its reflection, up to so many times the faintest light.
+const OUTSHONE: f64 = 0.198;
+const CERTAIN: f64 = 2.784;
+/// Two markers so far apart are one spot half of the time, px; twice as far they never are.
 const RESOLUTION_PX: f64 = 2.5;
+/// The window of a spot, in resolutions.
+const WINDOW: f64 = 1.32;
 
 /// What one spot tells.
 pub(crate) struct Seen {
@@ -103,13 +103,19 @@ impl Model<'_> {
     ) -> f64 {
         let seen = &self.seen[spot];
         let own_m = self.airframe.markers()[markers[spot]].position_m;
-        let (mut place_m, mut light) = (own_m, self.airframe.intensity(markers[spot], camera_m).max(1e-3));
-        for melted in self.melted(spot, markers, camera_m) {
-            let more = self.airframe.intensity(melted, camera_m);
-            light += more;
-            place_m += (self.airframe.markers()[melted].position_m - place_m) * (more / light);
+        let (mut pull_m, mut total, mut unsure_m2) =
+            (Vector3::zeros(), self.airframe.intensity(markers[spot], camera_m).max(1e-3), 0.0);
+        for (other, gap) in self.beside(spot, markers, camera_m) {
+            let weight = (1.0 - gap * gap / (WINDOW * WINDOW)).max(0.0).powi(2);
+            let light = weight * self.airframe.intensity(other, camera_m);
+            let off_m = self.airframe.markers()[other].position_m - own_m;
+            total += light;
+            pull_m += off_m * light;
+            unsure_m2 +=
+                ((1.0 - weight).powi(2) + 2.0 * self.unit_sigma.powi(2)) * (off_m * light).norm_squared();
         }
-        let off_rad = MELTED_SHARE * (place_m - own_m).norm() / camera_m.norm();
+        let place_m = own_m + pull_m / total;
+        let off_rad = unsure_m2.sqrt() / total / camera_m.norm();
         let share = seen.variance_rad2 / (seen.variance_rad2 + off_rad * off_rad);
         let off = (turn * place_m + position_m).normalize() - seen.direction;
         if off.norm_squared() > 1.0 {
@@ -119,31 +125,42 @@ impl Model<'_> {
         libm::log(share) - 0.5 * share * (seen.whitening * off).norm_squared()
     }
 
-    /// The markers without a spot that melt into one.
-    fn melted<'b>(
+    /// The markers without a spot that are near one in the image, each with its gap in resolutions.
+    fn beside<'b>(
         &'b self,
         spot: usize,
         markers: [usize; 2],
         camera_m: &'b Vector3<f64>,
-    ) -> impl Iterator<Item = usize> + 'b {
-        let own_m = self.airframe.markers()[markers[spot]].position_m;
-        let ray_m = camera_m - own_m;
-        let nearest_m = self.seen[spot].resolution_rad * ray_m.norm();
-        let apart_m = move |other: usize| {
-            (self.airframe.markers()[other].position_m - own_m).cross(&ray_m).norm() / ray_m.norm()
-        };
+    ) -> impl Iterator<Item = (usize, f64)> + 'b {
+        let gap = move |other: usize| (other, self.gap(spot, markers[spot], other, camera_m));
         (0..self.airframe.markers().len())
-            .filter(move |other| !markers.contains(other) && apart_m(*other) < nearest_m)
+            .filter(move |other| !markers.contains(other))
+            .map(gap)
+            .filter(|(_, gap)| *gap < 2.0)
+    }
+
+    fn gap(&self, spot: usize, marker: usize, other: usize, camera_m: &Vector3<f64>) -> f64 {
+        let [own_m, other_m] = [marker, other].map(|marker| self.airframe.markers()[marker].position_m);
+        let ray_m = camera_m - own_m;
+        (other_m - own_m).cross(&ray_m).norm() / ray_m.norm_squared() / self.seen[spot].resolution_rad
+    }
+
+    /// How likely two markers are one spot.
+    fn one_spot(gap: f64) -> f64 {
+        ((1.0 / (1.0 + gap.powi(6)) - 1.0 / 65.0) / (1.0 - 1.0 / 65.0)).max(0.0)
     }
 
     /// Of the light of both spots with the power that fits them best, and that power: light at 1 m of an LED straight ahead.
     fn light(&self, camera_m: &Vector3<f64>, markers: [usize; 2]) -> (f64, f64) {
         let terms = [0, 1].map(|spot| {
             let marker_m = self.airframe.markers()[markers[spot]].position_m;
-            let shines = self.airframe.intensity(markers[spot], camera_m).max(DARK);
+            let beside = self.beside(spot, markers, camera_m).map(|(other, gap)| {
+                (1.0 - gap * gap / (WINDOW * WINDOW)).max(0.0) * self.airframe.intensity(other, camera_m)
+            });
+            let shines = (self.airframe.intensity(markers[spot], camera_m) + beside.sum::<f64>()).max(DARK);
             let expected = libm::log(shines) - libm::log((camera_m - marker_m).norm_squared());
             let variance =
-                self.seen[spot].log_light_variance + self.unit_sigma.powi(2) + (LOBE_ERROR / shines).powi(2);
+                self.seen[spot].log_light_variance + self.unit_sigma.powi(2) + (LOBE_SIGMA / shines).powi(2);
             (self.seen[spot].log_light - expected, variance)
         });
         let [(a, of_a), (b, of_b)] = terms;
@@ -155,18 +172,23 @@ impl Model<'_> {
     /// Of seeing these markers and no others.
     fn visibility(&self, camera_m: &Vector3<f64>, markers: [usize; 2], power: f64) -> f64 {
         let intensity = |marker| self.airframe.intensity(marker, camera_m);
-        let faintest = (self.faintest * camera_m.norm_squared() / power).clamp(0.02, 1.0);
-        let outshone = OUTSHONE * intensity(markers[0]).max(intensity(markers[1]));
-        let half = if faintest > CERTAIN * outshone { faintest.max(outshone) } else { faintest };
+        let half = (self.faintest * camera_m.norm_squared() / power).clamp(LOBE_SIGMA, 1.0);
+        let brightest = intensity(markers[0]).max(intensity(markers[1]));
+        let chance = |odds: f64| 1.0 - 1.0 / (1.0 + odds);
         let log_chance = |marker: usize| {
-            let is_melted = |spot| self.melted(spot, markers, camera_m).any(|melted| melted == marker);
-            if is_melted(0) || is_melted(1) {
-                return 0.0;
+            let shines = intensity(marker).max(1e-4);
+            let stands_out = (shines / (OUTSHONE * brightest)).powi(7) + (shines / (CERTAIN * half)).powi(7);
+            let found = (1.0 - MISSED) * chance((shines / half).powi(7)) * chance(stands_out);
+            if markers.contains(&marker) {
+                return libm::log(found.max(1e-9));
             }
-            let odds = (intensity(marker).max(1e-3) / half).powi(8);
-            let found = (1.0 - MISSED) * odds / (1.0 + odds);
-            libm::log(if markers.contains(&marker) { found.max(1e-9) } else { 1.0 - found })
+            let into = |spot: usize| {
+                let outshines = chance((intensity(markers[spot]).max(1e-4) / shines).powi(7));
+                Self::one_spot(self.gap(spot, markers[spot], marker, camera_m)) * outshines
+            };
+            libm::log(1.0 - found * (1.0 - into(0).max(into(1))))
         };
-        (0..self.airframe.markers().len()).map(log_chance).sum()
+        let apart = 1.0 - Self::one_spot(self.gap(0, markers[0], markers[1], camera_m));
+        (0..self.airframe.markers().len()).map(log_chance).sum::<f64>() + libm::log(apart.max(1e-9))
     }
 }

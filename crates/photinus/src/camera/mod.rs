@@ -23,6 +23,7 @@ mod polynomial;
 mod radial;
 #[cfg(test)]
 mod tests;
+mod watched;
 
 use nalgebra::{Matrix2, Matrix2x3, Matrix3, Matrix3x2};
 
@@ -33,6 +34,7 @@ pub use kannala_brandt::KannalaBrandt;
 pub use model::Model;
 pub use ocam::OCam;
 pub use pinhole::Pinhole;
+pub use watched::Watched;
 
 use crate::frame::FrameView;
 use calibration::Calibration;

@@ -22,17 +22,14 @@ mod views;
 use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 
 use crate::airframe::Airframe;
-use crate::camera::{Bearing, Camera};
+use crate::camera::{Bearing, Camera, Watched};
 use crate::frame::{FrameError, FrameView, Mask};
-use crate::pose::{self, Mode};
+use crate::pose::{self, LogLight, Mode};
 use crate::ranging::{DistanceBounds, Estimate, Interval, SpotCurve};
-use crate::spots::{self, Brightness, Detector, Reason, Rejected, Spot};
+use crate::spots::{self, Detector, Reason, Rejected, Spot};
 use grouping::Groups;
 use matching::Matcher;
 use posing::Poser;
-
-/// Light of the faintest spots over their height, px: on rendered frames, halo included.
-const FAINTEST_PX: f64 = 4.2;
 
 /// What a user may choose about locating.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -112,6 +109,9 @@ pub struct Sighting {
     pub spot: Spot,
     /// Which of the airframe's signals it was seen to blink, where that is known.
     pub signal: Option<u32>,
+    /// Its light, in units that are the same all over the frame, with what a saturated core hides put back; `None` where none
+    /// was measured.
+    pub log_light: Option<LogLight>,
     /// Its direction in the camera frame.
     pub bearing: Bearing,
     /// Covariance of the direction, rad^2, tangent to the sphere (rank 2): from the spot and, where the camera's file says
@@ -240,7 +240,7 @@ impl Locator {
             mask: None,
             detector: Detector::new(settings.spots)?,
             matcher: Matcher::new(airframe, settings.max_tilt_rad),
-            poser: Poser::new(airframe, settings.pose, faintest_light(&settings.spots))?,
+            poser: Poser::new(airframe, settings.pose, &settings.spots)?,
             groups: Groups::default(),
             group: Vec::with_capacity(airframe.markers().len()),
             located: Located::default(),
@@ -335,6 +335,7 @@ impl Locator {
     ) -> &Located {
         self.groups.sort_out(&self.located.sightings, gravity, &mut self.matcher);
         finished(Stage::Grouping);
+        let watched = Watched::new(&self.camera, self.mask.as_ref());
         let Located { sightings, neighbours, members, modes, .. } = &mut self.located;
         neighbours.clear();
         members.clear();
@@ -343,7 +344,7 @@ impl Locator {
             self.group.clear();
             self.group.extend_from_slice(group);
             let (neighbour, its_modes) =
-                self.poser.tell(sightings, &mut self.group, gravity, &mut self.matcher);
+                self.poser.tell(sightings, &mut self.group, gravity, watched, &mut self.matcher);
             neighbours.push(Neighbour {
                 first_member: members.len(),
                 first_mode: modes.len(),
@@ -356,12 +357,6 @@ impl Locator {
         finished(Stage::Posing);
         &self.located
     }
-}
-
-/// The light of a spot that the detector barely finds, grey levels: a spot of a pixel or two that stands out by its step.
-fn faintest_light(settings: &spots::Settings) -> f64 {
-    let (Brightness::Threshold(level) | Brightness::Contrast(level)) = settings.brightness;
-    FAINTEST_PX * f64::from(level)
 }
 
 /// Gives every spot its bearing; those that have none are rejected.

@@ -5,26 +5,29 @@
 
 use nalgebra::{Matrix3, Unit, Vector3};
 
+use super::grouping::CLEAR_SPOTS;
 use super::matching::Matcher;
 use super::pairs::Pairs;
 use super::{Distance, Neighbour, Orientation, Position, Sighting};
 use crate::airframe::Airframe;
-use crate::camera::Bearing;
+use crate::camera::{Bearing, Watched};
 use crate::pose::{
-    self, Estimator, Hypotheses, Known, LogDistance, LogLight, Observation, Pose, Posterior, SettingsError,
-    Summary,
+    self, Estimator, Hypotheses, Known, LogDistance, Observation, Pose, Posterior, SettingsError, Summary,
+    Visible,
 };
 use crate::ranging::Interval;
+use crate::spots::{self, Brightness};
 
 /// A spot far from the pose, in sigma: the group is looked at without it.
 const STRANGE_SIGMAS: f64 = 5.0;
-/// Light of a spot whose core is saturated: how far its logarithm can be off.
-const SATURATED_LOG_SIGMA: f64 = 0.2;
-
-/// Error of the logarithm of a spot's light per error of its centre, 1/px (rendered frames, beside other spots).
-const LOG_SIGMA_PER_PX: f64 = 1.5;
-/// Markers nearer to each other than this are one spot, px.
+/// Two markers so far apart are told apart half of the time, px (rendered frames).
 const RESOLUTION_PX: f64 = 2.5;
+/// Light of a spot that is found half of the time over the step that makes a pixel bright, px (rendered frames).
+const FAINTEST_PX: f64 = 2.5;
+/// The same of a spot that is taken for a reflection half of the time over the height that makes it certain, and how much
+/// fainter than others it is then over the share that is asked for.
+const CERTAIN_PX: f64 = 2.9;
+const OUTSHONE_SHARE: f64 = 0.9;
 
 /// Over so much of the field the error of a calibration changes by itself.
 const CALIBRATION_LENGTH_RAD: f64 = 0.5;
@@ -37,8 +40,7 @@ pub(super) struct Poser {
     hypotheses: Hypotheses,
     observations: Vec<Observation>,
     pairs: Pairs,
-    /// Light of a spot that is barely found.
-    faintest_light: f64,
+    visible: Visible<'static>,
     without: Vec<usize>,
 }
 
@@ -46,7 +48,7 @@ impl Poser {
     pub(super) fn new(
         airframe: &Airframe,
         settings: pose::Settings,
-        faintest_light: f64,
+        spots: &spots::Settings,
     ) -> Result<Self, SettingsError> {
         Ok(Self {
             airframe: airframe.clone(),
@@ -54,7 +56,7 @@ impl Poser {
             hypotheses: Hypotheses::with_room(airframe.markers().len()),
             observations: Vec::with_capacity(airframe.markers().len()),
             pairs: Pairs::new(airframe),
-            faintest_light,
+            visible: visible(spots),
             without: Vec::with_capacity(airframe.markers().len()),
         })
     }
@@ -65,11 +67,12 @@ impl Poser {
         sightings: &[Sighting],
         group: &mut Vec<usize>,
         gravity: Option<&Unit<Vector3<f64>>>,
+        watched: Watched<'_>,
         matcher: &mut Matcher,
     ) -> (Neighbour, &[pose::Mode]) {
-        let mut bounds = self.estimate(sightings, group, gravity, matcher);
+        let mut bounds = self.estimate(sightings, group, gravity, watched, matcher);
         if group.len() > 2 && self.estimator.posterior().worst_sigma > STRANGE_SIGMAS {
-            bounds = self.leave_out_a_stranger(sightings, group, gravity, matcher);
+            bounds = self.leave_out_a_stranger(sightings, group, gravity, watched, matcher);
         }
         self.describe(sightings, group, bounds)
     }
@@ -80,6 +83,7 @@ impl Poser {
         sightings: &[Sighting],
         group: &[usize],
         gravity: Option<&Unit<Vector3<f64>>>,
+        watched: Watched<'_>,
         matcher: &mut Matcher,
     ) -> Interval {
         let any = Interval::new(matcher.near_m(), f64::INFINITY);
@@ -96,7 +100,10 @@ impl Poser {
         } else {
             matcher.hypotheses(sightings, group, gravity, &mut self.hypotheses);
         }
-        let known = Known { up, bounds, size, faintest_light: self.faintest_light };
+        // Who tells the light of the frame's LEDs is not told by it.
+        let power = if group.len() < CLEAR_SPOTS { matcher.known_power() } else { None };
+        let known =
+            Known { up, bounds, size, power, visible: Visible { watched: Some(watched), ..self.visible } };
         self.estimator.estimate(&self.observations, &mut self.hypotheses, &known);
         bounds
     }
@@ -107,6 +114,7 @@ impl Poser {
         sightings: &[Sighting],
         group: &mut Vec<usize>,
         gravity: Option<&Unit<Vector3<f64>>>,
+        watched: Watched<'_>,
         matcher: &mut Matcher,
     ) -> Interval {
         let mut best = (self.estimator.posterior().log_evidence, None);
@@ -116,7 +124,7 @@ impl Poser {
             without.extend(
                 group.iter().enumerate().filter(|(index, _)| *index != stranger).map(|(_, &spot)| spot),
             );
-            self.estimate(sightings, &without, gravity, matcher);
+            self.estimate(sightings, &without, gravity, watched, matcher);
             let log_evidence = self.estimator.posterior().log_evidence + pose::STRANGER_LOG_DENSITY;
             if log_evidence > best.0 {
                 best = (log_evidence, Some(stranger));
@@ -126,7 +134,7 @@ impl Poser {
         if let Some(stranger) = best.1 {
             group.remove(stranger);
         }
-        self.estimate(sightings, group, gravity, matcher)
+        self.estimate(sightings, group, gravity, watched, matcher)
     }
 
     /// A lone spot is any of the markers, turned to the camera.
@@ -213,21 +221,22 @@ fn of_calibration(sightings: &[Sighting], group: &[usize], position_m: &Vector3<
     )
 }
 
+/// Which markers a detector with these settings finds.
+fn visible(settings: &spots::Settings) -> Visible<'static> {
+    let (step, outshone) = match settings.brightness {
+        Brightness::Threshold(level) => (f64::from(level), 0.0),
+        Brightness::Contrast(step) => (f64::from(step), OUTSHONE_SHARE * settings.shape.faintest),
+    };
+    let faintest_light = FAINTEST_PX * step;
+    let certain = CERTAIN_PX * settings.shape.faint_dn / faintest_light;
+    Visible { faintest_light, outshone, certain, watched: None }
+}
+
 fn observe(sighting: &Sighting) -> Observation {
-    let spot = &sighting.spot;
-    // A detector that measures no light says nothing by it.
-    let log_light = (spot.flux > 0.0).then(|| LogLight {
-        value: libm::log(spot.flux),
-        // What is uncertain of the centre is so of the light: noise, and other light in the window.
-        sigma: libm::hypot(
-            LOG_SIGMA_PER_PX * spot.sigma_px(),
-            if spot.saturated_px > 0 { SATURATED_LOG_SIGMA } else { 0.0 },
-        ),
-    });
     Observation {
         bearing: sighting.bearing,
         covariance_rad2: sighting.spot_covariance_rad2,
-        log_light,
+        log_light: sighting.log_light,
         resolution_rad: RESOLUTION_PX * sighting.rad_per_px,
         signal: sighting.signal,
     }

@@ -48,6 +48,8 @@ pub(super) struct Arrangement {
     pub(super) ahead_m: [f64; MOST_ORDERED],
     /// Logarithms of their intensities, less the mean.
     pub(super) log_intensity: [f64; MOST_ORDERED],
+    /// That mean.
+    pub(super) mean_log_intensity: f64,
     /// Which markers they are after the turn that makes them the first of all their equals; as many as the arrangement has.
     pub(super) markers: [Option<u16>; MOST_ORDERED],
     /// That turn of the airframe.
@@ -282,6 +284,7 @@ fn arrange(
         middle_m,
         ahead_m: [0.0; MOST_ORDERED],
         log_intensity: [0.0; MOST_ORDERED],
+        mean_log_intensity: mean_log,
         markers: [None; MOST_ORDERED],
         turn: 0,
         unseen_nats: all_unseen_nats - chosen().map(cost_of_unseen).sum::<f64>(),

@@ -10,7 +10,7 @@ use core::f64::consts::{PI, TAU};
 use nalgebra::{Matrix3, SMatrix, Vector3};
 
 use super::mixture::Component;
-use super::problem::Problem;
+use super::problem::{Pose, Problem};
 use super::refine::{Refined, following, turned, without_yaw, yaw_sigma_rad};
 
 /// Yaw surer than this needs no slices, rad.
@@ -23,8 +23,10 @@ const STEP_SIGMAS: f64 = 1.2;
 /// halved, down to so much, rad.
 const ABRUPT_NATS: f64 = 1.0;
 const FINEST_STEP_RAD: f64 = 0.015;
-/// A slice this much worse than the best, nats, is one of two that end the walk.
+/// A slice this much worse than the best, nats, is one of two that end the walk ...
 const LITTLE_NATS: f64 = 5.0;
+/// ... or of so many where one spot alone is seen: it may be any marker whose neighbours are out of sight.
+const MOST_POOR_ALONE: usize = 16;
 /// Most slices on one side.
 const MOST_SLICES: usize = 36;
 
@@ -49,12 +51,13 @@ pub(super) fn spread(
     }
     let Some(middle) = slice(problem, mode, hypothesis, 0.0, step_rad) else { return };
     components.push(middle);
+    let most_poor = if problem.used().nth(1).is_some() { 2 } else { MOST_POOR_ALONE };
     for side in [step_rad, -step_rad] {
         // Each side has a summit of its own: a spot alone is likelier a marker at the edge of those that show.
         let (mut here, mut poor, mut best) = (*mode, 0, middle.log_weight);
         for number in 1..=MOST_SLICES {
             let yaw_rad = side * number as f64;
-            if yaw_rad.abs() > PI || poor == 2 {
+            if yaw_rad.abs() > PI || poor == most_poor {
                 break;
             }
             let Some(there) = turned(problem, &here, side) else { break };
@@ -69,8 +72,9 @@ pub(super) fn spread(
 
 /// Whether a marker comes into sight or goes out of it within a slice of the mode: by more than a normal distribution falls.
 fn changes_abruptly(problem: &Problem<'_>, mode: &Refined, step_rad: f64) -> bool {
-    let here = problem.visibility_nats(&mode.pose);
-    let changes = |there| (problem.visibility_nats(&there) - here).abs() > ABRUPT_NATS;
+    let nats = |pose: &Pose| problem.visibility_nats(pose, mode.normal.log_power);
+    let here = nats(&mode.pose);
+    let changes = |there| (nats(&there) - here).abs() > ABRUPT_NATS;
     [step_rad, -step_rad].into_iter().any(|side| following(mode, side).is_some_and(changes))
 }
 
@@ -131,7 +135,7 @@ fn component(
     turn: Matrix3<f64>,
 ) -> Component {
     Component {
-        log_weight: log_volume - at.normal.nats - problem.visibility_nats(&at.pose),
+        log_weight: log_volume - at.normal.nats - problem.visibility_nats(&at.pose, at.normal.log_power),
         pose: at.pose,
         position_covariance_m2: delta * at.pose.position_m.norm_squared(),
         orientation_covariance_rad2: turn,

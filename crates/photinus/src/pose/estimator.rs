@@ -1,36 +1,21 @@
 //! Observations and hypotheses of one neighbour -> its posterior.
 
-use nalgebra::{Unit, Vector3};
-
 use super::along_yaw;
 use super::assignment::Assignment;
 use super::hypotheses::Hypotheses;
+use super::known::Known;
 use super::mixture::{self, Component, Mode, Summary};
 use super::observation::{Observation, Whitened};
-use super::problem::{LogDistance, Pose, Problem};
+use super::problem::{Pose, Problem};
 use super::refine::{Refined, following, refine, yaw_sigma_rad};
 use super::settings::{Settings, SettingsError};
 use super::symmetry::Symmetry;
 use crate::airframe::Airframe;
-use crate::ranging::Interval;
 
 /// A mode this much worse than the best, nats, has no weight.
 const HOPELESS_NATS: f64 = 8.0;
 /// Most rounds of assigning spots to markers and refining the pose.
 const MOST_ROUNDS: usize = 10;
-
-/// What is known of a neighbour besides its spots.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Known {
-    /// Away from the ground, camera frame.
-    pub up: Option<Unit<Vector3<f64>>>,
-    /// Truth is between these.
-    pub bounds: Interval,
-    /// What spot size says of distance, where nothing better does.
-    pub size: Option<LogDistance>,
-    /// Light below which a marker is not found, in the units of the observations; 0 where unknown.
-    pub faintest_light: f64,
-}
 
 /// What the spots of one neighbour tell.
 #[derive(Clone, Debug, Default)]
@@ -43,7 +28,7 @@ pub struct Posterior {
     pub log_evidence: f64,
     /// The markers that the spots are in the best hypothesis.
     pub markers: Vec<Option<u16>>,
-    /// Largest misfit of a spot in the best mode, in sigma.
+    /// Largest misfit in the best mode, in sigma: of a spot, or of the bounds on distance.
     pub worst_sigma: f64,
 }
 
@@ -105,7 +90,7 @@ impl Estimator {
         &mut self,
         observations: &[Observation],
         hypotheses: &mut Hypotheses,
-        known: &Known,
+        known: &Known<'_>,
     ) -> &Posterior {
         self.posterior.summary = None;
         self.posterior.modes.clear();
@@ -144,7 +129,7 @@ impl Estimator {
         &self.posterior
     }
 
-    fn find_modes(&mut self, observations: &[Observation], hypotheses: &mut Hypotheses, known: &Known) {
+    fn find_modes(&mut self, observations: &[Observation], hypotheses: &mut Hypotheses, known: &Known<'_>) {
         self.modes.clear();
         self.nats.clear();
         for index in 0..hypotheses.len() {
@@ -163,13 +148,15 @@ impl Estimator {
                 refine(&problem.assigned(hypotheses.markers(index), &start), start)
             };
             let problem = problem.assigned(hypotheses.markers(index), &mode.pose);
-            let mut unseen = problem.visibility_nats(&mode.pose);
+            let mut unseen = problem.visibility_nats(&mode.pose, mode.normal.log_power);
             if unseen > HOPELESS_NATS {
                 // Light pulls little on a marker that hardly shows: the mode may sit where it no longer does, a sigma beside
                 // where it must.
                 let sigma_rad = yaw_sigma_rad(&mode).unwrap_or(0.0);
                 for beside in [sigma_rad, -sigma_rad].map(|yaw_rad| following(&mode, yaw_rad)) {
-                    let nats = beside.map_or(f64::INFINITY, |pose| 0.5 + problem.visibility_nats(&pose));
+                    let nats = beside.map_or(f64::INFINITY, |pose| {
+                        0.5 + problem.visibility_nats(&pose, mode.normal.log_power)
+                    });
                     unseen = unseen.min(nats);
                 }
             }
@@ -202,8 +189,9 @@ impl Estimator {
         self.components.drain(first..last);
     }
 
-    fn tell(&mut self, observations: &[Observation], known: &Known) {
+    fn tell(&mut self, observations: &[Observation], known: &Known<'_>) {
         let Self { components, posterior, whitened, .. } = self;
+        posterior.worst_sigma = posterior.worst_sigma.max(mixture::beyond_sigmas(components, &known.bounds));
         mixture::truncate(components, &known.bounds);
         let log_sigmas: f64 = whitened.iter().map(|seen| seen.log_sigmas).sum();
         posterior.log_evidence = mixture::log_evidence(components) - log_sigmas;
@@ -222,19 +210,9 @@ fn problem<'a>(
     settings: &'a Settings,
     observations: &'a [Observation],
     whitened: &'a [Whitened],
-    known: &Known,
+    known: &'a Known<'a>,
 ) -> Problem<'a> {
-    Problem {
-        airframe,
-        settings,
-        observations,
-        whitened,
-        markers: &[],
-        up: known.up,
-        size: known.size,
-        faintest_light: known.faintest_light,
-        melting: true,
-    }
+    Problem { airframe, settings, observations, whitened, known, markers: &[], melting: true }
 }
 
 /// Assigns spots to the nearest markers and refines the pose in turns, until nothing changes.

@@ -1,19 +1,12 @@
-//! What brightness says: two markers' ratio tells yaw, and what should shine and is not seen tells against a pose.
+//! What brightness says: two markers' ratio tells yaw.
 
 use nalgebra::Vector6;
 
+use super::observation::LogLight;
 use super::problem::{Normal, Pose, Problem};
 
-/// An intensity is known to no better than this, 1 being one LED straight ahead: lobes are not exactly cosines.
-const LOBE_ERROR: f64 = 0.02;
 /// A marker that shines with less than this towards the camera shines away.
 const DARK: f64 = 0.01;
-/// A marker that others outshine by more than this is taken for a reflection, unless it is bright in itself.
-const OUTSHONE: f64 = 0.22;
-/// ... which it is when the faintest light is less than this share of the least that is not outshone.
-const CERTAIN_SHARE: f64 = 0.4;
-/// Light at which a marker is found half of the time when nothing tells what is faintest, 1 being one LED straight ahead.
-const FAINTEST_SHARE: f64 = 0.15;
 
 /// The light of the spots in use against that of their markers.
 pub(super) struct Light {
@@ -36,12 +29,15 @@ impl Light {
             normal: Normal::zero(),
             log_sigmas: 0.0,
         };
+        if let Some(LogLight { value, sigma }) = problem.known.power {
+            light.add(1.0 / (sigma * sigma), value, &Vector6::zeros());
+        }
         let camera_in_body_m = pose.camera_in_body_m();
         let camera_from_body = pose.camera_from_body.matrix();
         let distance_m = pose.position_m.norm();
         for (spot, marker) in problem.used() {
             let Some(seen) = problem.observations[spot].log_light else { continue };
-            let (intensity, gradient) = problem.airframe.intensity_with_gradient(marker, &camera_in_body_m);
+            let (intensity, gradient) = problem.light(spot, marker, &camera_in_body_m);
             let shines = intensity.max(DARK);
             let arm_m = problem.airframe.markers()[marker].position_m;
             let from_marker_m = camera_in_body_m - arm_m;
@@ -51,7 +47,7 @@ impl Light {
             if intensity > DARK {
                 by_camera += gradient / intensity;
             }
-            let lobe = LOBE_ERROR / shines;
+            let lobe = problem.settings.lobe_sigma / shines;
             let unit = problem.settings.unit_sigma;
             let variance = seen.sigma * seen.sigma + unit * unit + lobe * lobe;
             light.log_sigmas += 0.5 * libm::log(variance / (unit * unit));
@@ -90,47 +86,5 @@ impl Light {
                     - self.slope[line] * self.slope[column] / self.weight;
             }
         }
-    }
-}
-
-/// The odds of finding a marker whose light is so many times the faintest: its eighth power.
-fn steep(times: f64) -> f64 {
-    let fourth = (times * times) * (times * times);
-    fourth * fourth
-}
-
-impl Problem<'_> {
-    /// What it costs, nats, that these markers are seen and the others are not.
-    pub(super) fn visibility_nats(&self, pose: &Pose) -> f64 {
-        let camera_in_body_m = pose.camera_in_body_m();
-        let power = if self.settings.use_brightness && self.faintest_light > 0.0 {
-            Light::of(self, pose).log_power().map(libm::exp)
-        } else {
-            None
-        };
-        let half = match power {
-            // The intensity at which a marker at the origin's distance gives the faintest light.
-            Some(power) => (self.faintest_light * camera_in_body_m.norm_squared() / power).clamp(0.02, 1.0),
-            None => FAINTEST_SHARE,
-        };
-        // Where light is scarce, a marker that another outshines by far is taken for a reflection of it.
-        let brightest = self.used().map(|(_, marker)| self.airframe.intensity(marker, &camera_in_body_m));
-        let outshone = OUTSHONE * brightest.fold(0.0, f64::max);
-        let half = if half > CERTAIN_SHARE * outshone { half.max(outshone) } else { half };
-        let nats = |marker: usize| {
-            let intensity = self.airframe.intensity(marker, &camera_in_body_m);
-            let odds = steep(intensity.max(1e-3) / half);
-            let found = (1.0 - self.settings.missed) * odds / (1.0 + odds);
-            if self.markers.contains(&u16::try_from(marker).ok()) {
-                return -libm::log(found.max(1e-9));
-            }
-            if self.melting
-                && self.used().any(|(spot, seen)| self.are_one(spot, seen, marker, &camera_in_body_m))
-            {
-                return 0.0;
-            }
-            -libm::log(1.0 - found)
-        };
-        (0..self.airframe.markers().len()).map(nats).sum()
     }
 }

@@ -7,6 +7,8 @@ use crate::ranging::{Estimate, Interval};
 
 /// Most slices that one mode stands for: their valley is straight over so short a stretch.
 const SLICES_PER_MODE: usize = 3;
+/// A component is at most so many sigma beyond the bounds.
+const FARTHEST_SIGMAS: f64 = 2.0;
 /// Modes with less weight are not told.
 const NEGLIGIBLE: f64 = 1e-3;
 
@@ -50,6 +52,9 @@ pub struct Summary {
 }
 
 /// Cuts each component off at the bounds on distance: truth is never beyond. What is left of each is taken as normal again.
+///
+/// A component that is wholly beyond contradicts the bounds, and is no surer than they are: it is widened until it reaches
+/// them, at the weight that it had.
 pub(super) fn truncate(components: &mut [Component], bounds: &Interval) {
     for component in components {
         let distance_m = component.pose.position_m.norm();
@@ -63,8 +68,12 @@ pub(super) fn truncate(components: &mut [Component], bounds: &Interval) {
         if low < -5.0 && high > 5.0 {
             continue;
         }
-        let Truncated { log_mass, shift, variance } = truncated(low, high);
-        component.log_weight += log_mass;
+        component.log_weight += truncated(low, high).log_mass;
+        let widening = (low.max(-high) / FARTHEST_SIGMAS).max(1.0);
+        component.position_covariance_m2 *= widening * widening;
+        let (sigma_m, variance_m2, along) =
+            (sigma_m * widening, variance_m2 * widening * widening, along * (widening * widening));
+        let Truncated { shift, variance, .. } = truncated(low / widening, high / widening);
         // The other directions follow the distance as far as they are correlated with it.
         let gain = along / variance_m2.max(1e-18);
         component.pose.position_m += gain * (shift * sigma_m);
@@ -101,6 +110,17 @@ fn truncated(low: f64, high: f64) -> Truncated {
     let shift = ((density(low) - density(high)) / mass).clamp(low, high);
     let variance = (1.0 + (moment(low) - moment(high)) / mass - shift * shift).clamp(1e-6, 1.0);
     Truncated { log_mass: libm::log(mass), shift, variance }
+}
+
+/// How many sigma the heaviest component is beyond the bounds on distance; 0 within.
+pub(super) fn beyond_sigmas(components: &[Component], bounds: &Interval) -> f64 {
+    let heaviest = components.iter().max_by(|a, b| a.log_weight.total_cmp(&b.log_weight));
+    heaviest.map_or(0.0, |component| {
+        let distance_m = component.pose.position_m.norm();
+        let ahead = component.pose.position_m / distance_m;
+        let sigma_m = ahead.dot(&(component.position_covariance_m2 * ahead)).sqrt().max(1e-9);
+        (bounds.min_m() - distance_m).max(distance_m - bounds.max_m()).max(0.0) / sigma_m
+    })
 }
 
 /// Scales weights so that they add up to 1; `false` when there is no weight.
@@ -167,7 +187,8 @@ fn moments(components: &[Component], reference: &Rotation3<f64>, turns: usize) -
         let weight = libm::exp(component.log_weight);
         let position_m = component.pose.position_m;
         let away_m = position_m.norm();
-        let ahead = position_m / away_m;
+        // Bounds of 0 leave a component no direction.
+        let ahead = position_m.try_normalize(0.0).unwrap_or_default();
         let covariance = component.position_covariance_m2;
         total += weight;
         first_m += weight * position_m;

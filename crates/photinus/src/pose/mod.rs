@@ -5,7 +5,8 @@
 //!
 //! ```text
 //! hypotheses    which spot may be which marker, with a first guess of the pose
-//! problem       what a pose costs: bearings, light, tilt; with its derivatives
+//! problem       one assignment with all that is known (known) and seen (observation)
+//! cost          what a pose costs: bearings (melting), light, tilt; with its derivatives; and visibility
 //! refine        downhill to the mode of each hypothesis
 //! along_yaw     slices along the valley where the yaw is uncertain
 //! mixture       weights, truncation to the strict bounds, moments, modes
@@ -20,9 +21,12 @@
 
 mod along_yaw;
 mod assignment;
+mod cost;
 mod estimator;
 mod hypotheses;
+mod known;
 mod light;
+mod melting;
 mod mixture;
 mod observation;
 mod p3p;
@@ -34,14 +38,17 @@ mod signals;
 mod symmetry;
 #[cfg(test)]
 mod tests;
+mod visibility;
 
-pub use estimator::{Estimator, Known, Posterior};
+pub(crate) use cost::STRANGER_LOG_DENSITY;
+pub use estimator::{Estimator, Posterior};
 pub use hypotheses::Hypotheses;
+pub use known::{Known, LogDistance, Visible};
 pub use mixture::{Mode, Summary};
 pub use observation::{LogLight, Observation};
+pub(crate) use p3p::p3p_with_near_misses;
 pub use p3p::{P3pSolutions, p3p};
 pub use pnp::pnp;
-pub(crate) use problem::STRANGER_LOG_DENSITY;
-pub use problem::{LogDistance, Pose};
+pub use problem::Pose;
 pub use settings::{Settings, SettingsError};
 pub use symmetry::Symmetry;

@@ -4,6 +4,11 @@ use nalgebra::{Matrix2x3, Matrix3, Vector3};
 
 use crate::camera::Bearing;
 
+/// Variances of a direction are taken between these, rad^2: nothing is known to better than a millionth of a radian, and a
+/// sphere is no wider.
+const LEAST_RAD2: f64 = 1e-12;
+const MOST_RAD2: f64 = 10.0;
+
 /// What one spot says about a marker.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Observation {
@@ -13,7 +18,7 @@ pub struct Observation {
     pub covariance_rad2: Matrix3<f64>,
     /// Logarithm of its light, in units of any kind that are the same for all spots of the frame; `None` where unknown.
     pub log_light: Option<LogLight>,
-    /// Markers nearer to each other than this are one spot, rad; 0 where all are told apart.
+    /// Two markers so far apart are told apart half of the time, rad; 0 where all are.
     pub resolution_rad: f64,
     /// Which of the airframe's signals it was seen to blink, where that was decoded.
     pub signal: Option<u32>,
@@ -26,6 +31,13 @@ pub struct LogLight {
     pub value: f64,
     /// Standard deviation of the measurement alone.
     pub sigma: f64,
+}
+
+impl Observation {
+    /// Mean variance of the direction over its two axes, rad^2.
+    pub(super) fn variance_rad2(&self) -> f64 {
+        (self.covariance_rad2.trace() / 2.0).clamp(LEAST_RAD2, MOST_RAD2)
+    }
 }
 
 /// A direction with the map that makes its error one of unit covariance: e = map (u - direction).
@@ -43,11 +55,15 @@ impl Whitened {
         let direction = *observation.bearing.vector();
         let [across, along] = tangent_basis(&direction);
         let covariance = &observation.covariance_rad2;
-        // Nothing is known to better than a millionth of a radian.
-        let extra_rad2 = extra_rad2 + 1e-12;
-        let xx = across.dot(&(covariance * across)) + extra_rad2;
-        let xy = across.dot(&(covariance * along));
-        let yy = along.dot(&(covariance * along)) + extra_rad2;
+        let extra_rad2 = extra_rad2 + LEAST_RAD2;
+        // What is no covariance must not become an error that is no number.
+        let variance = |axis: &Vector3<f64>| {
+            let told = axis.dot(&(covariance * axis));
+            extra_rad2 + if told.is_nan() { MOST_RAD2 } else { told.clamp(0.0, MOST_RAD2) }
+        };
+        let (xx, yy) = (variance(&across), variance(&along));
+        let most = (xx * yy).sqrt();
+        let xy = across.dot(&(covariance * along)).min(most).max(-most);
         // The inverse of the Cholesky factor of [[xx, xy], [xy, yy]].
         let first = xx.sqrt();
         let below = xy / first;

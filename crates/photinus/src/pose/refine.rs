@@ -31,7 +31,7 @@ pub(super) fn refine(problem: &Problem<'_>, start: Pose) -> Refined {
     let mut here = Refined::at(problem, start);
     let mut damping = 1e-4;
     for _ in 0..MOST_STEPS {
-        let Normal { nats, gradient, mut information } = here.normal;
+        let Normal { nats, gradient, mut information, .. } = here.normal;
         for axis in 0..6 {
             information[(axis, axis)] += damping * information[(axis, axis)] + 1e-9;
         }

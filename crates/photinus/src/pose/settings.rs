@@ -10,6 +10,9 @@ pub struct Settings {
     pub marker_sigma_m: f64,
     /// Spread of power between LEDs of one kind: sigma of its natural logarithm. Default 0.12.
     pub unit_sigma: f64,
+    /// How far an LED's intensity is from what its lobe says, 1 being one LED straight ahead: markers fainter than this
+    /// decide nothing. Default 0.02: an LED mounted a degree askew.
+    pub lobe_sigma: f64,
     /// How often a marker that must show does not: dead, occluded, taken for something else. It keeps alive the explanation of
     /// two spots that a marker between them is missing. Default 0.001.
     pub missed: f64,
@@ -23,6 +26,7 @@ impl Default for Settings {
             tilt_sigma_rad: 5.0 * core::f64::consts::PI / 180.0,
             marker_sigma_m: 0.001,
             unit_sigma: 0.12,
+            lobe_sigma: 0.02,
             missed: 0.001,
             use_brightness: true,
         }
@@ -49,7 +53,7 @@ impl Settings {
     pub fn check(&self) -> Result<(), SettingsError> {
         let need =
             |ok: bool, name, value, must| if ok { Ok(()) } else { Err(SettingsError { name, value, must }) };
-        let Self { tilt_sigma_rad, marker_sigma_m, unit_sigma, missed, .. } = *self;
+        let Self { tilt_sigma_rad, marker_sigma_m, unit_sigma, lobe_sigma, missed, .. } = *self;
         need(
             (1e-4..=3.2).contains(&tilt_sigma_rad),
             "the tilt's sigma",
@@ -58,6 +62,7 @@ impl Settings {
         )?;
         need((0.0..=1.0).contains(&marker_sigma_m), "the markers' sigma", marker_sigma_m, "0 to 1 m")?;
         need((1e-3..=10.0).contains(&unit_sigma), "the spread of power", unit_sigma, "0.001 to 10")?;
+        need((0.0..=1.0).contains(&lobe_sigma), "the lobes' sigma", lobe_sigma, "0 to 1")?;
         need((1e-9..=0.5).contains(&missed), "the share of missed markers", missed, "1e-9 to 0.5")
     }
 }

@@ -34,6 +34,11 @@ fn observation(direction: Vector3<f64>, sigma_rad: f64, light: f64) -> Observati
     }
 }
 
+fn nothing() -> Known<'static> {
+    let bounds = crate::ranging::Interval::new(0.0, f64::INFINITY).unwrap();
+    Known { up: None, bounds, size: None, power: None, visible: Visible::default() }
+}
+
 proptest! {
     #[test]
     fn derivatives_agree_with_finite_differences(
@@ -57,10 +62,14 @@ proptest! {
         let whitened: Vec<Whitened> = observations.iter().map(|seen| Whitened::of(seen, 0.0)).collect();
         let markers: Vec<Option<u16>> = seen.into_iter().map(Some).collect();
         let settings = Settings::default();
+        let known = Known {
+            up: with_up.then(|| Unit::new_normalize(Vector3::new(0.05, -1.0, 0.02))),
+            size: Some(LogDistance { mean: 1.0, sigma: 0.5 }),
+            ..nothing()
+        };
         let problem = Problem {
             airframe: &airframe, settings: &settings, observations: &observations, whitened: &whitened, markers: &markers,
-            up: with_up.then(|| Unit::new_normalize(Vector3::new(0.05, -1.0, 0.02))),
-            size: Some(LogDistance { mean: 1.0, sigma: 0.5 }), faintest_light: 0.0, melting: false,
+            known: &known, melting: false,
         };
         let normal = problem.normal(&pose);
         prop_assert!((normal.information - normal.information.transpose()).norm() == 0.0);
@@ -96,5 +105,63 @@ proptest! {
             });
             prop_assert!(intensity < 1e-5 || (numeric - gradient).norm() < 1e-5, "{numeric} {gradient}");
         }
+    }
+
+    #[test]
+    fn slopes_of_melted_light_agree_with_finite_differences(
+        camera in prop::array::uniform3(-1.0f64..1.0), yaw in -3.0f64..3.0, resolution_rad in 0.02f64..0.3, quad in any::<bool>(),
+    ) {
+        let airframe = if quad { quadrotor() } else { hexarotor() };
+        let camera_m = Vector3::from(camera) + Rotation3::new(Vector3::z() * yaw) * Vector3::x() * 4.0;
+        let brightest = (0..airframe.markers().len())
+            .max_by(|&a, &b| airframe.intensity(a, &camera_m).total_cmp(&airframe.intensity(b, &camera_m))).unwrap();
+        let observations = [Observation { resolution_rad, ..observation(Vector3::z(), 1e-3, 1.0) }];
+        let whitened = observations.map(|seen| Whitened::of(&seen, 0.0));
+        let (settings, markers) = (Settings::default(), [Some(brightest as u16)]);
+        let problem = Problem {
+            airframe: &airframe, settings: &settings, observations: &observations, whitened: &whitened, markers: &markers,
+            known: &nothing(), melting: true,
+        };
+        let centre = |at: &Vector3<f64>| problem.light_centre(0, brightest, at);
+        let light = |at: &Vector3<f64>| problem.light(0, brightest, at);
+        let step = 1e-6;
+        for axis in 0..3 {
+            let mut off = Vector3::zeros();
+            off[axis] = step;
+            let (ahead, behind) = (camera_m + off, camera_m - off);
+            let numeric = (centre(&ahead).at_m - centre(&behind).at_m) / (2.0 * step);
+            let analytic = centre(&camera_m).by_camera.column(axis).into_owned();
+            // Where a marker comes into sight there is no slope.
+            let kink = airframe.markers().len() != (0..airframe.markers().len())
+                .filter(|&marker| !(1e-9..1e-4).contains(&airframe.intensity(marker, &camera_m))).count();
+            prop_assert!(kink || (numeric - analytic).norm() < 1e-5, "axis {axis}: {numeric} {analytic}");
+            let numeric = (light(&ahead).0 - light(&behind).0) / (2.0 * step);
+            prop_assert!(kink || (numeric - light(&camera_m).1[axis]).abs() < 1e-5, "axis {axis}: {numeric}");
+        }
+    }
+
+    #[test]
+    fn markers_that_melt_are_seen_between_them(gap in 0.0f64..2.5) {
+        // Two markers 0.1 m apart, side by side, the first seen: at no gap their light is one, far apart it is its own.
+        let leds = [-0.05, 0.05].map(|y| crate::airframe::Led {
+            position_m: Vector3::new(0.0, y, 0.0), axis: Vector3::x_axis(), lobe: crate::airframe::Lobe::Omni, signal: None,
+        });
+        let airframe = Airframe::new("pair", leds.to_vec()).unwrap();
+        let camera_m = Vector3::new(5.0, 0.0, 0.0);
+        let resolution_rad = 0.02 / gap.max(1e-3);
+        let observations = [Observation { resolution_rad, ..observation(Vector3::z(), 1e-3, 1.0) }];
+        let whitened = observations.map(|seen| Whitened::of(&seen, 0.0));
+        let (settings, markers) = (Settings::default(), [Some(0)]);
+        let problem = Problem {
+            airframe: &airframe, settings: &settings, observations: &observations, whitened: &whitened, markers: &markers,
+            known: &nothing(), melting: true,
+        };
+        let centre = problem.light_centre(0, 0, &camera_m);
+        let melted = problem.melted(0, 0, 1, &camera_m);
+        let window = (1.0 - gap * gap / (1.32 * 1.32)).max(0.0);
+        let expected = -0.05 + 0.1 * window * window / (1.0 + window * window);
+        prop_assert!((centre.at_m.y - expected).abs() < 2e-3, "{} {expected}", centre.at_m.y);
+        prop_assert!((0.0..=1.0).contains(&melted) && (gap < 2.01 || melted == 0.0) && (gap > 0.2 || melted > 0.99), "{melted}");
+        prop_assert!(centre.factor <= 1.0 && (gap < 1.4 || centre.factor > 1.0 - 1e-12));
     }
 }

@@ -19,7 +19,7 @@ use partition::{MOST_PARTITIONED, Partition};
 use tree::Tree;
 
 /// Groups of so many spots tell their distance and so the light of their LEDs.
-const CLEAR_SPOTS: usize = 3;
+pub(super) const CLEAR_SPOTS: usize = 3;
 /// Most rounds of partitioning in one frame: the time of a frame is bounded.
 const MOST_ROUNDS: usize = 12;
 /// Larger groups are not taken apart spot by spot.
@@ -99,8 +99,8 @@ impl Groups {
         matcher.set_log_power(None);
         self.cut_tree(sightings, gravity, matcher);
         let log_power = self.log_power(sightings, gravity, matcher);
+        matcher.set_log_power(log_power);
         if log_power.is_some() && (0..self.list.len()).any(|group| self.is_doubtful(group)) {
-            matcher.set_log_power(log_power);
             self.cut_tree(sightings, gravity, matcher);
         }
         self.part_overlapping(sightings, gravity, matcher);

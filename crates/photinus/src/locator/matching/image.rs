@@ -6,6 +6,9 @@ use crate::locator::Sighting;
 use crate::locator::views::{Outline, firmness, view_axes};
 use crate::pose::Pose;
 
+/// Spots all in one place have no shape but what rounding leaves of them, which a target 10^15 m away would have.
+const LEAST_SIZE: f64 = 1e-9;
+
 /// The places of a group in the plane that touches the sphere of directions in their middle.
 pub(super) struct Image<'a> {
     /// Axes of the plane in the camera frame: right, up (against gravity where it is known), ahead.
@@ -58,7 +61,7 @@ impl<'a> Image<'a> {
         // One spot that another disturbs must not make every shape a match: the geometric mean.
         let log_variance = members().map(|sighting| libm::log(sighting.covariance_rad2.trace() / 2.0));
         let variance = libm::exp(log_variance.sum::<f64>() / count);
-        (size > 0.0).then_some(Self {
+        (size > LEAST_SIZE).then_some(Self {
             axes: Matrix3::from_columns(&[right.into_inner(), up, ahead.into_inner()]),
             places,
             middle,

@@ -8,19 +8,21 @@ mod image;
 mod ordered;
 mod outlined;
 mod size;
+mod triples;
 
 use nalgebra::{Unit, Vector2, Vector3};
 
 use super::Sighting;
-use super::views::{ELEVATION_STEP_RAD, Spread, Views};
+use super::views::{ELEVATION_STEP_RAD, Spread, UNSEEN_NATS, Views};
 use crate::airframe::Airframe;
 use crate::lanes::{self, LANES, Lanes};
-use crate::pose::{Hypotheses, LogDistance, Pose, Symmetry};
+use crate::pose::{Hypotheses, LogDistance, LogLight, Pose, Symmetry};
 use crate::ranging::{BoundedBearing, DistanceBounds, Interval};
 use image::Image;
 use ordered::Ordered;
 use outlined::overlay;
 use size::{plausible_m, size_nats};
+use triples::Triples;
 
 /// What a neighbour costs, nats: fewer neighbours are the better explanation.
 pub(super) const NEIGHBOUR_NATS: f64 = 8.0;
@@ -29,10 +31,12 @@ pub(super) const NEIGHBOUR_NATS: f64 = 8.0;
 const POOR_NATS: f32 = 9.0;
 /// Spread of the logarithm of light between neighbours: lobes, units, the lens towards its edge.
 const LOG_POWER_SIGMA: f64 = 0.35;
-/// So much of the logarithm of light saturation may hide.
-const CUT_OFF_LOG: f64 = 0.7;
 /// Light alone does not rule a neighbour out.
-const MOST_POWER_NATS: f64 = 10.0;
+const MOST_POWER_NATS: f64 = 30.0;
+/// An outline that costs so much, nats, may be that of a neighbour that is not seen whole.
+const POOR_OUTLINE_NATS: f64 = 6.0;
+/// So many spots have closed forms.
+const FEWEST_IN_PART: usize = 3;
 /// What cannot be, nats.
 pub(super) const IMPOSSIBLE: f64 = 1e9;
 
@@ -40,10 +44,10 @@ pub(super) const IMPOSSIBLE: f64 = 1e9;
 #[derive(Debug)]
 pub(super) struct Matcher {
     views: Views,
+    triples: Triples,
     bounds: DistanceBounds,
     symmetry: Symmetry,
     tilt_sigma_rad: f64,
-    /// Logarithm of the light of this frame's LEDs at 1 m, where some neighbours tell it.
     log_power: Option<f64>,
     bearings: Vec<BoundedBearing>,
     places: Vec<Vector2<f64>>,
@@ -56,6 +60,7 @@ impl Matcher {
         let symmetry = Symmetry::of(airframe);
         Self {
             views: Views::of(airframe, &symmetry),
+            triples: Triples::of(airframe, &symmetry),
             symmetry,
             bounds: DistanceBounds::new(airframe, max_tilt_rad),
             // The tilt limit is taken for two sigma; the grid of views adds half a step.
@@ -111,17 +116,24 @@ impl Matcher {
         let plausible = plausible_m(sighting);
         let nearest_m = bounds.min_m().max(plausible.nearest_m.min(bounds.max_m()));
         let farthest_m = bounds.max_m().min(plausible.farthest_m.max(bounds.min_m())).max(1.01 * nearest_m);
-        // Even over the logarithm of distance: neither near nor far is favoured.
-        let (near, far) = (libm::log(nearest_m), libm::log(farthest_m));
-        LogDistance { mean: 0.5 * (near + far), sigma: (far - near) / 12f64.sqrt() }
+        // Even over the logarithm of distance, neither near nor far is favoured: the mean and the mean square.
+        let spread = libm::log(farthest_m / nearest_m);
+        let mean_m = (farthest_m - nearest_m) / spread;
+        let square_m2 = (farthest_m * farthest_m - nearest_m * nearest_m) / (2.0 * spread);
+        LogDistance { mean: libm::log(mean_m), sigma: (square_m2 / (mean_m * mean_m) - 1.0).max(1e-6).sqrt() }
     }
 
-    /// Sets what is known of the light of this frame's LEDs.
+    /// Sets what is known of the light of this frame's LEDs: the logarithm of that of one straight ahead at 1 m.
     pub(super) fn set_log_power(&mut self, log_power: Option<f64>) {
         self.log_power = log_power;
     }
 
-    /// The light that a group's LEDs would have at 1 m if it is the neighbour it looks like, as a logarithm.
+    /// What is known of the light of this frame's LEDs, as a logarithm with its spread.
+    pub(super) fn known_power(&self) -> Option<LogLight> {
+        self.log_power.map(|value| LogLight { value, sigma: LOG_POWER_SIGMA })
+    }
+
+    /// The light that an LED of a group would have straight ahead at 1 m if it is the neighbour it looks like, as a logarithm.
     pub(super) fn log_power(
         &mut self,
         sightings: &[Sighting],
@@ -132,17 +144,22 @@ impl Matcher {
         let arrangements = self.views.arrangements(group.len())?;
         let seen = Ordered::of(&image, sightings, group);
         let best = seen.costs(&arrangements.quads, &image, self.tilt_sigma_rad, &mut self.costs);
-        let distance_m = seen.place(&arrangements.all[best.arrangement], &image).0.norm();
-        mean_log_light(sightings, group).map(|light| light + 2.0 * libm::log(distance_m))
+        let arrangement = &arrangements.all[best.arrangement];
+        let distance_m = seen.place(arrangement, &image).0.norm();
+        log_power(sightings, group, distance_m, arrangement.mean_log_intensity)
     }
 
-    /// What it costs that spots of this light are at a distance, nats.
-    fn power_nats(&self, sightings: &[Sighting], group: &[usize], distance_m: f64) -> f64 {
-        let Some((power, light)) = self.log_power.zip(mean_log_light(sightings, group)) else { return 0.0 };
-        let off = light + 2.0 * libm::log(distance_m) - power;
-        let saturated = group.iter().any(|&spot| sightings[spot].spot.saturated_px > 0);
-        // Light that is cut off makes a spot look fainter than it is, up to a point.
-        let off = if saturated && off < 0.0 { (off + CUT_OFF_LOG).min(0.0) } else { off };
+    /// What it costs that spots of this light are markers of that intensity at a distance, nats.
+    fn power_nats(
+        &self,
+        sightings: &[Sighting],
+        group: &[usize],
+        distance_m: f64,
+        log_intensity: f64,
+    ) -> f64 {
+        let own = log_power(sightings, group, distance_m, log_intensity);
+        let Some((known, own)) = self.log_power.zip(own) else { return 0.0 };
+        let off = own - known;
         (0.5 * (off / LOG_POWER_SIGMA) * (off / LOG_POWER_SIGMA)).min(MOST_POWER_NATS)
     }
 
@@ -161,8 +178,13 @@ impl Matcher {
         }
         let Some(image) = Image::of(sightings, group, gravity, &mut self.places) else { return IMPOSSIBLE };
         let Some(arrangements) = self.views.arrangements(group.len()) else {
-            let nats = outlined_nats(&self.views, &image, self.tilt_sigma_rad);
-            return nats.map_or(IMPOSSIBLE, |(nats, distance_m)| {
+            let whole = outlined_nats(&self.views, &image, self.tilt_sigma_rad);
+            let part = match whole {
+                Some((nats, _)) if nats < POOR_OUTLINE_NATS => None,
+                _ => self.partly_seen_nats(sightings, group, gravity),
+            };
+            let cheapest = whole.into_iter().chain(part).min_by(|a, b| a.0.total_cmp(&b.0));
+            return cheapest.map_or(IMPOSSIBLE, |(nats, distance_m)| {
                 NEIGHBOUR_NATS + nats + size_nats(sightings, group, distance_m)
             });
         };
@@ -172,12 +194,33 @@ impl Matcher {
             .costs
             .iter()
             .fold(Lanes::ZERO, |sum, &four| sum + lanes::exp(Lanes::splat(best.nats) - four));
-        let distance_m = seen.place(&arrangements.all[best.arrangement], &image).0.norm();
+        let arrangement = &arrangements.all[best.arrangement];
+        let distance_m = seen.place(arrangement, &image).0.norm();
         let views = f64::from(best.nats) - libm::log(f64::from(lanes::sum(weight)));
         NEIGHBOUR_NATS
             + views
             + size_nats(sightings, group, distance_m)
-            + self.power_nats(sightings, group, distance_m)
+            + self.power_nats(sightings, group, distance_m, arrangement.mean_log_intensity)
+    }
+
+    /// What it costs that a group is some of the markers of a view, nats, and the distance at which it fits best, m.
+    fn partly_seen_nats(
+        &self,
+        sightings: &[Sighting],
+        group: &[usize],
+        gravity: Option<&Unit<Vector3<f64>>>,
+    ) -> Option<(f64, f64)> {
+        let missing = self.views.most_visible - group.len();
+        if group.len() < FEWEST_IN_PART || missing == 0 {
+            return None;
+        }
+        let mut best: Option<(f64, f64)> = None;
+        self.triples.each_start(sightings, group, gravity, self.tilt_sigma_rad, |start| {
+            if best.is_none_or(|(nats, _)| start.nats < nats) {
+                best = Some((start.nats, start.pose.position_m.norm()));
+            }
+        });
+        best.map(|(nats, distance_m)| (nats + UNSEEN_NATS * missing as f64, distance_m))
     }
 
     /// Which markers the spots of a group of at least two may be.
@@ -201,6 +244,11 @@ impl Matcher {
                     let pose = image.pose(&place_m, turn, outline.yaw_rad, outline.elevation_rad);
                     hypotheses.offer_loose(pose, fit.nats + nats);
                 }
+            }
+            if (FEWEST_IN_PART..self.views.most_visible).contains(&group.len()) {
+                self.triples.each_start(sightings, group, gravity, self.tilt_sigma_rad, |start| {
+                    hypotheses.offer_loose(start.pose, start.nats);
+                });
             }
             return;
         };
@@ -237,11 +285,11 @@ fn outlined_nats(views: &Views, image: &Image<'_>, tilt_sigma_rad: f64) -> Optio
     Some((best.nats - libm::log(weight), best.place_m.norm()))
 }
 
-/// Mean logarithm of the light of spots; `None` where one has none.
-fn mean_log_light(sightings: &[Sighting], group: &[usize]) -> Option<f64> {
-    let light = |&spot: &usize| sightings[spot].spot.flux;
-    let all = group.iter().all(|spot| light(spot) > 0.0);
-    all.then(|| group.iter().map(|spot| libm::log(light(spot))).sum::<f64>() / group.len() as f64)
+/// Logarithm of the light of an LED straight ahead at 1 m if these spots are markers of this mean logarithm of intensity at a
+/// distance; `None` where one has no light.
+fn log_power(sightings: &[Sighting], group: &[usize], distance_m: f64, log_intensity: f64) -> Option<f64> {
+    let sum = group.iter().try_fold(0.0, |sum, &spot| Some(sum + sightings[spot].log_light?.value))?;
+    Some(sum / group.len() as f64 + 2.0 * libm::log(distance_m) - log_intensity)
 }
 
 fn widened(range: &Interval, reach_m: f64) -> Option<Interval> {

@@ -6,13 +6,12 @@ use super::image::{Image, turned};
 use crate::lanes::{self, Lanes};
 use crate::locator::Sighting;
 use crate::locator::views::{Arrangement, MOST_ORDERED, Quad};
+use crate::pose::LogLight;
 
 /// How far the grid of views leaves a true shape from the nearest one, as a share of its size.
 const GRID_ERROR: f64 = 0.04;
 /// Spread of the logarithms of flux that units, lobes and neighbours' own bodies add.
 const LOG_FLUX_SIGMA: f64 = 0.6;
-/// The same when a spot is saturated: its flux is a lower limit.
-const LOG_FLUX_SIGMA_SATURATED: f64 = 1.2;
 
 /// A group to be put in order.
 pub(super) struct Ordered {
@@ -34,17 +33,13 @@ impl Ordered {
         };
         let mut sum = 0.0;
         for (index, (&member, place)) in group.iter().zip(image.places).enumerate() {
-            let spot = &sightings[member].spot;
             ordered.shape[index] = place / image.size;
-            ordered.log_flux[index] = libm::log(spot.flux.max(1e-3));
-            sum += ordered.log_flux[index];
-            if spot.saturated_px > 0 {
-                ordered.log_flux_sigma = LOG_FLUX_SIGMA_SATURATED;
-            }
-            if spot.flux <= 0.0 {
-                // A detector that measures no light says nothing by it.
-                ordered.log_flux_sigma = f64::INFINITY;
-            }
+            // A detector that measures no light says nothing by it.
+            let LogLight { value, sigma } =
+                sightings[member].log_light.unwrap_or(LogLight { value: 0.0, sigma: f64::INFINITY });
+            ordered.log_flux[index] = value;
+            sum += value;
+            ordered.log_flux_sigma = ordered.log_flux_sigma.max(libm::hypot(LOG_FLUX_SIGMA, sigma));
         }
         for log_flux in &mut ordered.log_flux[..group.len()] {
             *log_flux -= sum / group.len() as f64;
@@ -117,7 +112,7 @@ impl Ordered {
         }
         // A match that is hardly one still gives a place, at most a thousand times as far as it looks.
         let agreement = f64::sqrt(dot * dot + cross * cross).max(1e-3 * square.sqrt());
-        let turn = Vector2::new(dot, cross) / agreement;
+        let turn = Vector2::new(dot, cross).try_normalize(1e-12).unwrap_or_else(Vector2::x);
         let depth_m = square / (agreement * image.size);
         let mean_larger = larger.iter().take(self.count).sum::<f64>() * per_spot;
         let beside_m =

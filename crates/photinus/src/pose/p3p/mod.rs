@@ -52,7 +52,7 @@ pub fn p3p(bearings: &[Vector3<f64>; 3], points_m: &[Vector3<f64>; 3]) -> P3pSol
 }
 
 /// The solutions of [`p3p`], and the nearest real poses in place of those that noise has made complex.
-pub(super) fn p3p_with_near_misses(
+pub(crate) fn p3p_with_near_misses(
     bearings: &[Vector3<f64>; 3],
     points_m: &[Vector3<f64>; 3],
 ) -> P3pSolutions {

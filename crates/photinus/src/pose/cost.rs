@@ -1,0 +1,132 @@
+//! What a pose costs, and how the cost changes: the negative logarithm of the posterior density of one assignment of spots
+//! to markers, with the normal equations of its Gauss-Newton step.
+//!
+//! Terms, each with unit variance when the pose is true:
+//!
+//! ```text
+//! bearing   map (x / |x| - direction), x = R p + t                        two per spot, Huber beyond 3.5 sigma
+//! light     ln f - ln I(camera in body) + 2 ln |x| - c                    one per spot, c (the LED's power) solved for, with its prior
+//! tilt      x and y of "up" in the body frame over the tilt's sigma       two, where gravity is known
+//! elevation z of the direction to the camera in the body frame, weak      one, where it is not; and "up" is the image's, weak
+//! size      (ln distance - mean) / sigma                                  one, where nothing else tells distance
+//! ```
+
+use nalgebra::{Matrix3, Vector6};
+
+use super::known::LogDistance;
+use super::light::Light;
+use super::melting::LightCentre;
+use super::observation::Whitened;
+use super::problem::{Normal, Pose, Problem};
+
+/// Beyond so many sigma the pull of a bearing no longer grows.
+const HUBER: f64 = 3.5;
+/// Without gravity: how far a camera is above or below a neighbour's own horizon, the sine's sigma.
+const ELEVATION_SIGMA: f64 = 0.6;
+/// Without gravity: how far a neighbour is from upright in the image, the sine's sigma. It keeps what nothing tells from
+/// being anything.
+const IMAGE_TILT_SIGMA: f64 = 1.0;
+/// What it costs, nats, that a spot among an airframe's own is none of its markers: a spot that is one is likelier by its
+/// sigma of a third of a milliradian against the few hundredths of a radian around the others, and strangers are rare.
+const STRANGER_NATS: f64 = 14.0;
+/// The same as a density over directions, for groups of different size.
+pub(crate) const STRANGER_LOG_DENSITY: f64 = 2.0;
+
+impl Problem<'_> {
+    /// Cost and normal equations at a pose.
+    pub(super) fn normal(&self, pose: &Pose) -> Normal {
+        let mut normal = Normal::zero();
+        normal.nats = STRANGER_NATS * self.markers.iter().filter(|marker| marker.is_none()).count() as f64;
+        self.add_bearings(pose, &mut normal);
+        if self.settings.use_brightness {
+            let light = Light::of(self, pose);
+            light.add_to(&mut normal);
+            normal.log_power = light.log_power();
+        }
+        self.add_attitude(pose, &mut normal);
+        if let Some(LogDistance { mean, sigma }) = self.known.size {
+            let distance_m = pose.position_m.norm();
+            let direction = pose.position_m / (distance_m * sigma);
+            let row = Vector6::new(direction.x, direction.y, direction.z, 0.0, 0.0, 0.0);
+            normal.add((libm::log(distance_m) - mean) / sigma, &row);
+        }
+        normal.finish();
+        normal
+    }
+
+    /// Squared misfit of a spot's bearing, in units of its variance.
+    pub(super) fn misfit(&self, pose: &Pose, spot: usize, marker: usize) -> f64 {
+        let Whitened { direction, map, .. } = &self.whitened[spot];
+        let LightCentre { at_m, factor, .. } = self.light_centre(spot, marker, &pose.camera_in_body_m());
+        let place_m = pose.camera_from_body * at_m + pose.position_m;
+        (map * (place_m.normalize() - direction) * factor).norm_squared()
+    }
+
+    fn add_bearings(&self, pose: &Pose, normal: &mut Normal) {
+        let distance_m = pose.position_m.norm();
+        let camera_from_body = pose.camera_from_body.matrix();
+        let camera_in_body_m = pose.camera_in_body_m();
+        for (spot, marker) in self.used() {
+            let LightCentre { at_m, by_camera, factor } = self.light_centre(spot, marker, &camera_in_body_m);
+            let place_m = camera_from_body * at_m + pose.position_m;
+            let range_m = place_m.norm();
+            let seen = place_m / range_m;
+            let Whitened { direction, map, .. } = &self.whitened[spot];
+            if factor < 1.0 {
+                normal.nats -= 2.0 * libm::log(factor);
+            }
+            let residual = map * (seen - direction) * factor;
+            let by_place = (map - map * seen * seen.transpose()) * (factor / range_m);
+            let by_turn = by_place * camera_from_body;
+            let square = residual.norm_squared();
+            let weight = if square > HUBER * HUBER {
+                let off = square.sqrt();
+                normal.nats += HUBER * (off - 0.5 * HUBER);
+                HUBER / off
+            } else {
+                normal.nats += 0.5 * square;
+                1.0
+            };
+            for axis in 0..2 {
+                let in_body = by_turn.row(axis).transpose();
+                // The camera in the body frame moves by -R' distance delta, and by c x omega.
+                let by_melting = by_camera.transpose() * in_body;
+                let across = (by_place.row(axis).transpose() - camera_from_body * by_melting) * distance_m;
+                // d(R exp(omega) p) = R (omega x p), so that the row by omega is p x (R' row').
+                let turn = at_m.cross(&in_body) + by_melting.cross(&camera_in_body_m);
+                let row = Vector6::new(across.x, across.y, across.z, turn.x, turn.y, turn.z);
+                normal.add_weighted(weight, residual[axis], &row);
+            }
+        }
+    }
+
+    fn add_attitude(&self, pose: &Pose, normal: &mut Normal) {
+        let body_from_camera = pose.camera_from_body.matrix().transpose();
+        let (up, sigma) = match &self.known.up {
+            Some(up) => (body_from_camera * up.into_inner(), self.settings.tilt_sigma_rad),
+            None => (-body_from_camera.column(1), IMAGE_TILT_SIGMA),
+        };
+        if self.known.up.is_some() && up.z <= 0.0 {
+            // Upside down: as far from level as can be, whatever the horizontal part says.
+            normal.nats += 0.5 / (sigma * sigma);
+        }
+        // d(exp(-omega) up) = up x omega.
+        let by_turn = up.cross_matrix() / sigma;
+        for axis in 0..2 {
+            let row = by_turn.row(axis);
+            normal.add(up[axis] / sigma, &Vector6::new(0.0, 0.0, 0.0, row[0], row[1], row[2]));
+        }
+        if self.known.up.is_none() {
+            self.add_elevation(pose, &body_from_camera, normal);
+        }
+    }
+
+    fn add_elevation(&self, pose: &Pose, body_from_camera: &Matrix3<f64>, normal: &mut Normal) {
+        let away = body_from_camera * pose.position_m / pose.position_m.norm();
+        let by_turn = away.cross_matrix().row(2) / ELEVATION_SIGMA;
+        let by_step =
+            (Matrix3::identity() - away * away.transpose()).row(2) * body_from_camera / ELEVATION_SIGMA;
+        let row = Vector6::new(by_step[0], by_step[1], by_step[2], by_turn[0], by_turn[1], by_turn[2]);
+        normal.add(away.z / ELEVATION_SIGMA, &row);
+    }
+}

@@ -1,0 +1,44 @@
+//! What is known of a neighbour besides its spots: which way is up, how far it can be, which of its markers would be found.
+
+use nalgebra::{Unit, Vector3};
+
+use super::observation::LogLight;
+use crate::camera::Watched;
+use crate::ranging::Interval;
+
+/// What is known of a neighbour besides its spots.
+#[derive(Clone, Copy, Debug)]
+pub struct Known<'a> {
+    /// Away from the ground, camera frame.
+    pub up: Option<Unit<Vector3<f64>>>,
+    /// Truth is between these.
+    pub bounds: Interval,
+    /// What spot size says of distance, where nothing better does.
+    pub size: Option<LogDistance>,
+    /// Light of an LED of intensity 1 at 1 m, in the units of the observations, where other neighbours tell it.
+    pub power: Option<LogLight>,
+    /// Which markers are found.
+    pub visible: Visible<'a>,
+}
+
+/// A normal distribution of the logarithm of distance.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LogDistance {
+    /// Mean.
+    pub mean: f64,
+    /// Standard deviation.
+    pub sigma: f64,
+}
+
+/// Which markers a detector finds.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Visible<'a> {
+    /// Light at which a marker is found half of the time, in the units of the observations; 0 where unknown.
+    pub faintest_light: f64,
+    /// A marker fainter than this share of the brightest beside it is taken for its reflection; 0 where none is.
+    pub outshone: f64,
+    /// ... but not from so many times the faintest light on.
+    pub certain: f64,
+    /// Where the camera looks; everywhere where that is `None`.
+    pub watched: Option<Watched<'a>>,
+}

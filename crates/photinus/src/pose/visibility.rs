@@ -1,0 +1,80 @@
+//! What should shine and is not seen tells against a pose, and so does what is seen and should not shine.
+
+use super::problem::{Pose, Problem};
+use crate::camera::Bearing;
+
+/// Light at which a marker is found half of the time when nothing tells what is faintest, 1 being one LED straight ahead.
+const FAINTEST_SHARE: f64 = 0.15;
+
+/// The odds of finding a marker whose light is so many times that at which they are even. On rendered frames 39, 71, 86, 96
+/// and 99 % are found at 0.9, 1.1, 1.3, 1.6 and 1.9 times.
+fn odds(times: f64) -> f64 {
+    let cube = times * times * times;
+    cube * cube * times
+}
+
+/// The probability of these odds, which may be infinite.
+fn probability(odds: f64) -> f64 {
+    1.0 - 1.0 / (1.0 + odds)
+}
+
+impl Problem<'_> {
+    /// What it costs, nats, that these markers are seen and the others are not, if an LED of intensity 1 at 1 m gives a light
+    /// of this logarithm.
+    pub(super) fn visibility_nats(&self, pose: &Pose, log_power: Option<f64>) -> f64 {
+        let camera_m = pose.camera_in_body_m();
+        let faintest_light = self.known.visible.faintest_light;
+        let half = match log_power {
+            // The intensity at which a marker at the origin's distance gives the faintest light.
+            Some(power) if faintest_light > 0.0 => (faintest_light * camera_m.norm_squared()
+                / libm::exp(power))
+            .clamp(self.settings.lobe_sigma.max(1e-4), 1.0),
+            _ => FAINTEST_SHARE,
+        };
+        let intensity = |marker: usize| self.airframe.intensity(marker, &camera_m);
+        let brightest = self.used().map(|(_, marker)| intensity(marker)).fold(0.0, f64::max);
+        let nats = |marker: usize| {
+            let shines = intensity(marker).max(1e-4);
+            let stands_out = odds(shines / (self.known.visible.outshone * brightest))
+                + odds(shines / (self.known.visible.certain * half));
+            let found =
+                (1.0 - self.settings.missed) * probability(odds(shines / half)) * probability(stands_out);
+            if self.is_used(marker) {
+                return -libm::log(found.max(1e-9));
+            }
+            if !self.is_watched(pose, marker) {
+                return 0.0;
+            }
+            // Of two markers that melt the spot is said to be the brighter one.
+            let into = |(spot, seen): (usize, usize)| {
+                let other = intensity(seen).max(1e-3);
+                self.melted(spot, seen, marker, &camera_m) * probability(odds(other / shines))
+            };
+            let melted = if self.melting { self.used().map(into).fold(0.0, f64::max) } else { 0.0 };
+            -libm::log(1.0 - found * (1.0 - melted))
+        };
+        (0..self.airframe.markers().len()).map(nats).sum::<f64>() + self.told_apart_nats(&camera_m)
+    }
+
+    /// What it costs that markers beside each other are seen as two spots.
+    fn told_apart_nats(&self, camera_m: &nalgebra::Vector3<f64>) -> f64 {
+        if !self.melting {
+            return 0.0;
+        }
+        let pairs = self.used().flat_map(|first| {
+            let later = self.used().filter(move |second| second.0 > first.0);
+            later.map(move |second| (first, second))
+        });
+        pairs
+            .map(|((spot, seen), (_, other))| {
+                -libm::log((1.0 - self.melted(spot, seen, other, camera_m)).max(1e-9))
+            })
+            .sum()
+    }
+
+    fn is_watched(&self, pose: &Pose, marker: usize) -> bool {
+        let Some(watched) = &self.known.visible.watched else { return true };
+        let place_m = pose.camera_from_body * self.airframe.markers()[marker].position_m + pose.position_m;
+        Bearing::new(place_m).is_some_and(|bearing| watched.sees(&bearing))
+    }
+}

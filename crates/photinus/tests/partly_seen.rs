@@ -1,0 +1,176 @@
+//! Neighbours that the image's border cuts in two: what is out of sight is not held against a pose.
+//!
+//! Single neighbours in pure geometry with a tenth of a pixel, near and across the border of the image or of a mask. Checked:
+//! that the spots in view are taken for one neighbour, that truth is within its bounds, and that its covariance is honest.
+
+use std::f64::consts::{FRAC_PI_2, TAU};
+
+use nalgebra::{Matrix2, Rotation3, Unit, Vector3};
+use photinus::airframe::{Airframe, Led, Lobe, Ring};
+use photinus::camera::{Bearing, Camera, Ideal, IdealLaw, Model, Pixel};
+use photinus::frame::{FrameView, Mask};
+use photinus::locator::{Locator, Settings};
+use photinus::spots::{Extent, Spot};
+use rand_distr::{Distribution, StandardNormal, Uniform};
+use rand_pcg::Pcg64;
+
+/// Light of an LED straight ahead at 1 m, and the least that is found, grey levels.
+const POWER: f64 = 25_000.0;
+const FAINTEST: f64 = 60.0;
+const SIGMA_PX: f64 = 0.1;
+const TILT_RAD: f64 = 0.08;
+const WIDTH: usize = 752;
+const HEIGHT: usize = 480;
+
+fn camera() -> Camera {
+    let lens =
+        Ideal::new(IdealLaw::Equidistant, [1.0 / 3.7673e-3; 2], Pixel::new(375.5, 239.5)).expect("a lens");
+    Camera::new(Model::Ideal(lens), WIDTH, HEIGHT, None).expect("a camera")
+}
+
+fn hexarotor() -> Airframe {
+    let ring = Ring { arms: 6, radius_m: 0.4, leds_per_arm: 1, splay_rad: 0.0 };
+    Airframe::from_ring("hexarotor", ring).expect("a ring")
+}
+
+fn quadrotor() -> Airframe {
+    let ring = Ring { arms: 4, radius_m: 0.245, leds_per_arm: 2, splay_rad: FRAC_PI_2 };
+    Airframe::from_ring("quadrotor", ring).expect("a ring")
+}
+
+/// A hexarotor whose LEDs shine all around: all six show at once.
+fn lanterns() -> Airframe {
+    let leds = hexarotor().leds().iter().map(|led| Led { lobe: Lobe::Omni, ..*led }).collect();
+    Airframe::new("lanterns", leds).expect("an airframe")
+}
+
+fn uniform(rng: &mut Pcg64, low: f64, high: f64) -> f64 {
+    Uniform::new(low, high).expect("a range").sample(rng)
+}
+
+fn normal(rng: &mut Pcg64) -> f64 {
+    StandardNormal.sample(rng)
+}
+
+/// The right third of the image is not looked at.
+fn mask() -> Mask {
+    let pixels: Vec<u8> =
+        (0..WIDTH * HEIGHT).map(|pixel| if pixel % WIDTH < 500 { 255 } else { 0 }).collect();
+    Mask::from_frame(&FrameView::packed(&pixels, WIDTH, HEIGHT).expect("a mask"))
+}
+
+/// What came of the views with one number of spots in sight.
+#[derive(Clone, Copy, Default)]
+struct Tally {
+    views: f64,
+    whole: f64,
+    squared_errors: f64,
+    inside: f64,
+}
+
+/// Locates neighbours of which some marker that shines is out of sight, by the number of those in sight.
+fn partly_seen(airframe: &Airframe, views: usize, masked: bool) -> [Tally; 7] {
+    let camera = camera();
+    let mut rng = Pcg64::new(5, 6);
+    let mut locator = Locator::new(camera.clone(), airframe, None, Settings::default()).expect("a locator");
+    let mask = masked.then(mask);
+    locator.set_mask(mask.clone()).expect("the camera's size");
+    let mut tallies = [Tally::default(); 7];
+    let mut count = 0;
+    while count < views {
+        // A place at the border of what is watched, and a neighbour there.
+        let place = if masked {
+            Pixel::new(499.0, uniform(&mut rng, 60.0, 420.0))
+        } else {
+            let along = uniform(&mut rng, 20.0, 720.0);
+            [Pixel::new(along, 2.0), Pixel::new(along, 477.0)][count % 2]
+        };
+        let distance_m = uniform(&mut rng, 1.5, 6.0);
+        let position_m = camera.bearing(place).expect("in the image").vector() * distance_m;
+        let upright = Rotation3::from_basis_unchecked(&[Vector3::x(), Vector3::z(), -Vector3::y()]);
+        let tilt = Rotation3::new(Vector3::new(normal(&mut rng), 0.0, normal(&mut rng)) * TILT_RAD);
+        let yaw = Rotation3::from_axis_angle(&Vector3::z_axis(), uniform(&mut rng, 0.0, TAU));
+        let camera_from_body = tilt * upright * yaw;
+        let camera_m = -(camera_from_body.inverse() * position_m);
+        let (mut spots, mut hidden) = (Vec::new(), false);
+        for (number, marker) in airframe.markers().iter().enumerate() {
+            let place_m = camera_from_body * marker.position_m + position_m;
+            let flux = POWER * airframe.intensity(number, &camera_m) / place_m.norm_squared()
+                * libm::exp(0.1 * normal(&mut rng));
+            if flux < FAINTEST {
+                continue;
+            }
+            let inside = |pixel: &Pixel| {
+                let ignored = mask
+                    .as_ref()
+                    .is_some_and(|mask| mask.ignores(pixel.u.round() as usize, pixel.v.round() as usize));
+                (2.0..749.0).contains(&pixel.u) && (2.0..477.0).contains(&pixel.v) && !ignored
+            };
+            match Bearing::new(place_m).and_then(|bearing| camera.pixel(&bearing)).filter(inside) {
+                Some(pixel) => spots.push(spot(pixel, flux, distance_m, &mut rng)),
+                None => hidden = true,
+            }
+        }
+        if !hidden || spots.is_empty() {
+            continue;
+        }
+        count += 1;
+        let down: Unit<Vector3<f64>> = Vector3::y_axis();
+        let located = locator.locate_spots(&spots, Some(&down), &mut |_| ());
+        let tally = &mut tallies[spots.len()];
+        tally.views += 1.0;
+        let [neighbour] = &located.neighbours[..] else { continue };
+        if located.members(neighbour).len() != spots.len() {
+            continue;
+        }
+        tally.whole += 1.0;
+        assert!(
+            neighbour.distance.bounds.contains(distance_m),
+            "{distance_m} outside {:?}",
+            neighbour.distance
+        );
+        let position = neighbour.position.expect("a position");
+        let off_m = position.mean_m - position_m;
+        let factor = position.covariance_m2.cholesky().expect("a covariance");
+        let squared = off_m.dot(&factor.solve(&off_m));
+        tally.squared_errors += squared.min(1000.0);
+        tally.inside += f64::from(u8::from(squared < 7.815));
+    }
+    tallies
+}
+
+fn spot(pixel: Pixel, flux: f64, distance_m: f64, rng: &mut Pcg64) -> Spot {
+    let centre = Pixel::new(pixel.u + SIGMA_PX * normal(rng), pixel.v + SIGMA_PX * normal(rng));
+    let middle = (pixel.u.round() as u32, pixel.v.round() as u32);
+    Spot {
+        centre,
+        covariance_px2: Matrix2::from_diagonal_element(SIGMA_PX * SIGMA_PX),
+        // 2.6 times as far as (13) has it: as a contrast of 20 grey levels sees it.
+        area_px: (31.5 * 2.6 * 2.6 / (distance_m * distance_m)).max(1.0) as u32,
+        peak: 200,
+        saturated_px: 0,
+        flux,
+        background: 5.0,
+        middle,
+        extent: Extent { left: middle.0 - 1, top: middle.1 - 1, right: middle.0 + 1, bottom: middle.1 + 1 },
+    }
+}
+
+#[test]
+fn what_is_out_of_sight_is_not_held_against_a_pose() {
+    for airframe in [hexarotor(), quadrotor(), lanterns()] {
+        for masked in [false, true] {
+            let tallies = partly_seen(&airframe, 600, masked);
+            for (spots, tally) in tallies.iter().enumerate().filter(|(_, tally)| tally.views > 0.0) {
+                println!(
+                    "{:10} masked {masked:5} {spots} spots: {:4} views, {:4} whole, NEES {:6.2}, {:5.1} % inside",
+                    airframe.name(),
+                    tally.views,
+                    tally.whole,
+                    tally.squared_errors / tally.whole,
+                    100.0 * tally.inside / tally.whole,
+                );
+            }
+        }
+    }
+}

@@ -17,6 +17,8 @@ use crate::view::{GRAVITY_RAD, TILT_RAD, UNIT_SIGMA, View};
 pub(crate) const MOST_SPOTS: usize = 6;
 /// 95 % of the squared lengths of three normal numbers are below this.
 const INSIDE_95: f64 = 7.815;
+/// Spread of power of the LEDs of rendered frames, of its logarithm.
+const RENDERED_UNIT_SIGMA: f64 = 0.06;
 /// A squared error larger than this counts as this: one wrong mode must not hide the rest.
 const CAP: f64 = 1000.0;
 
@@ -126,7 +128,7 @@ pub(crate) fn run(
 ) -> ([Tally; MOST_SPOTS + 1], usize) {
     let mut rng = Pcg64::new(7, 11);
     let camera = source.camera();
-    let unit_sigma = if source == Source::Rendered { 0.06 } else { UNIT_SIGMA };
+    let unit_sigma = if source == Source::Rendered { RENDERED_UNIT_SIGMA } else { UNIT_SIGMA };
     let tilt_sigma_rad = libm::hypot(TILT_RAD, GRAVITY_RAD);
     // The airframe is exact, no LED is dead, and how it tilts and what noise pixels have is known.
     let pose = pose::Settings {
@@ -134,6 +136,7 @@ pub(crate) fn run(
         marker_sigma_m: 0.0,
         unit_sigma,
         missed: 1e-5,
+        lobe_sigma: 0.002,
         ..pose::Settings::default()
     };
     let spots = spots::Settings { noise: render::noise(&render::PAPER), ..spots::Settings::default() };
@@ -141,14 +144,15 @@ pub(crate) fn run(
     let mut locator = Locator::new(camera.clone(), airframe, None, settings).expect("a locator");
     let mut tallies = [Tally::default(); MOST_SPOTS + 1];
     let mut nothing = 0;
-    let mut add = |view: &View, located: &Located, markers: &[(usize, f64)]| {
+    let mut add = |view: &View, located: &Located| {
         let spots = |neighbour: &Neighbour| located.members(neighbour).len();
         let Some(neighbour) = located.neighbours.iter().max_by_key(|neighbour| spots(neighbour)) else {
             nothing += 1;
             return;
         };
         let turns = airframe.markers().len() as f64;
-        tallies[spots(neighbour)].add(view, neighbour, turns, view.bound_m2(airframe, markers, unit_sigma));
+        let bound_m2 = view.bound_m2(airframe, &view.matched(airframe, located), unit_sigma);
+        tallies[spots(neighbour)].add(view, neighbour, turns, bound_m2);
     };
     let mut done = 0;
     while done < count {
@@ -159,14 +163,14 @@ pub(crate) fn run(
                 {
                     let located = locator.locate(&frame.image.view(), Some(&view.gravity), &mut |_| ());
                     let located = located.expect("the camera's size");
-                    add(&view, located, &view.matched(airframe, located));
+                    add(&view, located);
                     done += 1;
                 }
             }
             Source::Geometry { sigma_px } => {
                 let view = View::draw(distance_m, &mut rng);
-                let (spots, markers) = view.spots(airframe, &camera, sigma_px, &mut rng);
-                add(&view, locator.locate_spots(&spots, Some(&view.gravity), &mut |_| ()), &markers);
+                let spots = view.spots(airframe, &camera, sigma_px, &mut rng);
+                add(&view, locator.locate_spots(&spots, Some(&view.gravity), &mut |_| ()));
                 done += 1;
             }
         }

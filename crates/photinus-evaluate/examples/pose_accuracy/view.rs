@@ -15,9 +15,11 @@ pub(crate) const TILT_RAD: f64 = 4.0 * TAU / 360.0;
 pub(crate) const GRAVITY_RAD: f64 = 0.3 * TAU / 360.0;
 /// Spread of LEDs in pure geometry: sigma of the logarithm of their power.
 pub(crate) const UNIT_SIGMA: f64 = 0.1;
-/// Error of the logarithm of light in pure geometry, per pixel of error of the centre: of a Gaussian spot of sigma s px with N
-/// electrons the centre is known to s / root N and the light to 1 / root N.
-const LOG_LIGHT_PER_PX: f64 = 1.5;
+/// Error of the logarithm of light in pure geometry, of all and times the root of the light, as rendered frames have it.
+const LOG_LIGHT_SIGMA: f64 = 0.05;
+const LIGHT_NOISE: f64 = 0.95;
+/// Area of a spot times the square of the distance: 2.6 times as far as the paper's (13) has it, as rendered frames are.
+const AREA_PX_M2: f64 = 31.5 * 2.6 * 2.6;
 /// Light of an LED straight ahead at 1 m in pure geometry, grey levels, ...
 const POWER: f64 = 25_000.0;
 /// ... and that at which a marker is found half of the time, by itself and beside one that outshines it: as rendered frames
@@ -25,6 +27,14 @@ const POWER: f64 = 25_000.0;
 const FAINTEST: f64 = 50.0;
 const CERTAIN: f64 = 140.0;
 const OUTSHONE: f64 = 0.2;
+
+/// A spot's marker, and how sure its direction and the logarithm of its light are.
+#[derive(Clone, Copy)]
+pub(crate) struct Matched {
+    pub(crate) marker: usize,
+    sigma_rad: f64,
+    log_light_sigma: f64,
+}
 
 /// A neighbour, and what is known of the vertical.
 pub(crate) struct View {
@@ -41,9 +51,9 @@ fn uniform(rng: &mut Pcg64, low: f64, high: f64) -> f64 {
     Uniform::new(low, high).expect("a range").sample(rng)
 }
 
-/// Spread of the logarithm of light in pure geometry: of the LEDs and of its measurement.
-pub(crate) fn log_light_sigma(sigma_px: f64) -> f64 {
-    libm::hypot(UNIT_SIGMA, LOG_LIGHT_PER_PX * sigma_px)
+/// Error of the logarithm of a light in pure geometry.
+fn log_light_sigma(light: f64) -> f64 {
+    libm::hypot(LOG_LIGHT_SIGMA, LIGHT_NOISE / light.sqrt())
 }
 
 /// The probability that a marker is found, by its light and by its share of that of the brightest beside it.
@@ -72,18 +82,18 @@ impl View {
         }
     }
 
-    /// The spots that show, each with an error of `sigma_px`, and their markers with the sigma of each direction, rad.
+    /// The spots that show, each with an error of `sigma_px`.
     pub(crate) fn spots(
         &self,
         airframe: &Airframe,
         camera: &Camera,
         sigma_px: f64,
         rng: &mut Pcg64,
-    ) -> (Vec<Spot>, Vec<(usize, f64)>) {
+    ) -> Vec<Spot> {
         let camera_m = -(self.camera_from_body.inverse() * self.position_m);
         let shining = (0..airframe.markers().len()).map(|marker| airframe.intensity(marker, &camera_m));
         let brightest = shining.fold(0.0, f64::max);
-        let (mut spots, mut markers) = (Vec::new(), Vec::new());
+        let mut spots = Vec::new();
         for marker in 0..airframe.markers().len() {
             let arm_m = airframe.markers()[marker].position_m;
             let intensity = airframe.intensity(marker, &camera_m);
@@ -91,7 +101,7 @@ impl View {
             if uniform(rng, 0.0, 1.0) > is_found(light, intensity / brightest) {
                 continue;
             }
-            let flux = light * libm::exp(log_light_sigma(sigma_px) * normal(rng));
+            let flux = light * libm::exp(libm::hypot(UNIT_SIGMA, log_light_sigma(light)) * normal(rng));
             let place = self.camera_from_body * arm_m + self.position_m;
             let Some(pixel) = Bearing::new(place).and_then(|bearing| camera.pixel(&bearing)) else {
                 continue;
@@ -99,12 +109,10 @@ impl View {
             let centre = Pixel::new(pixel.u + sigma_px * normal(rng), pixel.v + sigma_px * normal(rng));
             let (u, v) = (pixel.u.round() as u32, pixel.v.round() as u32);
             let extent = Extent { left: u.max(1) - 1, top: v.max(1) - 1, right: u + 1, bottom: v + 1 };
-            // An equidistant lens: the same angle per pixel along the radius, nearly so across it.
-            markers.push((marker, sigma_px * 3.7673e-3));
             spots.push(Spot {
                 centre,
                 covariance_px2: Matrix2::identity() * (sigma_px * sigma_px),
-                area_px: 4,
+                area_px: (AREA_PX_M2 / self.position_m.norm_squared()).max(1.0) as u32,
                 peak: 200,
                 saturated_px: 0,
                 flux,
@@ -113,11 +121,11 @@ impl View {
                 extent,
             });
         }
-        (spots, markers)
+        spots
     }
 
-    /// The markers behind the spots, each with the sigma of its direction, rad.
-    pub(crate) fn matched(&self, airframe: &Airframe, located: &Located) -> Vec<(usize, f64)> {
+    /// The markers behind the spots.
+    pub(crate) fn matched(&self, airframe: &Airframe, located: &Located) -> Vec<Matched> {
         let nearest = |sighting: &Sighting| {
             let gap = |marker: &usize| {
                 let place = self.camera_from_body * airframe.markers()[*marker].position_m + self.position_m;
@@ -125,17 +133,16 @@ impl View {
             };
             (0..airframe.markers().len()).min_by(|a, b| gap(a).total_cmp(&gap(b))).expect("a marker")
         };
-        let sigma_rad = |sighting: &Sighting| (sighting.covariance_rad2.trace() / 2.0).sqrt();
-        located.sightings.iter().map(|sighting| (nearest(sighting), sigma_rad(sighting))).collect()
+        let matched = |sighting: &Sighting| Matched {
+            marker: nearest(sighting),
+            sigma_rad: (sighting.covariance_rad2.trace() / 2.0).sqrt(),
+            log_light_sigma: sighting.log_light.expect("a spot with light").sigma,
+        };
+        located.sightings.iter().map(matched).collect()
     }
 
     /// The Cramer-Rao bound of the variance of distance, by numeric derivatives of all that is measured or believed.
-    pub(crate) fn bound_m2(
-        &self,
-        airframe: &Airframe,
-        markers: &[(usize, f64)],
-        log_light_sigma: f64,
-    ) -> f64 {
+    pub(crate) fn bound_m2(&self, airframe: &Airframe, markers: &[Matched], unit_sigma: f64) -> f64 {
         let measured = |step: &Vector6<f64>| -> Vec<f64> {
             let position_m = self.position_m + step.fixed_rows::<3>(0);
             let turn = Rotation3::new(step.fixed_rows::<3>(3).into_owned());
@@ -143,15 +150,20 @@ impl View {
             let camera_m = -(camera_from_body.inverse() * position_m);
             let mut numbers = Vec::new();
             let mut lights = Vec::new();
-            for &(marker, sigma_rad) in markers {
+            let (mut light_sum, mut weight_sum) = (0.0, 0.0);
+            for &Matched { marker, sigma_rad, log_light_sigma } in markers {
                 let arm_m = airframe.markers()[marker].position_m;
                 let seen = (camera_from_body * arm_m + position_m).normalize();
                 numbers.extend(seen.iter().map(|number| number / sigma_rad));
                 let intensity = airframe.intensity(marker, &camera_m).max(1e-6);
-                lights.push(libm::log(intensity) - libm::log((camera_m - arm_m).norm_squared()));
+                let light = libm::log(intensity) - libm::log((camera_m - arm_m).norm_squared());
+                let variance = unit_sigma * unit_sigma + log_light_sigma * log_light_sigma;
+                lights.push((light, variance.sqrt()));
+                light_sum += light / variance;
+                weight_sum += 1.0 / variance;
             }
-            let mean = lights.iter().sum::<f64>() / lights.len() as f64;
-            numbers.extend(lights.iter().map(|light| (light - mean) / log_light_sigma));
+            // The power of the LEDs is not known.
+            numbers.extend(lights.iter().map(|(light, sigma)| (light - light_sum / weight_sum) / sigma));
             let up = camera_from_body.inverse() * -Vector3::y();
             let tilt = libm::hypot(TILT_RAD, GRAVITY_RAD);
             numbers.extend([up.x / tilt, up.y / tilt]);

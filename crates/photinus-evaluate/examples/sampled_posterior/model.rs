@@ -9,11 +9,10 @@ use photinus::airframe::Airframe;
 use photinus::locator::Sighting;
 use photinus::ranging::Interval;
 
-/// The estimator's tolerances: of lobes (1 is one LED straight ahead), the intensity taken for none, the error of the logarithm
-/// of light per pixel of error of the centre, how often a marker that must show does not.
+/// The estimator's tolerances: of lobes (1 is one LED straight ahead), the intensity taken for none, how often a marker that
+/// must show does not.
 pub(crate) const LOBE_SIGMA: f64 = 0.02;
 const DARK: f64 = 0.01;
-const LOG_LIGHT_PER_PX: f64 = 1.5;
 pub(crate) const MISSED: f64 = 0.001;
 /// A marker this much fainter than another is as often as not taken for its reflection, up to so many times the faintest light.
 const OUTSHONE: f64 = 0.198;
@@ -38,6 +37,7 @@ pub(crate) struct Seen {
 impl Seen {
     pub(crate) fn of(sighting: &Sighting) -> Self {
         let (direction, covariance_rad2) = (*sighting.bearing.vector(), sighting.covariance_rad2);
+        let light = sighting.log_light.expect("spots with light");
         let aside = direction.cross(&Vector3::new(0.3, 1.0, 0.2)).normalize();
         let across = Matrix2x3::from_rows(&[aside.transpose(), direction.cross(&aside).transpose()]);
         let flat: Matrix2<f64> = across * covariance_rad2 * across.transpose();
@@ -45,8 +45,8 @@ impl Seen {
         Self {
             direction,
             whitening: root.try_inverse().expect("a covariance") * across,
-            log_light: libm::log(sighting.spot.flux),
-            log_light_variance: (LOG_LIGHT_PER_PX * sighting.spot.sigma_px()).powi(2),
+            log_light: light.value,
+            log_light_variance: light.sigma * light.sigma,
             variance_rad2: covariance_rad2.trace() / 2.0,
             resolution_rad: RESOLUTION_PX * sighting.rad_per_px,
         }

@@ -39,7 +39,7 @@ impl View {
         let camera = camera();
         loop {
             let neighbour = Neighbour::draw(distance_m, rng);
-            let (spots, _) = neighbour.spots(airframe, &camera, SIGMA_PX, rng);
+            let spots = neighbour.spots(airframe, &camera, SIGMA_PX, rng);
             if let Ok(spots) = <[Spot; 2]>::try_from(spots) {
                 return Self { neighbour, spots };
             }

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! frame -> spots     what is bright                         crate::spots
-//!       -> sightings where each spot lies, how sure, how far  sighting
+//!       -> sightings where each spot lies, how sure, how far  sighting; how bright, brightness
 //!       -> groups    which spots are one neighbour          grouping, by matching
 //!       -> poses     where, how turned, between which bounds  posing, by matching, crate::pose and crate::ranging
 //! ```
@@ -12,6 +12,7 @@
 //! together and which markers they may be. From there [`crate::pose`] finds every pose that explains them and how sure each
 //! is; the bounds are strict and come from [`crate::ranging::DistanceBounds`] and spot sizes alone.
 
+mod brightness;
 mod grouping;
 mod matching;
 mod pairs;
@@ -217,6 +218,7 @@ pub struct Locator {
     poser: Poser,
     groups: Groups,
     group: Vec<usize>,
+    order: Vec<usize>,
     located: Located,
 }
 
@@ -243,6 +245,7 @@ impl Locator {
             poser: Poser::new(airframe, settings.pose, &settings.spots)?,
             groups: Groups::default(),
             group: Vec::with_capacity(airframe.markers().len()),
+            order: Vec::new(),
             located: Located::default(),
         })
     }
@@ -289,6 +292,7 @@ impl Locator {
         finished(Stage::Spots);
         let spots = detections.spots.iter().map(|spot| (spot, None));
         sight_all(&self.camera, self.curve.as_ref(), spots, &mut self.located);
+        brightness::tell(&mut self.located.sightings, &mut self.order);
         finished(Stage::Bearings);
         Ok(self.tell_neighbours(gravity, finished))
     }
@@ -324,6 +328,7 @@ impl Locator {
         self.located.rejected.clear();
         finished(Stage::Spots);
         sight_all(&self.camera, self.curve.as_ref(), spots, &mut self.located);
+        brightness::tell(&mut self.located.sightings, &mut self.order);
         finished(Stage::Bearings);
         self.tell_neighbours(gravity, finished)
     }

@@ -2,21 +2,14 @@
 
 use super::Sighting;
 use crate::camera::{Camera, largest_rad_per_px};
-use crate::pose::LogLight;
 use crate::ranging::SpotCurve;
 use crate::spots::Spot;
 
-/// Error of the logarithm of a spot's light per error of its centre, 1/px (rendered frames, beside other spots).
-const LOG_SIGMA_PER_PX: f64 = 1.5;
-/// Light that a saturated pixel hides, as a logarithm, up to so many pixels; and how far that is known for every one (rendered
-/// frames).
-const HIDDEN_LOG: f64 = 0.037;
-const MOST_HIDING_PX: u32 = 7;
-const HIDDEN_LOG_SIGMA: f64 = 0.011;
 /// How much the scale of the image may grow across half a spot: what a bound is widened by.
 const SCALE_CHANGE: f64 = 1.05;
 
-/// Sights a spot that was seen to blink `signal`, if any; `None` outside the camera's field.
+/// Sights a spot that was seen to blink `signal`, if any; `None` outside the camera's field. How bright it is beside others
+/// is told later.
 pub(super) fn sight(
     camera: &Camera,
     curve: Option<&SpotCurve>,
@@ -30,26 +23,13 @@ pub(super) fn sight(
     Some(Sighting {
         spot: spot.clone(),
         signal,
-        log_light: log_light(spot),
+        log_light: None,
         rad_per_px,
         bearing,
         covariance_rad2: spot_covariance_rad2 + calibration,
         spot_covariance_rad2,
         bound_rad: (farthest_px(spot) * rad_per_px * SCALE_CHANGE).min(std::f64::consts::PI),
         range: curve.and_then(|curve| curve.distances(spot.area_px.max(1))),
-    })
-}
-
-/// The light of a spot with what its saturated core hides put back; `None` where a detector measures none.
-fn log_light(spot: &Spot) -> Option<LogLight> {
-    let hidden = HIDDEN_LOG * f64::from(spot.saturated_px.min(MOST_HIDING_PX));
-    (spot.flux > 0.0).then(|| LogLight {
-        value: libm::log(spot.flux) + hidden,
-        // What is uncertain of the centre is so of the light: noise, and other light in the window.
-        sigma: libm::hypot(
-            LOG_SIGMA_PER_PX * spot.sigma_px(),
-            HIDDEN_LOG_SIGMA * f64::from(spot.saturated_px),
-        ),
     })
 }
 

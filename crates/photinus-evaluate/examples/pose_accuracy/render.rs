@@ -4,7 +4,6 @@ use std::path::Path;
 
 use nalgebra::{Isometry3, Rotation3, Translation3, UnitQuaternion, Vector3};
 use photinus::airframe::Airframe;
-use photinus::spots::Noise;
 use photinus_sim::motion::{Motion, Recorded};
 use photinus_sim::optics::{Gaussian, PointSpread};
 use photinus_sim::preset::Preset;
@@ -127,10 +126,4 @@ pub(crate) fn batch(
     let scene = scene(setup, airframe.name(), seed, poses);
     let mut simulator = Simulator::new(&scene, 0).expect("a camera");
     views.into_iter().zip(simulator.frames()).collect()
-}
-
-/// Noise of the pixels of its camera.
-pub(crate) fn noise(setup: &Setup) -> Noise {
-    let sensor = scene(setup, "hexarotor-0.4", 0, None).preset.sensor;
-    Noise { read_dn: sensor.read_noise_e / sensor.electrons_per_dn, shot: 1.0 / sensor.electrons_per_dn }
 }

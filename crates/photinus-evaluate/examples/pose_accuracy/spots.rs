@@ -1,7 +1,7 @@
 //! Spots of rendered frames against their markers' true places -> errors by class, beside what each spot claims.
 
 use photinus::airframe::Airframe;
-use photinus::spots::{self, Detector, Spot};
+use photinus::spots::{Detector, Settings, Spot};
 use photinus_io::dataset::TruthLed;
 use rand_pcg::Pcg64;
 
@@ -83,8 +83,7 @@ pub(crate) fn print(setup: &Setup, airframes: &[Airframe], count: usize) {
 
 fn run(setup: &Setup, airframe: &Airframe, distance_m: f64, count: usize) -> ([Tally; 9], Shared) {
     let mut rng = Pcg64::new(7, 11);
-    let settings = spots::Settings { noise: render::noise(setup), ..spots::Settings::default() };
-    let mut detector = Detector::new(settings).expect("settings with a meaning");
+    let mut detector = Detector::new(Settings::default()).expect("settings with a meaning");
     let (mut tallies, mut shared) = ([Tally::default(); 9], Shared::default());
     for batch in 0..count.div_ceil(render::BATCH) {
         for (_, frame) in render::batch(setup, airframe, distance_m, (batch * render::BATCH) as u64, &mut rng)

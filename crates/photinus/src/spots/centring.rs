@@ -39,7 +39,7 @@ const WORST_CORE_PX: f64 = 0.22;
 const WORST_HALO_PX: f64 = 0.1;
 /// Error of the centre of a saturated core of no pixels at all, px; it falls with the root of their number. On rendered
 /// frames, where neither core nor halo tell, 0.08 for one to five pixels.
-const SATURATION_BLUR_PX: f64 = 0.24;
+const SATURATION_BLUR_PX: f64 = 0.13;
 /// Error of the centre of a spot whose window is cut short by another spot, or that should be a core in a halo and is
 /// not: two LEDs in one, px.
 const CROWDED_BLUR_PX: f64 = 0.07;
@@ -66,6 +66,8 @@ pub(super) struct Seen<'a> {
     pub(super) flux: f64,
     /// Where another part lies whose halo reaches into the window.
     pub(super) beside: Option<Pixel>,
+    /// Whether core and halo may be looked for: it takes time.
+    pub(super) models: bool,
 }
 
 type Placed = (Pixel, Matrix2<f64>);
@@ -88,8 +90,10 @@ impl Seen<'_> {
 
     /// A spot without a saturated pixel.
     fn clear(&self, patch: &Patch) -> Option<Placed> {
-        let may_be_narrow = self.beside.is_some() || patch.share_in_four(self.part.guess) >= NARROW_SHARE;
-        let core = if may_be_narrow { self.core(patch) } else { None };
+        let is_narrow = patch.share_in_four(self.part.guess) >= NARROW_SHARE;
+        let may_be_narrow = is_narrow || self.beside.is_some();
+        let core = if self.models && may_be_narrow { self.core(patch) } else { None };
+        let core = core.filter(|core| is_narrow || core.fit.misfit < LARGEST_MISFIT);
         // A wider core that stands alone is the window's.
         let is_wide = self.beside.is_none() && core.is_some_and(|core| core.width_px > WIDEST_CORE_PX);
         let worst_px2 = 2.0 * WORST_CORE_PX * WORST_CORE_PX;
@@ -106,32 +110,44 @@ impl Seen<'_> {
         let skirt =
             skirt::fit(patch, self.part.guess, radius_px as f32, self.lowest_saturated(), self.noise());
         let skirt = skirt.filter(|fit| fit.misfit < LARGEST_MISFIT && fit.covariance_px2.trace() < worst_px2);
-        if let Some(fit) = skirt.filter(|fit| fit.misfit < GAUSSIAN_MISFIT) {
+        if let Some(fit) = skirt.filter(|fit| fit.misfit < GAUSSIAN_MISFIT || !self.models) {
             return Some(placed(fit));
         }
-        let light_px = f64::from(self.lowest_saturated());
-        let is_small = self.part.outline.saturated_px <= MOST_SATURATED_PX;
-        let core = if is_small { self.core(patch) } else { None };
-        let core = core.filter(|core| core.light < OVERFLOW * light_px);
-        let core = core.map(|core| core.fit).filter(|fit| fit.misfit < OVERFLOW_MISFIT);
-        let balanced = self.balanced(patch, false);
-        let halo = if self.beside.is_none() { self.halo(patch) } else { None };
+        let (core, halo) = if self.models { (self.saturated_core(patch), self.halo(patch)) } else { (None, None) };
         let surer = |a: Fit, b: Fit| if a.covariance_px2.trace() < b.covariance_px2.trace() { a } else { b };
-        [core, halo, skirt].into_iter().flatten().reduce(surer).map(placed).or(balanced)
+        let found = [core, halo, skirt].into_iter().flatten().reduce(surer).map(placed);
+        found.or_else(|| {
+            patch.show_overflow();
+            self.balanced(patch, false)
+        })
+    }
+
+    /// By core and halo, where so few pixels are saturated that no charge may have overflowed.
+    fn saturated_core(&self, patch: &Patch) -> Option<Fit> {
+        if self.part.outline.saturated_px > MOST_SATURATED_PX {
+            return None;
+        }
+        let most = OVERFLOW * f64::from(self.lowest_saturated());
+        let core = self.core(patch).filter(|core| core.light < most);
+        core.map(|core| core.fit).filter(|fit| fit.misfit < OVERFLOW_MISFIT)
     }
 
     /// By core and halo, next to the halo of a spot beside.
     fn core(&self, patch: &Patch) -> Option<halo::Core> {
         let guess = halo::Guess { centre: self.part.guess, flux: self.flux, beside: self.beside };
-        halo::fit(patch, &guess, self.reach_px(), self.lowest_saturated(), self.told)
+        halo::fit(patch, &guess, self.reach_px(), self.lowest_saturated(), self.noise())
     }
 
     /// By the halo alone: no charge overflows further than into the pixels that touch a full one, and no narrow core shines
     /// further.
     fn halo(&self, patch: &mut Patch) -> Option<Fit> {
+        if self.beside.is_some() {
+            return None;
+        }
         patch.hide_overflow(self.lowest_saturated());
-        let fit = skirt::fit(patch, self.part.guess, self.reach_px(), self.lowest_saturated(), self.told);
-        fit.filter(|fit| fit.covariance_px2.trace() < 2.0 * WORST_HALO_PX * WORST_HALO_PX)
+        let fit = skirt::fit(patch, self.part.guess, self.reach_px(), self.lowest_saturated(), self.noise());
+        let worst_px2 = 2.0 * WORST_HALO_PX * WORST_HALO_PX;
+        fit.filter(|fit| fit.misfit < OVERFLOW_MISFIT && fit.covariance_px2.trace() < worst_px2)
     }
 
     /// By the parabola through the logarithm of the light within `radius_px`.

@@ -43,7 +43,8 @@ impl Meter {
         let noise = settings.noise;
         let dark = (noise.read_dn * noise.read_dn + 1.0 / 12.0) as f32;
         let told = PixelVariance { dark, shot: noise.shot as f32 };
-        let (centre, covariance_px2) = Seen { part, window, told, flux, beside }.centre(&mut self.patch);
+        let models = matches!(settings.brightness, Brightness::Contrast(_));
+        let (centre, covariance_px2) = Seen { part, window, told, flux, beside, models }.centre(&mut self.patch);
         Ok(Spot {
             centre,
             covariance_px2,

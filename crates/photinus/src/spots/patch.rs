@@ -52,6 +52,7 @@ impl Patch {
         (self.left, self.top) = (u - reach, v - reach);
         self.rows = (2 * reach + 1) as usize;
         self.stride = self.rows.next_multiple_of(LANES);
+        self.before.clear();
         self.signal.clear();
         self.signal.resize(self.rows * self.stride, 0.0);
         if self.before.capacity() < self.signal.len() {
@@ -85,6 +86,14 @@ impl Patch {
                     touching.iter_mut().for_each(|signal| *signal = signal.max(saturation));
                 }
             }
+        }
+    }
+
+    /// Undoes [`Self::hide_overflow`].
+    pub(super) fn show_overflow(&mut self) {
+        if !self.before.is_empty() {
+            self.signal.copy_from_slice(&self.before);
+            self.before.clear();
         }
     }
 

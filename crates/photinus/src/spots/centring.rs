@@ -98,7 +98,7 @@ impl Seen<'_> {
         let is_wide = self.beside.is_none() && core.is_some_and(|core| core.width_px > WIDEST_CORE_PX);
         let worst_px2 = 2.0 * WORST_CORE_PX * WORST_CORE_PX;
         let core = core.filter(|core| !is_wide && core.fit.covariance_px2.trace() < worst_px2);
-        let is_unclear = may_be_narrow && !is_wide;
+        let is_unclear = is_narrow && !is_wide;
         let crowded = || if self.window.crowded { self.summit(patch, SUMMIT_PX) } else { None };
         core.map(|core| placed(core.fit)).or_else(crowded).or_else(|| self.balanced(patch, is_unclear))
     }

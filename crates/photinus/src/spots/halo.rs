@@ -125,7 +125,7 @@ pub(super) fn fit(
     }
     let misfit = sums.squares() / f64::from(sums.pixels - UNKNOWNS as f32);
     let axes = SMatrix::<f64, UNKNOWNS, 2>::identity();
-    let covariance_px2: Matrix2<f64> = factor.solve(&axes).fixed_view::<2, 2>(0, 0).into_owned() * misfit;
+    let covariance_px2: Matrix2<f64> = factor.solve(&axes).fixed_view::<2, 2>(0, 0).into_owned() * misfit.max(1.0);
     let centre = Pixel::new(guess.u + off.x, guess.v + off.y);
     Some(Core {
         fit: Fit { centre, covariance_px2, misfit },

@@ -66,6 +66,8 @@ pub(crate) struct Difference {
     pub(crate) standard_error_sigmas: f64,
     /// The mixture's standard deviation over the samples'.
     pub(crate) sigma_ratio: f64,
+    /// The standard error of the samples' variance over itself, by batches of the walk.
+    pub(crate) variance_error: f64,
     /// The largest difference of the weight below a cut.
     pub(crate) weight: f64,
 }
@@ -75,13 +77,16 @@ impl Difference {
     pub(crate) fn along(direction: &Vector3<f64>, samples: &[Part], modes: &[Part]) -> Self {
         let (walked, told) = (Moments::of(samples), Moments::of(modes));
         let sigma_m = walked.sigma_m(direction);
-        let batches = samples.chunks_exact(samples.len() / BATCHES);
-        let off = |batch: &[Part]| (Moments::of(batch).mean_m - walked.mean_m).dot(direction) / sigma_m;
-        let between: f64 = batches.map(|batch| off(batch).powi(2)).sum();
+        let batches = || samples.chunks_exact(samples.len() / BATCHES).map(Moments::of);
+        let off = |batch: &Moments| (batch.mean_m - walked.mean_m).dot(direction) / sigma_m;
+        let square =
+            |batch: &Moments| (batch.sigma_m(direction) / sigma_m).powi(2) + off(batch).powi(2) - 1.0;
+        let error = |squares: f64| (squares / (BATCHES * (BATCHES - 1)) as f64).sqrt();
         Self {
             mean_sigmas: (told.mean_m - walked.mean_m).dot(direction) / sigma_m,
-            standard_error_sigmas: (between / (BATCHES * (BATCHES - 1)) as f64).sqrt(),
+            standard_error_sigmas: error(batches().map(|batch| off(&batch).powi(2)).sum()),
             sigma_ratio: told.sigma_m(direction) / sigma_m,
+            variance_error: error(batches().map(|batch| square(&batch).powi(2)).sum()),
             weight: largest_gap(direction, samples, modes),
         }
     }

@@ -3,7 +3,7 @@
 //! `cargo run --release -p photinus-evaluate --example sampled_posterior [picture.png]`
 //!
 //! A plain Metropolis walk over a density that is written down anew from its description. For each view and direction: how
-//! far the mean is from that of the samples, in standard deviations of the posterior; the ratio of the standard deviations;
+//! far the mean is from that of the samples, in standard deviations of the posterior; the ratio of the standard deviations, and how sure that of the samples is (of the variance);
 //! the largest difference of the weight below a cut.
 
 #![expect(clippy::print_stdout, reason = "an example prints its table")]
@@ -29,10 +29,10 @@ const VIEWS: usize = 4;
 
 fn main() -> Result<()> {
     println!(
-        "                           along the line of sight          across it                  weight elsewhere"
+        "                           along the line of sight                  across it                          weight elsewhere"
     );
     println!(
-        "airframe   range  view   mean (error)  sigma  weight   mean (error)  sigma  weight   samples  modes"
+        "airframe   range  view   mean (error)  sigma (error)  weight   mean (error)  sigma (error)  weight   samples  modes"
     );
     let mut drawn = Vec::new();
     for airframe in [view::hexarotor(), view::quadrotor()] {
@@ -61,6 +61,8 @@ fn main() -> Result<()> {
 }
 
 fn columns(difference: &Difference) -> String {
-    let Difference { mean_sigmas, standard_error_sigmas, sigma_ratio, weight } = difference;
-    format!("{mean_sigmas:+7.3} ({standard_error_sigmas:.3}) {sigma_ratio:6.3} {weight:7.3}")
+    let Difference { mean_sigmas, standard_error_sigmas, sigma_ratio, variance_error, weight } = difference;
+    format!(
+        "{mean_sigmas:+7.3} ({standard_error_sigmas:.3}) {sigma_ratio:6.3} ({variance_error:.3}) {weight:7.3}"
+    )
 }

@@ -1,12 +1,12 @@
 //! How bright a spot is, and how sure that is.
 //!
-//! In: sightings with their spots. Out: the logarithm of the light of each, with what a saturated core hides put back. Its
+//! In: sightings with their spots, and the reflections among what was rejected. Out: the logarithm of the light of each, with what a saturated core hides put back. Its
 //! variance was fitted to rendered frames (four ranges, two airframes, 39 000 spots): a part that all have, one that falls
-//! with the light, and the light of others in the window.
+//! with the light, the light of others in the window, and what they cut off it.
 
 use super::Sighting;
 use crate::pose::LogLight;
-use crate::spots::Spot;
+use crate::spots::{Reason, Rejected, Spot};
 
 /// Error of a logarithm of light that all spots have: where in a pixel they fall, how much of the halo is in the window.
 const SIGMA: f64 = 0.05;
@@ -16,12 +16,15 @@ const NOISE: f64 = 0.95;
 const OTHERS: f64 = 0.11;
 const FALL_PX: f64 = 3.0;
 const FAR_PX: f64 = 15.0;
+/// Error where another spot, or a reflection, makes the window narrow, at no distance, and how far away that is, px.
+const NARROWED: f64 = 0.25;
+const NARROWED_PX: f64 = 4.2;
 /// Light that a saturated pixel hides, as a logarithm, up to so many pixels; beyond them that is unsure.
 const HIDDEN_LOG: f64 = 0.037;
 const MOST_HIDING_PX: u32 = 7;
 
 /// Tells the light of all sightings. `order` is room to work in.
-pub(super) fn tell(sightings: &mut [Sighting], order: &mut Vec<usize>) {
+pub(super) fn tell(sightings: &mut [Sighting], rejected: &[Rejected], order: &mut Vec<usize>) {
     order.clear();
     order.extend(0..sightings.len());
     order.sort_unstable_by(|&a, &b| {
@@ -32,21 +35,29 @@ pub(super) fn tell(sightings: &mut [Sighting], order: &mut Vec<usize>) {
     }
     for (place, &own) in order.iter().enumerate() {
         for &other in &order[place + 1..] {
-            let (du, dv) = between(&sightings[own].spot, &sightings[other].spot);
-            if dv > FAR_PX {
+            let [here, there] = [own, other].map(|index| sightings[index].spot.centre);
+            if there.v - here.v > FAR_PX {
                 break;
             }
-            let near = libm::hypot(du, dv);
-            if near < FAR_PX {
-                disturb(sightings, own, other, near);
-                disturb(sightings, other, own, near);
+            let gap_px = libm::hypot(there.u - here.u, there.v - here.v);
+            if gap_px < FAR_PX {
+                let [own_light, other_light] = [own, other].map(|index| sightings[index].log_light);
+                disturb(&mut sightings[own], other_light, gap_px);
+                disturb(&mut sightings[other], own_light, gap_px);
             }
         }
     }
-}
-
-fn between(a: &Spot, b: &Spot) -> (f64, f64) {
-    (b.centre.u - a.centre.u, b.centre.v - a.centre.v)
+    for reflection in rejected.iter().filter(|rejected| rejected.reason == Reason::Reflection) {
+        let there = reflection.centre;
+        let first = order.partition_point(|&index| sightings[index].spot.centre.v < there.v - FAR_PX);
+        for &index in &order[first..] {
+            let here = sightings[index].spot.centre;
+            if here.v > there.v + FAR_PX {
+                break;
+            }
+            disturb(&mut sightings[index], None, libm::hypot(there.u - here.u, there.v - here.v));
+        }
+    }
 }
 
 /// A spot by itself; `None` where a detector measures no light.
@@ -59,10 +70,11 @@ fn alone(spot: &Spot) -> Option<LogLight> {
     })
 }
 
-/// What the light of another spot adds to the error of one.
-fn disturb(sightings: &mut [Sighting], own: usize, other: usize, near_px: f64) {
-    let Some(others) = sightings[other].log_light else { return };
-    if let Some(LogLight { value, sigma }) = &mut sightings[own].log_light {
-        *sigma = libm::hypot(*sigma, OTHERS * libm::exp(others.value - *value - near_px / FALL_PX));
-    }
+/// What another spot of this light adds to the error of one.
+fn disturb(own: &mut Sighting, other: Option<LogLight>, gap_px: f64) {
+    let Some(LogLight { value, sigma }) = &mut own.log_light else { return };
+    let share = gap_px / NARROWED_PX;
+    let narrowed = NARROWED * libm::exp(-(share * share) * (share * share));
+    let within = other.map_or(0.0, |other| OTHERS * libm::exp(other.value - *value - gap_px / FALL_PX));
+    *sigma = libm::hypot(*sigma, libm::hypot(narrowed, within));
 }

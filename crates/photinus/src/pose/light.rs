@@ -5,6 +5,9 @@ use nalgebra::Vector6;
 use super::observation::LogLight;
 use super::problem::{Normal, Pose, Problem};
 
+/// Light tells no more than that of so many spots: lobes that are no cosines and lenses that darken towards their edge err alike
+/// for spots that are near each other.
+const INDEPENDENT: f64 = 4.0;
 /// A marker that shines with less than this towards the camera shines away.
 const DARK: f64 = 0.01;
 
@@ -32,6 +35,7 @@ impl Light {
         if let Some(LogLight { value, sigma }) = problem.known.power {
             light.add(1.0 / (sigma * sigma), value, &Vector6::zeros());
         }
+        let shared = (problem.used().count() as f64 / INDEPENDENT).max(1.0);
         let camera_in_body_m = pose.camera_in_body_m();
         let camera_from_body = pose.camera_from_body.matrix();
         let distance_m = pose.position_m.norm();
@@ -49,7 +53,7 @@ impl Light {
             }
             let lobe = problem.settings.lobe_sigma / shines;
             let unit = problem.settings.unit_sigma;
-            let variance = seen.sigma * seen.sigma + unit * unit + lobe * lobe;
+            let variance = (seen.sigma * seen.sigma + unit * unit + lobe * lobe) * shared;
             light.log_sigmas += 0.5 * libm::log(variance / (unit * unit));
             // The camera in the body frame moves by -R' distance delta, and by c x omega.
             let by_delta = camera_from_body * by_camera * -distance_m;

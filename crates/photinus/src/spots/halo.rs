@@ -94,10 +94,8 @@ pub(super) fn fit(
     let mut shape = SVector::from([f64::from(x), f64::from(y), 0.5 * flux, ln_core, halo, ln_halo, 0.0, 0.0]);
     let known =
         [(LN_CORE, ln_core, CORE_KNOWN), (LN_HALO, ln_halo, HALO_KNOWN), (LEVEL, 0.0, LEVEL_KNOWN_DN)];
-    let mut found = None;
-    for _ in 0..STEPS {
-        let sums = sums(patch, &shape, &window);
-        let (mut matrix, mut right) = sums.normal();
+    let solve = |sums: &Sums, shape: &SVector<f64, UNKNOWNS>, noise: f64| {
+        let (mut matrix, mut right) = sums.normal(noise);
         for (number, mean, sigma) in known {
             matrix[(number, number)] += 1.0 / (sigma * sigma);
             right[number] += (mean - shape[number]) / (sigma * sigma);
@@ -105,27 +103,34 @@ pub(super) fn fit(
         if beside.is_none() {
             matrix[(BESIDE, BESIDE)] = 1.0;
         }
-        let factor = matrix.cholesky()?;
-        let mut step = factor.solve(&right);
+        matrix.cholesky().map(|factor| (factor.solve(&right), factor))
+    };
+    let (mut step_px, mut last) = (f64::INFINITY, None);
+    for _ in 0..STEPS {
+        let sums = sums(patch, &shape, &window);
+        let (mut step, _) = solve(&sums, &shape, 1.0)?;
         for number in [X, Y, LN_CORE, LN_HALO] {
             step[number] = step[number].clamp(-LONGEST_STEP, LONGEST_STEP);
         }
+        let before = shape;
         shape += step;
-        let is_done = libm::hypot(step[X], step[Y]) < DONE_PX;
-        found = Some((factor, step, sums));
-        if is_done {
+        step_px = libm::hypot(step[X], step[Y]);
+        last = Some((before, sums));
+        if step_px < DONE_PX {
             break;
         }
     }
-    let (factor, step, sums) = found?;
+    let (before, sums) = last?;
     let off = Vector2::new(shape[X] - f64::from(x), shape[Y] - f64::from(y));
-    let settled = libm::hypot(step[X], step[Y]) < SETTLED_PX && off.norm() < f64::from(radius_px) / 2.0;
+    let settled = step_px < SETTLED_PX && off.norm() < f64::from(radius_px) / 2.0;
     if !(settled && sums.pixels >= FEWEST_PX && shape[CORE] > 0.0) {
         return None;
     }
-    let misfit = sums.squares() / f64::from(sums.pixels - UNKNOWNS as f32);
+    // What the residuals say of the noise widens what pixels tell, not what is known without them.
+    let misfit = sums.squares() / f64::from(sums.pixels - UNKNOWNS as f32 - 2.0);
+    let (_, factor) = solve(&sums, &before, misfit)?;
     let axes = SMatrix::<f64, UNKNOWNS, 2>::identity();
-    let covariance_px2: Matrix2<f64> = factor.solve(&axes).fixed_view::<2, 2>(0, 0).into_owned() * misfit.max(1.0);
+    let covariance_px2: Matrix2<f64> = factor.solve(&axes).fixed_view::<2, 2>(0, 0).into_owned();
     let centre = Pixel::new(guess.u + off.x, guess.v + off.y);
     Some(Core {
         fit: Fit { centre, covariance_px2, misfit },
@@ -151,8 +156,9 @@ struct Sums {
 }
 
 impl Sums {
-    fn normal(&self) -> (SMatrix<f64, UNKNOWNS, UNKNOWNS>, SVector<f64, UNKNOWNS>) {
-        let product = |row: usize, column: usize| f64::from(self.products[row][column]);
+    /// The normal equations where the variance of pixels is `noise` times what was taken.
+    fn normal(&self, noise: f64) -> (SMatrix<f64, UNKNOWNS, UNKNOWNS>, SVector<f64, UNKNOWNS>) {
+        let product = |row: usize, column: usize| f64::from(self.products[row][column]) / noise;
         (SMatrix::from_fn(product), SVector::from_fn(|row, _| product(row, UNKNOWNS)))
     }
 

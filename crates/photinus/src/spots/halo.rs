@@ -48,8 +48,8 @@ const LEVEL_KNOWN_DN: f64 = 3.0;
 const STEPS: usize = 4;
 /// Longest step of the centre, px, and of the logarithm of a width.
 const LONGEST_STEP: f64 = 0.4;
-/// A step shorter than this is the last, px.
-const DONE_PX: f64 = 0.002;
+/// A step shorter than this is the last, px: what is left is a tenth of it.
+const DONE_PX: f64 = 0.02;
 /// A last step longer than this has not settled, px.
 const SETTLED_PX: f64 = 0.05;
 
@@ -236,7 +236,7 @@ fn sums(patch: &Patch, shape: &SVector<f64, UNKNOWNS>, window: &Window) -> Sums 
     let saturation = Lanes::splat(window.saturation);
     let mut pixels = Lanes::default();
     // Slopes and residual of every four pixels, times the root of their weight.
-    let mut rows = [[Lanes::default(); UNKNOWNS + 1]; MOST_PX * MOST_PX / LANES];
+    let mut rows = [[[Lanes::default(); 3]; 3]; MOST_PX * MOST_PX / LANES];
     let mut count = 0;
     let reach = window.radius_px as usize + 1;
     let (first, last) = ((window.y as usize).saturating_sub(reach), window.y as usize + reach + 1);
@@ -250,6 +250,9 @@ fn sums(patch: &Patch, shape: &SVector<f64, UNKNOWNS>, window: &Window) -> Sums 
             let dy = row as f32 - window.y;
             let room = Lanes::splat(window.radius_px * window.radius_px - dy * dy);
             let shows = lanes::less(near, room) * lanes::less(signal, saturation);
+            if shows == Lanes::ZERO {
+                continue;
+            }
             let line = |line: &[f32; MOST_PX]| Lanes::splat(line[row]);
             let (core_y, place_y, width_y) = (line(&down.core), line(&down.by_place), line(&down.by_width));
             let (unit_core, unit_halo) = (core_x * core_y, halo_x * line(&down.halo));
@@ -257,30 +260,44 @@ fn sums(patch: &Patch, shape: &SVector<f64, UNKNOWNS>, window: &Window) -> Sums 
             let unit_beside = beside_x * line(&down.beside);
             let root = (shows / (dark + shot * lanes::positive(signal))).sqrt();
             rows[count] = [
-                root * (core * place_x * core_y + scattered * off_x * inverse_px),
-                root * (core * core_x * place_y + scattered * off_y * inverse_px),
-                root * unit_core,
-                root * (core * (width_x * core_y + core_x * width_y)),
-                root * unit_halo,
-                root * (scattered * (off_x * off_x + off_y * off_y)),
-                root,
-                root * unit_beside,
-                root * (signal - (core * unit_core + scattered + level + beside * unit_beside)),
+                [
+                    root * (core * place_x * core_y + scattered * off_x * inverse_px),
+                    root * (core * core_x * place_y + scattered * off_y * inverse_px),
+                    root * unit_core,
+                ],
+                [
+                    root * (core * (width_x * core_y + core_x * width_y)),
+                    root * unit_halo,
+                    root * (scattered * (off_x * off_x + off_y * off_y)),
+                ],
+                [
+                    root,
+                    root * unit_beside,
+                    root * (signal - (core * unit_core + scattered + level + beside * unit_beside)),
+                ],
             ];
             count += 1;
             pixels += shows;
         }
     }
     let mut products = [[0.0; UNKNOWNS + 1]; UNKNOWNS + 1];
-    for (number, products) in products.iter_mut().enumerate() {
-        let mut sums = [Lanes::default(); UNKNOWNS + 1];
+    // Three by three stay in registers; the rest is its mirror image.
+    for (i, j) in [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)] {
+        let mut sums = [[Lanes::default(); 3]; 3];
         for row in &rows[..count] {
-            let one = row[number];
-            for (sum, other) in sums.iter_mut().zip(row) {
-                *sum += one * *other;
+            let (a, b) = (row[i], row[j]);
+            for (sums, a) in sums.iter_mut().zip(a) {
+                for (sum, b) in sums.iter_mut().zip(b) {
+                    *sum += a * b;
+                }
             }
         }
-        *products = sums.map(lanes::sum);
+        for (a, sums) in sums.iter().enumerate() {
+            for (b, &sum) in sums.iter().enumerate() {
+                products[3 * i + a][3 * j + b] = lanes::sum(sum);
+                products[3 * j + b][3 * i + a] = products[3 * i + a][3 * j + b];
+            }
+        }
     }
     Sums { products, pixels: lanes::sum(pixels) }
 }

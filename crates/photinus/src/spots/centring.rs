@@ -113,9 +113,9 @@ impl Seen<'_> {
         if let Some(fit) = skirt.filter(|fit| fit.misfit < GAUSSIAN_MISFIT || !self.models) {
             return Some(placed(fit));
         }
-        let (core, halo) = if self.models { (self.saturated_core(patch), self.halo(patch)) } else { (None, None) };
+        let model = if self.models { self.saturated_core(patch).or_else(|| self.halo(patch)) } else { None };
         let surer = |a: Fit, b: Fit| if a.covariance_px2.trace() < b.covariance_px2.trace() { a } else { b };
-        let found = [core, halo, skirt].into_iter().flatten().reduce(surer).map(placed);
+        let found = [model, skirt].into_iter().flatten().reduce(surer).map(placed);
         found.or_else(|| {
             patch.show_overflow();
             self.balanced(patch, false)

@@ -50,6 +50,8 @@ const STEPS: usize = 4;
 const LONGEST_STEP: f64 = 0.4;
 /// A step shorter than this is the last, px: what is left is a tenth of it.
 const DONE_PX: f64 = 0.02;
+/// ... if it changes the light of the core by less than this share.
+const DONE_SHARE: f64 = 0.02;
 /// A last step longer than this has not settled, px.
 const SETTLED_PX: f64 = 0.05;
 
@@ -116,7 +118,8 @@ pub(super) fn fit(
         shape += step;
         step_px = libm::hypot(step[X], step[Y]);
         last = Some((before, sums));
-        if step_px < DONE_PX {
+        let is_done = step_px < DONE_PX && step[CORE].abs() < DONE_SHARE * before[CORE];
+        if is_done {
             break;
         }
     }

@@ -116,6 +116,10 @@ pub(super) fn fit(
         }
         let before = shape;
         shape += step;
+        // No core: it would take light away.
+        if shape[CORE] <= 0.0 {
+            return None;
+        }
         step_px = libm::hypot(step[X], step[Y]);
         last = Some((before, sums));
         let is_done = step_px < DONE_PX && step[CORE].abs() < DONE_SHARE * before[CORE];
@@ -126,7 +130,7 @@ pub(super) fn fit(
     let (before, sums) = last?;
     let off = Vector2::new(shape[X] - f64::from(x), shape[Y] - f64::from(y));
     let settled = step_px < SETTLED_PX && off.norm() < f64::from(radius_px) / 2.0;
-    if !(settled && sums.pixels >= FEWEST_PX && shape[CORE] > 0.0) {
+    if !(settled && sums.pixels >= FEWEST_PX) {
         return None;
     }
     // What the residuals say of the noise widens what pixels tell, not what is known without them.

@@ -44,6 +44,9 @@ const SATURATION_BLUR_PX: f64 = 0.13;
 /// not: two LEDs in one, px.
 const CROWDED_BLUR_PX: f64 = 0.07;
 
+/// Less scattered light than this share of a spot's own does not pull its window.
+const PULLING_SHARE: f64 = 0.1;
+
 /// The pixels that tell of a part.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Window {
@@ -55,6 +58,14 @@ pub(super) struct Window {
     pub(super) crowded: bool,
 }
 
+/// Another part, whose halo reaches into the window.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Beside {
+    pub(super) place: Pixel,
+    /// Its light at the edge of its spot, over the part's own, as far as it reaches.
+    pub(super) share: f64,
+}
+
 /// A part in its window.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Seen<'a> {
@@ -64,8 +75,8 @@ pub(super) struct Seen<'a> {
     pub(super) told: PixelVariance,
     /// Light in the window, grey levels.
     pub(super) flux: f64,
-    /// Where another part lies whose halo reaches into the window.
-    pub(super) beside: Option<Pixel>,
+    /// The part that scatters most light into the window.
+    pub(super) beside: Option<Beside>,
     /// Whether core and halo may be looked for: it takes time.
     pub(super) models: bool,
 }
@@ -98,8 +109,9 @@ impl Seen<'_> {
         let is_wide = self.beside.is_none() && core.is_some_and(|core| core.width_px > WIDEST_CORE_PX);
         let worst_px2 = 2.0 * WORST_CORE_PX * WORST_CORE_PX;
         let core = core.filter(|core| !is_wide && core.fit.covariance_px2.trace() < worst_px2);
-        let is_unclear = is_narrow && !is_wide;
-        let crowded = || if self.window.crowded { self.summit(patch, SUMMIT_PX) } else { None };
+        let is_pulled = self.beside.is_some_and(|beside| beside.share > PULLING_SHARE);
+        let is_unclear = (is_narrow || is_pulled) && !is_wide;
+        let crowded = || if self.window.crowded { self.crowded(patch) } else { None };
         core.map(|core| placed(core.fit)).or_else(crowded).or_else(|| self.balanced(patch, is_unclear))
     }
 
@@ -107,15 +119,18 @@ impl Seen<'_> {
     fn saturated(&self, patch: &mut Patch) -> Option<Placed> {
         let radius_px = (self.part.radius_px + 2.5).min(self.window.radius_px + 1.0);
         let worst_px2 = 2.0 * self.blur_of_saturation_px2();
+        // Neither skirt nor halo knows of the light of a spot beside.
+        let pull_px2 = if self.beside.is_some() { self.blur_of_saturation_px2() / 2.0 } else { 0.0 };
+        let pulled = |fit: Fit| (fit.centre, fit.covariance_px2 + Matrix2::from_diagonal_element(pull_px2));
         let skirt =
             skirt::fit(patch, self.part.guess, radius_px as f32, self.lowest_saturated(), self.noise());
         let skirt = skirt.filter(|fit| fit.misfit < LARGEST_MISFIT && fit.covariance_px2.trace() < worst_px2);
         if let Some(fit) = skirt.filter(|fit| fit.misfit < GAUSSIAN_MISFIT || !self.models) {
-            return Some(placed(fit));
+            return Some(pulled(fit));
         }
         let model = if self.models { self.saturated_core(patch).or_else(|| self.halo(patch)) } else { None };
         let surer = |a: Fit, b: Fit| if a.covariance_px2.trace() < b.covariance_px2.trace() { a } else { b };
-        let found = [model, skirt].into_iter().flatten().reduce(surer).map(placed);
+        let found = [model, skirt].into_iter().flatten().reduce(surer).map(pulled);
         found.or_else(|| {
             patch.show_overflow();
             self.balanced(patch, false)
@@ -134,7 +149,11 @@ impl Seen<'_> {
 
     /// By core and halo, next to the halo of a spot beside.
     fn core(&self, patch: &Patch) -> Option<halo::Core> {
-        let guess = halo::Guess { centre: self.part.guess, flux: self.flux, beside: self.beside };
+        let guess = halo::Guess {
+            centre: self.part.guess,
+            flux: self.flux,
+            beside: self.beside.map(|beside| beside.place),
+        };
         halo::fit(patch, &guess, self.reach_px(), self.lowest_saturated(), self.noise())
     }
 
@@ -154,6 +173,12 @@ impl Seen<'_> {
     fn summit(&self, patch: &Patch, radius_px: f64) -> Option<Placed> {
         let saturation = self.lowest_saturated();
         skirt::fit(patch, self.part.guess, radius_px as f32, saturation, self.noise()).map(placed)
+    }
+
+    /// By the summit of a spot in the light of another, which may be two spots.
+    fn crowded(&self, patch: &Patch) -> Option<Placed> {
+        let (centre, covariance_px2) = self.summit(patch, SUMMIT_PX)?;
+        Some((centre, covariance_px2 + Matrix2::from_diagonal_element(CROWDED_BLUR_PX * CROWDED_BLUR_PX)))
     }
 
     /// By a balanced window.

@@ -1,6 +1,7 @@
 //! The stages in order: read this first.
 
 use super::background::Background;
+use super::centring::Beside;
 use super::grouping::Components;
 use super::measuring::Meter;
 use super::neighbourhood::Neighbourhood;
@@ -11,7 +12,6 @@ use super::runs::{self, Run};
 use super::settings::{Brightness, Settings, SettingsError};
 use super::splitting::Splitter;
 use super::{Detections, Extent, Rejected};
-use crate::camera::Pixel;
 use crate::frame::{FrameError, FrameView, Mask};
 
 /// A lens scatters noticeable light about so far from the edge of a spot, px ...
@@ -117,15 +117,16 @@ impl Detector {
         }
     }
 
-    /// The middle of the part that scatters most light onto part `i`; `None` when there is none near.
-    fn scatterer(&self, i: usize) -> Option<Pixel> {
-        let (mut most, mut found) = (0.0, None);
+    /// The part that scatters most light onto part `i`; `None` when there is none near.
+    fn scatterer(&self, i: usize) -> Option<Beside> {
+        let light = |Outline { area_px, peak, .. }: &Outline| f64::from(*area_px) * f64::from(*peak);
+        let own = light(&self.parts[i].outline);
+        let mut found: Option<Beside> = None;
         self.neighbourhood.each_near(i, SCATTERED_PX, |other, edge_px| {
-            let Outline { area_px, peak, .. } = self.parts[other].outline;
-            let light = f64::from(area_px) * f64::from(peak);
-            let scattered = light * libm::exp(-edge_px.max(0.0) / SCATTER_FALLS_PX);
-            if edge_px < SCATTERED_PX && scattered > most {
-                (most, found) = (scattered, Some(self.parts[other].guess));
+            let Part { outline, guess: place, .. } = &self.parts[other];
+            let share = light(outline) / own * libm::exp(-edge_px.max(0.0) / SCATTER_FALLS_PX);
+            if edge_px < SCATTERED_PX && found.is_none_or(|beside| share > beside.share) {
+                found = Some(Beside { place: *place, share });
             }
         });
         found

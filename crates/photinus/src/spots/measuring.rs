@@ -4,7 +4,7 @@
 //! the reason that it is none after all.
 
 use super::Spot;
-use super::centring::{Seen, Window};
+use super::centring::{Beside, Seen, Window};
 use super::centroid::PixelVariance;
 use super::part::Part;
 use super::patch::{self, Patch, Surroundings};
@@ -26,7 +26,7 @@ impl Meter {
         frame: &FrameView<'_>,
         part: &Part,
         room_px: f64,
-        beside: Option<Pixel>,
+        beside: Option<Beside>,
         settings: &Settings,
     ) -> Result<Spot, Reason> {
         let outline = &part.outline;
@@ -44,7 +44,8 @@ impl Meter {
         let dark = (noise.read_dn * noise.read_dn + 1.0 / 12.0) as f32;
         let told = PixelVariance { dark, shot: noise.shot as f32 };
         let models = matches!(settings.brightness, Brightness::Contrast(_));
-        let (centre, covariance_px2) = Seen { part, window, told, flux, beside, models }.centre(&mut self.patch);
+        let (centre, covariance_px2) =
+            Seen { part, window, told, flux, beside, models }.centre(&mut self.patch);
         Ok(Spot {
             centre,
             covariance_px2,

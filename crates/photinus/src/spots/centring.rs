@@ -1,9 +1,9 @@
 //! Which estimator the light of a part calls for.
 //!
-//! In: a part in its window. Out: its centre with covariance. A spot whose core is about as narrow as a pixel is centred by
-//! a model of its core and halo, a wider one by a balanced window, a saturated one by its skirt, one beside another or cut
-//! by the border by the parabola through its summit. Where charge may have overflowed only pixels that touch no saturated
-//! one are believed.
+//! In: a part in its window. Out: its centre with covariance. A spot whose core is certainly about as narrow as a pixel is
+//! centred by a model of its core and halo, any other by a balanced window, a saturated one by its skirt, one beside another
+//! or cut by the border by the parabola through its summit. Where charge may have overflowed only pixels that touch no
+//! saturated one are believed, and only where they fit a halo: a wide spot with a flat top does not.
 
 use nalgebra::Matrix2;
 
@@ -27,7 +27,7 @@ const WIDEST_CORE_PX: f64 = 0.5;
 const GAUSSIAN_MISFIT: f64 = 1.5;
 /// ... and one that fits no better than this is not: its summit says less than its formal covariance.
 const LARGEST_MISFIT: f64 = 5.0;
-/// Where a core in a halo fits no better than this there is more: charge that has overflowed.
+/// Where a core in a halo, or a halo, fits no better than this there is more: charge that has overflowed, or no halo at all.
 const OVERFLOW_MISFIT: f64 = 2.0;
 /// Light of a core, in units of what saturates a pixel, from which charge may overflow unseen: a full pixel holds several
 /// times what its converter tells.
@@ -37,8 +37,7 @@ const MOST_SATURATED_PX: u32 = 4;
 /// Sigma of a centre by core and halo, or by the halo alone, from which other ways to find it are as good, px.
 const WORST_CORE_PX: f64 = 0.22;
 const WORST_HALO_PX: f64 = 0.1;
-/// Error of the centre of a saturated core of no pixels at all, px; it falls with the root of their number. On rendered
-/// frames, where neither core nor halo tell, 0.08 for one to five pixels.
+/// Error of the centre of a saturated core of no pixels at all, px; it falls with the root of their number.
 const SATURATION_BLUR_PX: f64 = 0.13;
 /// Error of the centre of a spot whose window is cut short by another spot, or that should be a core in a halo and is
 /// not: two LEDs in one, px.

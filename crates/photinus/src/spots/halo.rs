@@ -4,12 +4,14 @@
 //! a far LED is a core narrower than a pixel or about as wide, in a halo of scattered light:
 //!
 //! ```text
-//! I(u, v) = A X(u) Y(v) + B exp(-r^2 / 2 h^2) + C + D exp(-q^2 / 2 h^2),   X(u) = Phi((u + 1/2 - x) / s) - Phi((u - 1/2 - x) / s),   Y likewise,
+//! I(u, v) = A X(u) Y(v) + B exp(-r^2 / 2 h^2) + C + D exp(-q^2 / 2 h^2),
+//! X(u) = Phi((u + 1/2 - x) / s) - Phi((u - 1/2 - x) / s),   Y likewise,
 //! ```
 //!
 //! with the core integrated over each pixel, so that the grid does not pull, r from the centre and q from that of a spot
-//! beside, whose halo is as wide. Eight numbers (x, y, A, ln s, B, ln h, C, D) by least squares with weight 1 / var(I), in a few steps of Gauss and Newton. Widths are known to a factor before a pixel is
-//! seen: where a faint spot tells nothing of them, the covariance of the centre says what that costs. Pixels at the
+//! beside, whose halo is as wide. Eight numbers (x, y, A, ln s, B, ln h, C, D) by least squares with weight 1 / var(I), in a
+//! few steps of Gauss and Newton. Widths are known to a factor before a pixel is seen: where a faint spot tells nothing of
+//! them, the covariance of the centre says what that costs. The residuals tell the noise of the pixels. Those at the
 //! saturation say nothing and are left out.
 
 use nalgebra::{Matrix2, SMatrix, SVector, Vector2};
@@ -133,7 +135,8 @@ pub(super) fn fit(
     if !(settled && sums.pixels >= FEWEST_PX) {
         return None;
     }
-    // What the residuals say of the noise widens what pixels tell, not what is known without them.
+    // What the residuals say of the noise widens what pixels tell, not what is known without them; two less for the mean of
+    // Student's squares.
     let misfit = sums.squares() / f64::from(sums.pixels - UNKNOWNS as f32 - 2.0);
     let (_, factor) = solve(&sums, &before, misfit)?;
     let axes = SMatrix::<f64, UNKNOWNS, 2>::identity();

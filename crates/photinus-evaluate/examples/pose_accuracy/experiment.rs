@@ -106,7 +106,9 @@ pub(crate) enum Source {
 impl Source {
     fn camera(self) -> Camera {
         match self {
-            Self::Rendered => render::scene("hexarotor-0.4", 0, None).cameras[0].camera.clone(),
+            Self::Rendered => {
+                render::scene(&render::PAPER, "hexarotor-0.4", 0, None).cameras[0].camera.clone()
+            }
             Self::Geometry { .. } => {
                 let centre = Pixel::new(375.5, 239.5);
                 let lens = Ideal::new(IdealLaw::Equidistant, [1.0 / 3.7673e-3; 2], centre).expect("a lens");
@@ -154,8 +156,10 @@ pub(crate) fn run(
     while done < count {
         match source {
             Source::Rendered => {
-                for (view, image) in render::batch(airframe, distance_m, done as u64, &mut rng) {
-                    let located = locator.locate(&image.view(), Some(&view.gravity), &mut |_| ());
+                for (view, frame) in
+                    render::batch(&render::PAPER, airframe, distance_m, done as u64, &mut rng)
+                {
+                    let located = locator.locate(&frame.image.view(), Some(&view.gravity), &mut |_| ());
                     let located = located.expect("the camera's size");
                     add(&view, located);
                     done += 1;

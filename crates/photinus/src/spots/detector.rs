@@ -1,24 +1,23 @@
 //! The stages in order: read this first.
 
 use super::background::Background;
-use super::crowding;
+use super::centring::Beside;
 use super::grouping::Components;
 use super::measuring::Meter;
 use super::neighbourhood::Neighbourhood;
 use super::part::{Part, outline};
 use super::reflections;
-use super::rejection::Reason;
+use super::rejection::{Outline, Reason};
 use super::runs::{self, Run};
 use super::settings::{Brightness, Settings, SettingsError};
 use super::splitting::Splitter;
 use super::{Detections, Extent, Rejected};
-use crate::camera::Pixel;
 use crate::frame::{FrameError, FrameView, Mask};
 
 /// A lens scatters noticeable light about so far from the edge of a spot, px ...
 const SCATTERED_PX: f64 = 8.0;
-/// ... when that has at least this share of the light beside it.
-const SCATTERING_SHARE: f64 = 0.7;
+/// ... which falls by e about every so much.
+const SCATTER_FALLS_PX: f64 = 2.0;
 
 /// Finds spots in frames. Keeps its room from frame to frame, so that a warm detector allocates nothing.
 #[derive(Debug)]
@@ -80,7 +79,6 @@ impl Detector {
         if let Brightness::Contrast(_) = self.settings.brightness {
             reflections::reject(&mut self.detections, &self.settings.shape);
         }
-        crowding::widen(&mut self.detections.spots);
         self.detections.rejected.sort_unstable_by_key(|rejected| {
             let Extent { top, left, bottom, right } = rejected.extent;
             (top, left, bottom, right, rejected.area_px)
@@ -119,20 +117,19 @@ impl Detector {
         }
     }
 
-    /// The centre of the one bright part so near to part `i` that the light scattered around it matters; `None` when there
-    /// is none, or more than one.
-    fn scatterer(&self, i: usize) -> Option<Pixel> {
-        let light = |part: &Part| f64::from(part.outline.area_px) * f64::from(part.outline.peak);
-        let mut count = 0;
-        let mut found = None;
+    /// The part that scatters most light onto part `i`; `None` when there is none near.
+    fn scatterer(&self, i: usize) -> Option<Beside> {
+        let light = |Outline { area_px, peak, .. }: &Outline| f64::from(*area_px) * f64::from(*peak);
+        let own = light(&self.parts[i].outline);
+        let mut found: Option<Beside> = None;
         self.neighbourhood.each_near(i, SCATTERED_PX, |other, edge_px| {
-            if edge_px < SCATTERED_PX && light(&self.parts[other]) > SCATTERING_SHARE * light(&self.parts[i])
-            {
-                count += 1;
-                found = Some(self.parts[other].guess);
+            let Part { outline, guess: place, .. } = &self.parts[other];
+            let share = light(outline) / own * libm::exp(-edge_px.max(0.0) / SCATTER_FALLS_PX);
+            if edge_px < SCATTERED_PX && found.is_none_or(|beside| share > beside.share) {
+                found = Some(Beside { place: *place, share });
             }
         });
-        found.filter(|_| count == 1)
+        found
     }
 
     fn measure_parts(&mut self, frame: &FrameView<'_>) {

@@ -1,52 +1,22 @@
 //! The light of a part -> a spot: background, window, centre with covariance.
 //!
-//! In: a part and how much room it has. Out: a spot, or the reason that it is none after all. A spot that stands alone is
-//! centred by a window as wide as the spot is, a saturated one by its skirt, one beside another or cut by the border by
-//! the parabola through its summit.
-
-use nalgebra::Matrix2;
+//! In: a part, how much room it has, and the part beside it whose light scatters into the window, if any. Out: a spot, or
+//! the reason that it is none after all.
 
 use super::Spot;
-use super::centroid::{self, PixelVariance};
+use super::centring::{Beside, Seen, Window};
+use super::centroid::PixelVariance;
 use super::part::Part;
 use super::patch::{self, Patch, Surroundings};
 use super::rejection::Reason;
-use super::sampling;
 use super::settings::{Brightness, Settings};
-use super::skirt::{self, Fit};
 use crate::camera::Pixel;
 use crate::frame::FrameView;
-
-/// Standard deviation of a place known to lie somewhere in one pixel, px.
-const WITHIN_A_PIXEL: f64 = 0.288_675_134_594_812_9;
-/// Radius around the summit of a spot in which its own light is far above that of a spot beside it, px.
-const SUMMIT_PX: f64 = 1.8;
-/// A skirt that fits no better than this (squared misfit over degrees of freedom) is not that of a Gaussian: charge has
-/// overflowed, or the spot is a core in a halo. Its summit says less than its formal covariance.
-const LARGEST_MISFIT: f64 = 5.0;
-/// Error of the centre of a saturated core of no pixels at all, px; it falls with the root of their number. On rendered
-/// frames with overflow 0.08 to 0.12.
-const SATURATION_BLUR_PX: f64 = 0.13;
-/// Error of the centre of an undersampled spot whose window is cut short by another spot, px.
-const CROWDED_BLUR_PX: f64 = 0.07;
-/// The same once the light that the other scatters is taken off, px.
-const RELIEVED_BLUR_PX: f64 = 0.045;
 
 /// Measures the light of parts, one after the other in the same room.
 #[derive(Debug, Default)]
 pub(super) struct Meter {
     patch: Patch,
-}
-
-/// The pixels that tell of a part.
-#[derive(Clone, Copy, Debug)]
-struct Window {
-    radius_px: f64,
-    around: Surroundings,
-    /// Other light comes so near that the window is narrower than the spot.
-    crowded: bool,
-    /// The light that the spot beside it scatters was taken off.
-    relieved: bool,
 }
 
 impl Meter {
@@ -56,11 +26,11 @@ impl Meter {
         frame: &FrameView<'_>,
         part: &Part,
         room_px: f64,
-        beside: Option<Pixel>,
+        beside: Option<Beside>,
         settings: &Settings,
     ) -> Result<Spot, Reason> {
         let outline = &part.outline;
-        let mut window = open_window(frame, part, room_px);
+        let window = open_window(frame, part, room_px);
         let level = window.around.level;
         let height = f64::from(outline.peak) - f64::from(level);
         if let Brightness::Contrast(step) = settings.brightness
@@ -68,22 +38,14 @@ impl Meter {
         {
             return Err(Reason::Background);
         }
-        let (middle, reach) = (nearest_pixel(part.guess), reach_px(window.radius_px));
-        let alone = outline.saturated_px == 0 && !outline.cut;
-        let beside = beside.filter(|_| alone).is_some_and(|beside| {
-            let radius_px = window.radius_px + 1.5;
-            self.patch.read_beside(frame, middle, reach, radius_px, beside, part.bright)
-        });
-        if beside {
-            (window.relieved, window.crowded) = (window.crowded, false);
-        } else {
-            self.patch.read(frame, middle, reach, &window.around);
-        }
+        self.patch.read(frame, nearest_pixel(part.guess), reach_px(window.radius_px), &window.around);
         let flux = self.patch.flux(part.guess, window.radius_px as f32);
         let noise = settings.noise;
         let dark = (noise.read_dn * noise.read_dn + 1.0 / 12.0) as f32;
-        let variance = PixelVariance { dark: dark.max(window.around.variance), shot: noise.shot as f32 };
-        let (centre, covariance_px2) = self.centre(part, &window, variance);
+        let told = PixelVariance { dark, shot: noise.shot as f32 };
+        let models = matches!(settings.brightness, Brightness::Contrast(_));
+        let (centre, covariance_px2) =
+            Seen { part, window, told, flux, beside, models }.centre(&mut self.patch);
         Ok(Spot {
             centre,
             covariance_px2,
@@ -95,48 +57,6 @@ impl Meter {
             middle: part.middle,
             extent: outline.extent,
         })
-    }
-
-    /// The centre and its covariance.
-    fn centre(&self, part: &Part, window: &Window, variance: PixelVariance) -> (Pixel, Matrix2<f64>) {
-        let (radius, saturated_px) = (part.radius_px, part.outline.saturated_px);
-        let skirt = |reach_px: f64| {
-            skirt::fit(&self.patch, part.guess, reach_px as f32, lowest_saturated(window), variance)
-        };
-        let placed = |fit: Fit| (fit.centre, fit.covariance_px2);
-        let balanced = || {
-            let (centre, covariance) =
-                centroid::balance(&self.patch, part.guess, window.radius_px as f32, variance)?;
-            let (centre, covariance) = match saturated_px {
-                0 => sampling::unfold(&self.patch, centre, covariance),
-                _ => {
-                    let blur = Matrix2::from_diagonal_element(blur_of_saturation(saturated_px));
-                    (centre, covariance + blur)
-                }
-            };
-            let missing = match (part.outline.cut, window.crowded) {
-                (true, _) => radius / 2.0,
-                (false, true) => CROWDED_BLUR_PX,
-                (false, false) if window.relieved => RELIEVED_BLUR_PX,
-                (false, false) => 0.0,
-            };
-            Some((centre, covariance + Matrix2::from_diagonal_element(missing * missing)))
-        };
-        let found = if saturated_px > 0 {
-            let fit = skirt((radius + 2.5).min(window.radius_px + 1.0));
-            let worst = 2.0 * blur_of_saturation(saturated_px);
-            let good = fit.filter(|fit| fit.misfit < LARGEST_MISFIT && fit.covariance_px2.trace() < worst);
-            good.map(placed).or_else(balanced)
-        } else if part.outline.cut {
-            skirt(SUMMIT_PX.max(radius)).map(placed).or_else(balanced)
-        } else if window.crowded {
-            skirt(SUMMIT_PX).map(placed).or_else(balanced)
-        } else {
-            balanced()
-        };
-        let anywhere = Matrix2::from_diagonal_element(WITHIN_A_PIXEL * WITHIN_A_PIXEL);
-        let (centre, covariance) = found.unwrap_or((part.guess, anywhere));
-        (centre, if part.outline.cut { covariance + anywhere } else { covariance })
     }
 }
 
@@ -150,7 +70,7 @@ fn open_window(frame: &FrameView<'_>, part: &Part, room_px: f64) -> Window {
             .unwrap_or(level)
     };
     let narrow = (radius + 2.5).min(room);
-    let window = Window { radius_px: narrow, around: around(narrow), crowded: false, relieved: false };
+    let window = Window { radius_px: narrow, room_px: room, around: around(narrow), crowded: false };
     if part.outline.saturated_px > 0 {
         return window;
     }
@@ -158,16 +78,10 @@ fn open_window(frame: &FrameView<'_>, part: &Part, room_px: f64) -> Window {
     let whole = (spot_px + 1.0).min(room);
     Window {
         radius_px: whole,
+        room_px: room,
         around: if whole > narrow { around(whole) } else { window.around },
         crowded: room_px < part.most_room_px().min(spot_px),
-        relieved: false,
     }
-}
-
-/// The lowest signal that a pixel at 255 can have anywhere in the window.
-fn lowest_saturated(window: &Window) -> f32 {
-    let Surroundings { level, slope: [rise_u, rise_v], .. } = window.around;
-    f32::from(u8::MAX) - level - (rise_u.abs() + rise_v.abs()) * reach_px(window.radius_px) as f32
 }
 
 fn nearest_pixel(place: Pixel) -> (i32, i32) {
@@ -175,11 +89,6 @@ fn nearest_pixel(place: Pixel) -> (i32, i32) {
 }
 
 /// Pixels from the middle of a patch to its edge that hold a window of this radius, wherever in a pixel it settles.
-fn reach_px(window_px: f64) -> i32 {
+pub(super) fn reach_px(window_px: f64) -> i32 {
     window_px as i32 + 2
-}
-
-/// Variance of the centre of a saturated core that shows no skirt, px^2: its outline is known to a pixel all around.
-fn blur_of_saturation(saturated_px: u32) -> f64 {
-    SATURATION_BLUR_PX * SATURATION_BLUR_PX / (f64::from(saturated_px.max(5)) + 4.0)
 }

@@ -10,19 +10,20 @@
 //! part           size, shape and first guess of a part; ledge: whether it goes on where the threshold is higher
 //! rejection      what is no marker by its outline, and why
 //! neighbourhood  how far a part's light is its own                -> room for a window
-//! measuring      background (patch) and centre with covariance: by a window (centroid, sampling) or by the skirt -> spots
+//! measuring      background and pixels of a part (patch), centre with covariance (centring): by a model of core and halo
+//!                (halo), by a window (centroid) or by the skirt -> spots
 //! reflections    spots that are faint images of others
-//! crowding       centres that the light of brighter spots pulls
 //! ```
 //!
 //! Every pixel at or above its threshold belongs to exactly one part, and every part is either a [`Spot`] or a
 //! [`Rejected`] with its [`Reason`]; nothing is dropped in silence.
 
 mod background;
+mod centring;
 mod centroid;
-mod crowding;
 mod detector;
 mod grouping;
+mod halo;
 mod ledge;
 mod measuring;
 mod neighbourhood;
@@ -31,7 +32,6 @@ mod patch;
 mod reflections;
 mod rejection;
 mod runs;
-mod sampling;
 mod settings;
 mod skirt;
 mod splitting;

@@ -10,12 +10,8 @@ use crate::lanes::{self, LANES, Lanes};
 /// Width of the ring of background pixels, px.
 const RING_PX: i32 = 2;
 
-/// The light of a halo rises by less than this factor from three pixels away to two.
-const STEEPEST_HALO: f64 = 2.0;
 /// The pixels of a narrow spot outshine those around them on average by this factor: a Gaussian of 1.1 px does not.
-const CORE_OVER_HALO: f64 = 4.0;
-/// Squared radius of the core of a spot that scatters, px^2: no halo is read from there.
-const CORE_PX2: f64 = 4.5;
+const CORE_OVER_HALO: f32 = 4.0;
 /// Fewer background pixels tell no level.
 const FEWEST_PX: i32 = 8;
 
@@ -39,8 +35,8 @@ pub(super) struct Patch {
     rows: usize,
     stride: usize,
     signal: Vec<f32>,
-    /// Light a quarter turn away, one side after the other.
-    turned: Vec<f32>,
+    /// The signal before pixels that touch saturated ones were hidden.
+    before: Vec<f32>,
 }
 
 impl Patch {
@@ -56,10 +52,11 @@ impl Patch {
         (self.left, self.top) = (u - reach, v - reach);
         self.rows = (2 * reach + 1) as usize;
         self.stride = self.rows.next_multiple_of(LANES);
+        self.before.clear();
         self.signal.clear();
         self.signal.resize(self.rows * self.stride, 0.0);
-        if self.turned.capacity() < 2 * self.signal.len() {
-            self.turned.reserve(2 * self.signal.len() - self.turned.len());
+        if self.before.capacity() < self.signal.len() {
+            self.before.reserve(self.signal.len() - self.before.len());
         }
         let first = self.left.max(0);
         let end = (self.left + self.rows as i32).min(frame.width() as i32);
@@ -77,81 +74,32 @@ impl Patch {
         }
     }
 
-    /// Reads the window of pixels within `reach` of (`u`, `v`), less what stands a quarter turn to either side around
-    /// `beside`: the light that a spot there scatters is much the same all around it, and so is the background. Pixels
-    /// beyond `radius_px` from the middle are left zero. `false` where neither side is free of light that reaches `bright`
-    /// within the frame.
-    pub(super) fn read_beside(
-        &mut self,
-        frame: &FrameView<'_>,
-        (u, v): (i32, i32),
-        reach: i32,
-        radius_px: f64,
-        beside: Pixel,
-        bright: u8,
-    ) -> bool {
-        self.turned.clear();
-        for side in [1.0, -1.0] {
-            let first = self.turned.len();
-            if !self.read_turned(frame, (u, v), reach, radius_px, beside, side, bright) {
-                self.turned.truncate(first);
+    /// Makes pixels that touch a saturated one count as saturated, too: a full pixel overflows into them.
+    pub(super) fn hide_overflow(&mut self, saturation: f32) {
+        self.before.clear();
+        self.before.extend_from_slice(&self.signal);
+        for (row, line) in self.before.chunks_exact(self.stride).enumerate() {
+            for column in (0..self.rows).filter(|&column| line[column] >= saturation) {
+                let columns = column.saturating_sub(1)..(column + 2).min(self.rows);
+                for row in row.saturating_sub(1)..(row + 2).min(self.rows) {
+                    let touching = &mut self.signal[row * self.stride..][columns.clone()];
+                    touching.iter_mut().for_each(|signal| *signal = signal.max(saturation));
+                }
             }
         }
-        let count = (2 * reach + 1).pow(2) as usize;
-        if self.turned.is_empty() {
-            return false;
-        }
-        let level = Surroundings { level: 0.0, slope: [0.0; 2], variance: 0.0 };
-        self.read(frame, (u, v), reach, &level);
-        let (first, second) = self.turned.split_at(count);
-        for (index, signal) in self.signal.chunks_exact_mut(self.stride).enumerate() {
-            for (column, signal) in signal.iter_mut().take(self.rows).enumerate() {
-                let at = index * self.rows + column;
-                let other = second.get(at).map_or(first[at], |second| 0.5 * (first[at] + second));
-                *signal = if other.is_nan() { 0.0 } else { *signal - other };
-            }
-        }
-        true
     }
 
-    /// Appends the values a quarter turn to one side, row by row; NaN beyond the radius. `false` where they are not free.
-    #[expect(clippy::too_many_arguments, reason = "a window and how it is turned")]
-    fn read_turned(
-        &mut self,
-        frame: &FrameView<'_>,
-        (u, v): (i32, i32),
-        reach: i32,
-        radius_px: f64,
-        beside: Pixel,
-        side: f64,
-        bright: u8,
-    ) -> bool {
-        for dv in -reach..=reach {
-            for du in -reach..=reach {
-                let (x, y) = (f64::from(u + du) - beside.u, f64::from(v + dv) - beside.v);
-                let is_core = x * x + y * y < CORE_PX2;
-                if is_core || f64::from(du * du + dv * dv) > radius_px * radius_px {
-                    self.turned.push(f32::NAN);
-                    continue;
-                }
-                let (at_u, at_v) = (beside.u - side * y, beside.v + side * x);
-                let (whole_u, whole_v) = (at_u.floor(), at_v.floor());
-                let (last_u, last_v) = (frame.width() as f64 - 1.0, frame.height() as f64 - 1.0);
-                if whole_u < 0.0 || whole_v < 0.0 || whole_u >= last_u || whole_v >= last_v {
-                    return false;
-                }
-                let (part_u, part_v) = ((at_u - whole_u) as f32, (at_v - whole_v) as f32);
-                let (column, row) = (whole_u as usize, whole_v as usize);
-                let near = &frame.row(row)[column..column + 2];
-                let next = &frame.row(row + 1)[column..column + 2];
-                if near[0].max(near[1]).max(next[0]).max(next[1]) >= bright {
-                    return false;
-                }
-                let across = |pair: &[u8]| f32::from(pair[0]) * (1.0 - part_u) + f32::from(pair[1]) * part_u;
-                self.turned.push(across(near) * (1.0 - part_v) + across(next) * part_v);
-            }
+    /// Undoes [`Self::hide_overflow`].
+    pub(super) fn show_overflow(&mut self) {
+        if !self.before.is_empty() {
+            self.signal.copy_from_slice(&self.before);
+            self.before.clear();
         }
-        true
+    }
+
+    /// Whether no side of the window is longer than `most_px`.
+    pub(super) fn fits_in(&self, most_px: usize) -> bool {
+        self.stride <= most_px
     }
 
     /// The signal in columns `column` to `column` + 3, from the first row to the last.
@@ -172,34 +120,30 @@ impl Patch {
         ((place.u - f64::from(self.left)) as f32, (place.v - f64::from(self.top)) as f32)
     }
 
-    /// How much of the light of a narrow spot falls into each of three columns and into each of three rows around the pixel
-    /// (`u`, `v`), as shares of all nine, above the halo that the sixteen pixels around these tell of; `None` for a spot so
-    /// wide that these are part of it.
-    pub(super) fn shares(&self, (u, v): (i32, i32)) -> Option<[[f64; 3]; 2]> {
+    /// How much of the light of the nine pixels around `place` falls into four of them, above the halo that the sixteen
+    /// around these tell of; 0 for a spot so wide that these are part of it.
+    pub(super) fn share_in_four(&self, place: Pixel) -> f32 {
+        let (u, v) = (place.u.round() as i32, place.v.round() as i32);
         let (column, row) = ((u - self.left).max(2) as usize, (v - self.top).max(2) as usize);
         let [mut columns, mut rows] = [[0.0; 3]; 2];
-        let [mut beside, mut corners] = [0.0; 2];
+        let mut sixteen = 0.0;
         for (y, line) in self.signal.chunks_exact(self.stride).skip(row - 2).take(5).enumerate() {
             for (x, &signal) in line.iter().skip(column - 2).take(5).enumerate() {
-                let signal = f64::from(signal);
-                match (x, y) {
-                    (1..4, 1..4) => {
-                        columns[x - 1] += signal;
-                        rows[y - 1] += signal;
-                    }
-                    (0 | 4, 0 | 4) => corners += signal / 4.0,
-                    _ => beside += signal / 12.0,
+                if (1..4).contains(&x) && (1..4).contains(&y) {
+                    columns[x - 1] += signal;
+                    rows[y - 1] += signal;
+                } else {
+                    sixteen += signal;
                 }
             }
         }
-        // A halo that is a Gaussian rises as much again from two pixels away to one as from three to two. What rises more
-        // steeply is the spot's own flank.
-        let rise = Some(beside / corners.max(1e-9)).filter(|rise| (1.0..STEEPEST_HALO).contains(rise));
-        let halo = (beside * rise.unwrap_or(1.0)).max(0.0);
-        let nine = columns.iter().sum::<f64>();
+        let (nine, halo) = (columns.iter().sum::<f32>(), (sixteen / 16.0).max(0.0));
         let total = nine - 9.0 * halo;
-        (nine > 9.0 * CORE_OVER_HALO * beside && total > 0.0)
-            .then(|| [columns, rows].map(|sums| sums.map(|sum| (sum - 3.0 * halo) / total)))
+        if nine < CORE_OVER_HALO * 9.0 * halo || total <= 0.0 {
+            return 0.0;
+        }
+        let in_two = |[before, middle, after]: [f32; 3]| (middle + before.max(after) - 6.0 * halo) / total;
+        in_two(columns) * in_two(rows)
     }
 
     /// Signal within `radius_px` of `centre`, grey levels.

@@ -56,9 +56,11 @@ pub(super) fn fit(
         for signal in patch.columns(column) {
             let near = lanes::less(across, Lanes::splat(radius_px * radius_px - y * y));
             let shows = lanes::less(faintest, signal) * lanes::less(signal, saturation) * near;
-            let weight = shows * (signal * signal) / (dark + shot * lanes::positive(signal));
-            sums.add(Lanes::splat(y), weight, lanes::ln(signal));
-            sums.pixels += shows;
+            if shows != Lanes::ZERO {
+                let weight = shows * (signal * signal) / (dark + shot * lanes::positive(signal));
+                sums.add(Lanes::splat(y), weight, lanes::ln(signal));
+                sums.pixels += shows;
+            }
             y += 1.0;
         }
         normal.add(&sums, x);

@@ -16,8 +16,8 @@ pub(crate) const GRAVITY_RAD: f64 = 0.3 * TAU / 360.0;
 /// Spread of LEDs in pure geometry: sigma of the logarithm of their power.
 pub(crate) const UNIT_SIGMA: f64 = 0.1;
 /// Error of the logarithm of light in pure geometry, of all and times the root of the light, as rendered frames have it.
-const LOG_LIGHT_SIGMA: f64 = 0.05;
-const LIGHT_NOISE: f64 = 0.95;
+const LOG_LIGHT_SIGMA: f64 = 0.03;
+const LIGHT_NOISE: f64 = 0.75;
 /// Area of a spot times the square of the distance: 2.6 times as far as the paper's (13) has it, as rendered frames are.
 const AREA_PX_M2: f64 = 31.5 * 2.6 * 2.6;
 /// Light of an LED straight ahead at 1 m in pure geometry, grey levels, ...

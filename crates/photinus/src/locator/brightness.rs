@@ -9,10 +9,11 @@ use super::Sighting;
 use crate::pose::LogLight;
 use crate::spots::{Reason, Rejected, Spot};
 
-/// Error of a logarithm of light that all spots have: where in a pixel they fall, how much of the halo is in the window.
-const SIGMA: f64 = 0.05;
+/// Error of a logarithm of light against others of the frame that all spots have: where in a pixel they fall, how much of the
+/// halo is in the window.
+const SIGMA: f64 = 0.03;
 /// Error of a logarithm of light times the root of the light, grey levels^(1/2): noise of pixels and background.
-const NOISE: f64 = 0.95;
+const NOISE: f64 = 0.75;
 /// Error per light of another spot over the own, at no distance; by e less every so much, px, and none beyond the last.
 const OTHERS: f64 = 0.11;
 const FALL_PX: f64 = 3.0;
@@ -20,9 +21,11 @@ const FAR_PX: f64 = 15.0;
 /// Error where another spot, or a reflection, makes the window narrow, at no distance, and how far away that is, px.
 const NARROWED: f64 = 0.25;
 const NARROWED_PX: f64 = 4.2;
-/// Light that a saturated pixel hides, as a logarithm, up to so many pixels; beyond them that is unsure.
+/// Light that a saturated pixel hides, as a logarithm, up to so many pixels; beyond them that is unsure. Error of what a core
+/// hides.
 const HIDDEN_LOG: f64 = 0.037;
 const MOST_HIDING_PX: u32 = 7;
+const HIDDEN_SIGMA: f64 = 0.06;
 
 /// Tells the light of all sightings. `order` is room to work in.
 pub(super) fn tell(sightings: &mut [Sighting], rejected: &[Rejected], order: &mut Vec<usize>) {
@@ -64,7 +67,8 @@ pub(super) fn tell(sightings: &mut [Sighting], rejected: &[Rejected], order: &mu
 /// A spot by itself; `None` where a detector measures no light.
 fn alone(spot: &Spot) -> Option<LogLight> {
     let hidden = HIDDEN_LOG * f64::from(spot.saturated_px.min(MOST_HIDING_PX));
-    let unsure = HIDDEN_LOG * f64::from(spot.saturated_px.saturating_sub(MOST_HIDING_PX));
+    let beyond = HIDDEN_LOG * f64::from(spot.saturated_px.saturating_sub(MOST_HIDING_PX));
+    let unsure = if spot.saturated_px > 0 { HIDDEN_SIGMA + beyond } else { 0.0 };
     (spot.flux > 0.0).then(|| LogLight {
         value: libm::log(spot.flux) + hidden,
         sigma: (SIGMA * SIGMA + NOISE * NOISE / spot.flux + unsure * unsure).sqrt(),

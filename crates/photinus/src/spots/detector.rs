@@ -6,6 +6,7 @@ use super::grouping::Components;
 use super::measuring::Meter;
 use super::neighbourhood::Neighbourhood;
 use super::part::{Part, outline};
+use super::parting;
 use super::reflections;
 use super::rejection::{Outline, Reason};
 use super::runs::{self, Run};
@@ -79,6 +80,7 @@ impl Detector {
         if let Brightness::Contrast(_) = self.settings.brightness {
             reflections::reject(&mut self.detections, &self.settings.shape);
         }
+        parting::widen(&mut self.detections.spots);
         self.detections.rejected.sort_unstable_by_key(|rejected| {
             let Extent { top, left, bottom, right } = rejected.extent;
             (top, left, bottom, right, rejected.area_px)

@@ -13,6 +13,7 @@
 //! measuring      background and pixels of a part (patch), centre with covariance (centring): by a model of core and halo
 //!                (halo), by a window (centroid) or by the skirt -> spots
 //! reflections    spots that are faint images of others
+//! parting        centres that parting two spots has moved
 //! ```
 //!
 //! Every pixel at or above its threshold belongs to exactly one part, and every part is either a [`Spot`] or a
@@ -28,6 +29,7 @@ mod ledge;
 mod measuring;
 mod neighbourhood;
 mod part;
+mod parting;
 mod patch;
 mod reflections;
 mod rejection;

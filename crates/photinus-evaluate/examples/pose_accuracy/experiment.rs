@@ -7,6 +7,7 @@ use photinus::airframe::{Airframe, Ring};
 use photinus::camera::{Camera, Ideal, IdealLaw, Model, Pixel};
 use photinus::locator::{Located, Locator, Neighbour, Settings};
 use photinus::pose;
+use photinus::spots;
 use rand_pcg::Pcg64;
 
 use crate::render;
@@ -129,7 +130,7 @@ pub(crate) fn run(
     let camera = source.camera();
     let unit_sigma = if source == Source::Rendered { RENDERED_UNIT_SIGMA } else { UNIT_SIGMA };
     let tilt_sigma_rad = libm::hypot(TILT_RAD, GRAVITY_RAD);
-    // The airframe is exact, no LED is dead, and how it tilts is known.
+    // The airframe is exact, no LED is dead, and how it tilts is known, and so is the noise of the sensor.
     let pose = pose::Settings {
         tilt_sigma_rad,
         marker_sigma_m: 0.0,
@@ -138,7 +139,8 @@ pub(crate) fn run(
         lobe_sigma: 0.002,
         ..pose::Settings::default()
     };
-    let settings = Settings { pose, ..Settings::default() };
+    let spots = spots::Settings { noise: render::noise(&render::PAPER), ..spots::Settings::default() };
+    let settings = Settings { pose, spots, ..Settings::default() };
     let mut locator = Locator::new(camera.clone(), airframe, None, settings).expect("a locator");
     let mut tallies = [Tally::default(); MOST_SPOTS + 1];
     let mut nothing = 0;

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use nalgebra::{Isometry3, Rotation3, Translation3, UnitQuaternion, Vector3};
 use photinus::airframe::Airframe;
+use photinus::spots::Noise;
 use photinus_sim::motion::{Motion, Recorded};
 use photinus_sim::optics::{Gaussian, PointSpread};
 use photinus_sim::preset::Preset;
@@ -106,6 +107,12 @@ pub(crate) fn scene(setup: &Setup, airframe: &str, seed: u64, poses: Option<Reco
         scene.targets[0].motion = Motion::Recorded(poses);
     }
     scene
+}
+
+/// The noise of the pixels, as the sensor's data would tell it.
+pub(crate) fn noise(setup: &Setup) -> Noise {
+    let sensor = scene(setup, "hexarotor-0.4", 0, None).preset.sensor;
+    Noise { read_dn: sensor.read_noise_e / sensor.electrons_per_dn, shot: 1.0 / sensor.electrons_per_dn }
 }
 
 /// A batch of frames with a neighbour each, at random poses.

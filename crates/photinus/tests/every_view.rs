@@ -244,7 +244,7 @@ fn truth_never_leaves_the_bounds_of_a_neighbour() {
     }
 }
 
-/// `cargo test --release -p photinus --test every_view -- --ignored --nocapture`, half a minute.
+/// `cargo test --release -p photinus --test every_view -- --ignored --nocapture`, a minute or two.
 #[test]
 #[ignore = "the full count, for release builds"]
 fn truth_never_leaves_the_bounds_of_a_hundred_thousand_neighbours() {

@@ -28,8 +28,8 @@ const X: usize = 0;
 const Y: usize = 1;
 const CORE: usize = 2;
 const LN_CORE: usize = 3;
-const LN_HALO: usize = 5;
 const HALO: usize = 4;
+const LN_HALO: usize = 5;
 const LEVEL: usize = 6;
 const BESIDE: usize = 7;
 /// Widest window, columns and rows: a spot that needs more is no narrow one.

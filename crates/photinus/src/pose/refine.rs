@@ -4,8 +4,8 @@ use nalgebra::{Matrix5, Vector5, Vector6};
 
 use super::problem::{Normal, Pose, Problem};
 
-/// Most steps towards a mode.
-const MOST_STEPS: usize = 20;
+/// Most steps towards a mode: sharp bearings make the valley of distance against yaw narrow, and the way along it long.
+const MOST_STEPS: usize = 80;
 /// A step that would gain less than this, nats, is the last.
 const SMALL_GAIN: f64 = 1e-4;
 /// The same for a slice, which is one of many.
@@ -83,7 +83,7 @@ pub(super) fn following(here: &Refined, yaw_rad: f64) -> Option<Pose> {
 /// The pose that costs least beside `here` with the yaw turned by `yaw_rad`.
 pub(super) fn turned(problem: &Problem<'_>, here: &Refined, yaw_rad: f64) -> Option<Refined> {
     let mut there = Refined::at(problem, following(here, yaw_rad)?);
-    for _ in 0..4 {
+    for _ in 0..12 {
         let (information, _) = without_yaw(&there.normal);
         let gradient = there.normal.gradient.fixed_rows::<5>(0).into_owned();
         let rest = -information.cholesky()?.solve(&gradient);

@@ -5,16 +5,20 @@
 //! gravity and brightness, a neighbour has a finite estimate within its bounds; and over many random frames the true distance
 //! is within the bounds, whichever spots were taken for one neighbour. Not checked: how good estimates are.
 
+mod paper;
+
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use nalgebra::{Matrix2, Rotation3, Unit, Vector3};
-use photinus::airframe::{Airframe, Led, Lobe, Ring};
+use photinus::airframe::Airframe;
 use photinus::camera::{Bearing, Camera, Ideal, IdealLaw, Model, Pixel};
 use photinus::locator::{Located, Locator, Neighbour, Settings};
 use photinus::pose;
 use photinus::spots::{Extent, Spot};
 use rand_distr::{Distribution, StandardNormal, Uniform};
 use rand_pcg::Pcg64;
+
+use paper::{hexarotor, lanterns, quadrotor};
 
 /// Light of an LED straight ahead at 1 m, and the least that is found, grey levels.
 const POWER: f64 = 40_000.0;
@@ -27,22 +31,6 @@ fn camera() -> Camera {
     let lens =
         Ideal::new(IdealLaw::Equidistant, [1.0 / 3.7673e-3; 2], Pixel::new(449.5, 449.5)).expect("a lens");
     Camera::new(Model::Ideal(lens), 900, 900, Some(100.0 * PI / 180.0)).expect("a camera")
-}
-
-fn hexarotor() -> Airframe {
-    let ring = Ring { arms: 6, radius_m: 0.4, leds_per_arm: 1, splay_rad: 0.0 };
-    Airframe::from_ring("hexarotor", ring).expect("a ring")
-}
-
-fn quadrotor() -> Airframe {
-    let ring = Ring { arms: 4, radius_m: 0.245, leds_per_arm: 2, splay_rad: FRAC_PI_2 };
-    Airframe::from_ring("quadrotor", ring).expect("a ring")
-}
-
-/// A hexarotor whose LEDs shine all around: all six show at once.
-fn lanterns() -> Airframe {
-    let leds = hexarotor().leds().iter().map(|led| Led { lobe: Lobe::Omni, ..*led }).collect();
-    Airframe::new("lanterns", leds).expect("an airframe")
 }
 
 fn uniform(rng: &mut Pcg64, low: f64, high: f64) -> f64 {

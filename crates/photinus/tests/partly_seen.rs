@@ -3,46 +3,26 @@
 //! Single neighbours in pure geometry with a tenth of a pixel, near and across the border of the image or of a mask. Checked:
 //! that the spots in view are taken for one neighbour, that truth is within its bounds, and that its covariance is honest.
 
-use std::f64::consts::{FRAC_PI_2, TAU};
+mod paper;
+
+use std::f64::consts::TAU;
 
 use nalgebra::{Matrix2, Rotation3, Unit, Vector3};
-use photinus::airframe::{Airframe, Led, Lobe, Ring};
-use photinus::camera::{Bearing, Camera, Ideal, IdealLaw, Model, Pixel};
+use photinus::airframe::Airframe;
+use photinus::camera::{Bearing, Pixel};
 use photinus::frame::{FrameView, Mask};
 use photinus::locator::{Locator, Settings};
 use photinus::spots::{Extent, Spot};
 use rand_distr::{Distribution, StandardNormal, Uniform};
 use rand_pcg::Pcg64;
 
+use paper::{HEIGHT, WIDTH, camera, hexarotor, lanterns, quadrotor};
+
 /// Light of an LED straight ahead at 1 m, and the least that is found, grey levels.
 const POWER: f64 = 25_000.0;
 const FAINTEST: f64 = 60.0;
 const SIGMA_PX: f64 = 0.1;
 const TILT_RAD: f64 = 0.08;
-const WIDTH: usize = 752;
-const HEIGHT: usize = 480;
-
-fn camera() -> Camera {
-    let lens =
-        Ideal::new(IdealLaw::Equidistant, [1.0 / 3.7673e-3; 2], Pixel::new(375.5, 239.5)).expect("a lens");
-    Camera::new(Model::Ideal(lens), WIDTH, HEIGHT, None).expect("a camera")
-}
-
-fn hexarotor() -> Airframe {
-    let ring = Ring { arms: 6, radius_m: 0.4, leds_per_arm: 1, splay_rad: 0.0 };
-    Airframe::from_ring("hexarotor", ring).expect("a ring")
-}
-
-fn quadrotor() -> Airframe {
-    let ring = Ring { arms: 4, radius_m: 0.245, leds_per_arm: 2, splay_rad: FRAC_PI_2 };
-    Airframe::from_ring("quadrotor", ring).expect("a ring")
-}
-
-/// A hexarotor whose LEDs shine all around: all six show at once.
-fn lanterns() -> Airframe {
-    let leds = hexarotor().leds().iter().map(|led| Led { lobe: Lobe::Omni, ..*led }).collect();
-    Airframe::new("lanterns", leds).expect("an airframe")
-}
 
 fn uniform(rng: &mut Pcg64, low: f64, high: f64) -> f64 {
     Uniform::new(low, high).expect("a range").sample(rng)

@@ -4,35 +4,21 @@
 //! linear law of the paper's camera. Checked: truth never leaves the bounds, every neighbour is found, and the reported
 //! position does not scatter by more than its covariance says. Not checked: optics and sensors, which a simulator draws.
 
-use std::f64::consts::{FRAC_PI_2, PI, TAU};
+mod paper;
+
+use std::f64::consts::{PI, TAU};
 
 use nalgebra::{Rotation3, Unit, Vector3};
-use photinus::airframe::{Airframe, Ring};
-use photinus::camera::{Bearing, Camera, Ideal, IdealLaw, Model, Pixel};
+use photinus::airframe::Airframe;
+use photinus::camera::{Bearing, Camera};
 use photinus::frame::FrameView;
 use photinus::locator::{Locator, Settings};
 use rand_distr::{Distribution, StandardNormal, Uniform};
 use rand_pcg::Pcg64;
 
-const WIDTH: usize = 752;
-const HEIGHT: usize = 480;
+use paper::{HEIGHT, WIDTH, camera, hexarotor, quadrotor};
+
 const BACKGROUND: f64 = 6.0;
-
-fn camera() -> Camera {
-    let lens =
-        Ideal::new(IdealLaw::Equidistant, [1.0 / 3.7673e-3; 2], Pixel::new(375.5, 239.5)).expect("a lens");
-    Camera::new(Model::Ideal(lens), WIDTH, HEIGHT, None).expect("a camera")
-}
-
-fn hexarotor() -> Airframe {
-    let ring = Ring { arms: 6, radius_m: 0.4, leds_per_arm: 1, splay_rad: 0.0 };
-    Airframe::from_ring("hexarotor", ring).expect("a ring")
-}
-
-fn quadrotor() -> Airframe {
-    let ring = Ring { arms: 4, radius_m: 0.245, leds_per_arm: 2, splay_rad: FRAC_PI_2 };
-    Airframe::from_ring("quadrotor", ring).expect("a ring")
-}
 
 fn uniform(rng: &mut Pcg64, low: f64, high: f64) -> f64 {
     Uniform::new(low, high).expect("a range").sample(rng)

@@ -3,15 +3,19 @@
 //! Single neighbours in pure geometry with a tenth of a pixel. Checked: the weight of the poses that are turned as the truth
 //! is, and that truth is where it is said to be. Not checked: how signals are decoded, and which spots they bring together.
 
-use std::f64::consts::{FRAC_PI_2, TAU};
+mod paper;
+
+use std::f64::consts::TAU;
 
 use nalgebra::{Matrix2, Rotation3, Unit, Vector3};
-use photinus::airframe::{Airframe, Led, Ring};
-use photinus::camera::{Bearing, Camera, Ideal, IdealLaw, Model, Pixel};
+use photinus::airframe::{Airframe, Led};
+use photinus::camera::{Bearing, Camera, Pixel};
 use photinus::locator::{Located, Locator, Settings};
 use photinus::spots::{Extent, Spot};
 use rand_distr::{Distribution, StandardNormal, Uniform};
 use rand_pcg::Pcg64;
+
+use paper::camera;
 
 const SIGMA_PX: f64 = 0.1;
 /// Light of an LED straight ahead at 1 m, and the least that is found, grey levels.
@@ -20,25 +24,18 @@ const FAINTEST: f64 = 60.0;
 /// A signal that no LED carries.
 const FOREIGN: u32 = 77;
 
-fn camera() -> Camera {
-    let lens =
-        Ideal::new(IdealLaw::Equidistant, [1.0 / 3.7673e-3; 2], Pixel::new(375.5, 239.5)).expect("a lens");
-    Camera::new(Model::Ideal(lens), 752, 480, None).expect("a camera")
-}
-
 /// A ring whose LEDs carry the signals that `signal` gives them.
-fn signalled(ring: Ring, signal: impl Fn(u32) -> u32) -> Airframe {
-    let anonymous = Airframe::from_ring("ring", ring).expect("a ring");
+fn signalled(anonymous: &Airframe, signal: impl Fn(u32) -> u32) -> Airframe {
     let leds = (0..).zip(anonymous.leds()).map(|(number, led)| Led { signal: Some(signal(number)), ..*led });
     Airframe::new("signalled", leds.collect()).expect("an airframe")
 }
 
 fn hexarotor(signal: impl Fn(u32) -> u32) -> Airframe {
-    signalled(Ring { arms: 6, radius_m: 0.4, leds_per_arm: 1, splay_rad: 0.0 }, signal)
+    signalled(&paper::hexarotor(), signal)
 }
 
 fn quadrotor(signal: impl Fn(u32) -> u32) -> Airframe {
-    signalled(Ring { arms: 4, radius_m: 0.245, leds_per_arm: 2, splay_rad: FRAC_PI_2 }, signal)
+    signalled(&paper::quadrotor(), signal)
 }
 
 /// A hexarotor without one of its LEDs.

@@ -13,7 +13,7 @@ mod triples;
 use nalgebra::{Unit, Vector2, Vector3};
 
 use super::Sighting;
-use super::views::{ELEVATION_STEP_RAD, Spread, UNSEEN_NATS, Views};
+use super::views::{Arrangement, ELEVATION_STEP_RAD, Spread, UNSEEN_NATS, Views};
 use crate::airframe::Airframe;
 use crate::lanes::{self, LANES, Lanes};
 use crate::pose::{Hypotheses, LogDistance, LogLight, Pose, Symmetry};
@@ -144,20 +144,12 @@ impl Matcher {
         let arrangements = self.views.arrangements(group.len())?;
         let seen = Ordered::of(&image, sightings, group);
         let best = seen.costs(&arrangements.quads, &image, self.tilt_sigma_rad, &mut self.costs);
-        let arrangement = &arrangements.all[best.arrangement];
-        let distance_m = seen.place(arrangement, &image).0.norm();
-        log_power(sightings, group, distance_m, arrangement.mean_log_intensity)
+        Likeness::of(&seen, &image, &arrangements.all[best.arrangement]).log_power(sightings, group)
     }
 
-    /// What it costs that spots of this light are markers of that intensity at a distance, nats.
-    fn power_nats(
-        &self,
-        sightings: &[Sighting],
-        group: &[usize],
-        distance_m: f64,
-        log_intensity: f64,
-    ) -> f64 {
-        let own = log_power(sightings, group, distance_m, log_intensity);
+    /// What it costs that spots of this light are so far away, nats.
+    fn power_nats(&self, sightings: &[Sighting], group: &[usize], likeness: &Likeness) -> f64 {
+        let own = likeness.log_power(sightings, group);
         let Some((known, own)) = self.log_power.zip(own) else { return 0.0 };
         let off = own - known;
         (0.5 * (off / LOG_POWER_SIGMA) * (off / LOG_POWER_SIGMA)).min(MOST_POWER_NATS)
@@ -194,13 +186,12 @@ impl Matcher {
             .costs
             .iter()
             .fold(Lanes::ZERO, |sum, &four| sum + lanes::exp(Lanes::splat(best.nats) - four));
-        let arrangement = &arrangements.all[best.arrangement];
-        let distance_m = seen.place(arrangement, &image).0.norm();
+        let likeness = Likeness::of(&seen, &image, &arrangements.all[best.arrangement]);
         let views = f64::from(best.nats) - libm::log(f64::from(lanes::sum(weight)));
         NEIGHBOUR_NATS
             + views
-            + size_nats(sightings, group, distance_m)
-            + self.power_nats(sightings, group, distance_m, arrangement.mean_log_intensity)
+            + size_nats(sightings, group, likeness.distance_m)
+            + self.power_nats(sightings, group, &likeness)
     }
 
     /// What it costs that a group is some of the markers of a view, nats, and the distance at which it fits best, m.
@@ -210,10 +201,10 @@ impl Matcher {
         group: &[usize],
         gravity: Option<&Unit<Vector3<f64>>>,
     ) -> Option<(f64, f64)> {
-        let missing = self.views.most_visible - group.len();
-        if group.len() < FEWEST_IN_PART || missing == 0 {
+        if !self.may_be_a_part(group) {
             return None;
         }
+        let missing = self.views.most_visible - group.len();
         let mut best: Option<(f64, f64)> = None;
         self.triples.each_start(sightings, group, gravity, self.tilt_sigma_rad, |start| {
             if best.is_none_or(|(nats, _)| start.nats < nats) {
@@ -221,6 +212,11 @@ impl Matcher {
             }
         });
         best.map(|(nats, distance_m)| (nats + UNSEEN_NATS * missing as f64, distance_m))
+    }
+
+    /// Whether a group has closed forms and may show less than a view has.
+    fn may_be_a_part(&self, group: &[usize]) -> bool {
+        (FEWEST_IN_PART..self.views.most_visible).contains(&group.len())
     }
 
     /// Which markers the spots of a group of at least two may be.
@@ -245,7 +241,7 @@ impl Matcher {
                     hypotheses.offer_loose(pose, fit.nats + nats);
                 }
             }
-            if (FEWEST_IN_PART..self.views.most_visible).contains(&group.len()) {
+            if self.may_be_a_part(group) {
                 self.triples.each_start(sightings, group, gravity, self.tilt_sigma_rad, |start| {
                     hypotheses.offer_loose(start.pose, start.nats);
                 });
@@ -275,6 +271,26 @@ impl Matcher {
     }
 }
 
+/// What a group is if it looks like an arrangement.
+struct Likeness {
+    distance_m: f64,
+    /// Mean of the logarithms of the markers' intensities.
+    log_intensity: f64,
+}
+
+impl Likeness {
+    fn of(seen: &Ordered, image: &Image<'_>, arrangement: &Arrangement) -> Self {
+        let distance_m = seen.place(arrangement, image).0.norm();
+        Self { distance_m, log_intensity: arrangement.mean_log_intensity }
+    }
+
+    /// Logarithm of the light that an LED of the group then has straight ahead at 1 m; `None` where a spot has no light.
+    fn log_power(&self, sightings: &[Sighting], group: &[usize]) -> Option<f64> {
+        let sum = group.iter().try_fold(0.0, |sum, &spot| Some(sum + sightings[spot].log_light?.value))?;
+        Some(sum / group.len() as f64 + 2.0 * libm::log(self.distance_m) - self.log_intensity)
+    }
+}
+
 /// What the outline of all spots costs, nats, and the distance at which it fits best, m.
 fn outlined_nats(views: &Views, image: &Image<'_>, tilt_sigma_rad: f64) -> Option<(f64, f64)> {
     let spread = Spread::of(image.places.iter().copied());
@@ -283,13 +299,6 @@ fn outlined_nats(views: &Views, image: &Image<'_>, tilt_sigma_rad: f64) -> Optio
     let best = fits().min_by(|a, b| a.nats.total_cmp(&b.nats))?;
     let weight: f64 = fits().map(|fit| libm::exp(best.nats - fit.nats)).sum();
     Some((best.nats - libm::log(weight), best.place_m.norm()))
-}
-
-/// Logarithm of the light of an LED straight ahead at 1 m if these spots are markers of this mean logarithm of intensity at a
-/// distance; `None` where one has no light.
-fn log_power(sightings: &[Sighting], group: &[usize], distance_m: f64, log_intensity: f64) -> Option<f64> {
-    let sum = group.iter().try_fold(0.0, |sum, &spot| Some(sum + sightings[spot].log_light?.value))?;
-    Some(sum / group.len() as f64 + 2.0 * libm::log(distance_m) - log_intensity)
 }
 
 fn widened(range: &Interval, reach_m: f64) -> Option<Interval> {

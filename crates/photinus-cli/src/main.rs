@@ -23,6 +23,7 @@ mod info;
 mod input;
 mod kind;
 mod locate;
+mod number;
 mod output;
 mod overlay;
 mod page;

@@ -1,8 +1,8 @@
 //! What the user may believe of neighbours before a frame tells.
 
-use std::ops::RangeInclusive;
-
 use photinus::pose::Settings;
+
+use crate::number;
 
 /// Priors of a neighbour's pose.
 #[derive(Debug, clap::Args)]
@@ -40,22 +40,17 @@ impl PoseArgs {
 }
 
 fn tilt_sigma(text: &str) -> Result<f64, String> {
-    number(text, 0.01..=180.0, "degrees")
+    number::within(text, 0.01..=180.0, "degrees")
 }
 
 fn marker_sigma(text: &str) -> Result<f64, String> {
-    number(text, 0.0..=1.0, "metres")
+    number::within(text, 0.0..=1.0, "metres")
 }
 
 fn power_spread(text: &str) -> Result<f64, String> {
-    number(text, 0.001..=10.0, "a share")
+    number::within(text, 0.001..=10.0, "a share")
 }
 
 fn missed(text: &str) -> Result<f64, String> {
-    number(text, 1e-9..=0.5, "a share")
-}
-
-fn number(text: &str, within: RangeInclusive<f64>, what: &str) -> Result<f64, String> {
-    let number: Option<f64> = text.parse().ok().filter(|number| within.contains(number));
-    number.ok_or_else(|| format!("give {what}, {} to {}", within.start(), within.end()))
+    number::within(text, 1e-9..=0.5, "a share")
 }

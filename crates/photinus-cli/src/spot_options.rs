@@ -8,6 +8,7 @@ use photinus_io::dataset::Dataset;
 use photinus_io::mask::{MaskFile, read_mask};
 
 use crate::failure::Failure;
+use crate::number;
 use crate::terminal::Terminal;
 
 /// What is bright, and where not to look.
@@ -62,6 +63,5 @@ pub(crate) fn mask_of(file: Option<&MaskFile>) -> Option<&Mask> {
 }
 
 fn share(text: &str) -> Result<f64, String> {
-    let share: Option<f64> = text.parse().ok().filter(|share| (0.0..=1.0).contains(share));
-    share.ok_or_else(|| "give a share, 0 to 1".to_owned())
+    number::within(text, 0.0..=1.0, "a share")
 }

@@ -12,6 +12,7 @@ use photinus_io::corners::read_corners;
 use photinus_io::image::read_image;
 
 use crate::failure::Failure;
+use crate::number;
 use crate::terminal::Terminal;
 
 /// What the user says about photos and the board in them.
@@ -24,7 +25,7 @@ pub(crate) struct PhotoArgs {
     #[arg(long, value_name = "COLUMNSxROWS", value_parser = counts)]
     grid: [usize; 2],
     /// Distance between neighbouring LEDs, m
-    #[arg(long, value_name = "METRES", default_value_t = 0.05)]
+    #[arg(long, value_name = "METRES", default_value_t = 0.05, value_parser = number::metres)]
     pitch: f64,
     /// Size of the photos, where corners come from a table
     #[arg(long, value_name = "WIDTHxHEIGHT", value_parser = counts)]

@@ -11,6 +11,7 @@ use super::dataset::DatasetSink;
 use crate::detect::in_frame;
 use crate::failure::Failure;
 use crate::input::{Entry, Input};
+use crate::number;
 use crate::output::create;
 use crate::terminal::Terminal;
 
@@ -18,7 +19,7 @@ use crate::terminal::Terminal;
 #[derive(Debug, clap::Args)]
 pub(super) struct FrameArgs {
     /// Frames per second, where the input does not tell
-    #[arg(long, value_name = "HZ", value_parser = positive)]
+    #[arg(long, value_name = "HZ", value_parser = number::positive)]
     rate: Option<f64>,
     /// The camera of a new dataset; the file is copied into it [default: that of the input, if a dataset]
     #[arg(long, value_name = "FILE")]
@@ -27,7 +28,7 @@ pub(super) struct FrameArgs {
     #[arg(long, value_name = "FILE")]
     pub(super) airframe: Option<PathBuf>,
     /// The exposure of a new dataset, microseconds [default: that of the input, if a dataset]
-    #[arg(long, value_name = "US", value_parser = positive)]
+    #[arg(long, value_name = "US", value_parser = number::positive)]
     pub(super) exposure_us: Option<f64>,
 }
 
@@ -123,11 +124,6 @@ fn rate_of(head: &[photinus_io::Result<Entry>]) -> Option<f64> {
 fn fraction(rate_hz: f64) -> (u32, u32) {
     let thousandths = (1e3 * rate_hz).round() as u32;
     if thousandths.is_multiple_of(1000) { (thousandths / 1000, 1) } else { (thousandths, 1000) }
-}
-
-fn positive(text: &str) -> Result<f64, String> {
-    let value = text.parse().ok().filter(|value: &f64| value.is_finite() && *value > 0.0);
-    value.ok_or_else(|| "give a number above 0".to_owned())
 }
 
 #[cfg(test)]

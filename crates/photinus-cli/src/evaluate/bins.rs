@@ -1,4 +1,4 @@
-//! Numbers of the command line.
+//! Bins of distance on the command line.
 
 use photinus_evaluate::RangeBins;
 
@@ -9,12 +9,4 @@ pub(super) fn parse(text: &str) -> Result<RangeBins, String> {
         .ok()
         .and_then(RangeBins::new)
         .ok_or_else(|| "give distances in m that grow, such as 2,5,10".to_owned())
-}
-
-/// A number above 0.
-pub(super) fn positive(text: &str) -> Result<f64, String> {
-    match text.parse() {
-        Ok(value) if value > 0.0 && f64::is_finite(value) => Ok(value),
-        _ => Err("give a number above 0".to_owned()),
-    }
 }

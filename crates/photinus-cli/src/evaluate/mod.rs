@@ -17,6 +17,7 @@ use photinus_io::{Error, Place};
 use serde::Serialize;
 
 use crate::failure::Failure;
+use crate::number;
 use crate::output::{create, refuse_to_replace};
 use crate::terminal::Terminal;
 pub(crate) use plots::PlotFolder;
@@ -53,10 +54,10 @@ pub(crate) struct Args {
     #[arg(long, value_name = "M,M,...", value_parser = bins::parse)]
     bins: Option<RangeBins>,
     /// A spot is no farther than this from its LED, or than its own radius where that is more
-    #[arg(long, value_name = "PX", default_value_t = 3.0, value_parser = bins::positive)]
+    #[arg(long, value_name = "PX", default_value_t = 3.0, value_parser = number::positive)]
     spot_gate: f64,
     /// A neighbour's bearing is no farther than this from truth, but for near ones, which may be 0.6 m aside
-    #[arg(long, value_name = "DEG", default_value_t = 3.0, value_parser = bins::positive)]
+    #[arg(long, value_name = "DEG", default_value_t = 3.0, value_parser = number::positive)]
     bearing_gate: f64,
     /// Print no tables and no warnings
     #[arg(short, long)]

@@ -19,6 +19,7 @@ use photinus_io::{Error, Place};
 use super::write;
 use crate::beforehand;
 use crate::failure::Failure;
+use crate::number;
 use crate::output::refuse_to_replace;
 use crate::terminal::Terminal;
 
@@ -52,7 +53,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "LED-LED=M", value_parser = distance)]
     distance: Vec<([usize; 2], f64)>,
     /// How well those distances are measured: a standard deviation
-    #[arg(long, value_name = "M", default_value_t = 0.001, value_parser = sigma)]
+    #[arg(long, value_name = "M", default_value_t = 0.001, value_parser = number::metres)]
     distance_sigma: f64,
     /// Write the airframe as measured
     #[arg(long, value_name = "FILE")]
@@ -208,13 +209,7 @@ fn distance(text: &str) -> Result<([usize; 2], f64), String> {
     let (leds, distance) = text.split_once('=').ok_or_else(wrong)?;
     let (a, b) = leds.split_once('-').ok_or_else(wrong)?;
     let led = |word: &str| word.trim().parse().map_err(|_| wrong());
-    Ok(([led(a)?, led(b)?], sigma(distance).map_err(|_| wrong())?))
-}
-
-fn sigma(text: &str) -> Result<f64, String> {
-    let metres: Option<f64> =
-        text.trim().parse().ok().filter(|metres: &f64| metres.is_finite() && *metres > 0.0);
-    metres.ok_or_else(|| "give metres, above 0".to_owned())
+    Ok(([led(a)?, led(b)?], number::metres(distance.trim()).map_err(|_| wrong())?))
 }
 
 #[cfg(test)]

@@ -17,6 +17,7 @@ use photinus_io::Error;
 
 use super::write;
 use crate::failure::Failure;
+use crate::number;
 use crate::output::refuse_to_replace;
 use crate::plots::FigureFolder;
 use crate::spot_options::SpotArgs;
@@ -126,6 +127,5 @@ fn refuse(input: &Path, recording: &Recording, error: SpotSizeError) -> Failure 
 }
 
 fn percent(text: &str) -> Result<f64, String> {
-    let percent: Option<f64> = text.parse().ok().filter(|percent| (0.0..=1000.0).contains(percent));
-    percent.ok_or_else(|| "give percent, 0 to 1000".to_owned())
+    number::within(text, 0.0..=1000.0, "percent")
 }

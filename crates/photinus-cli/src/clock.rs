@@ -1,6 +1,8 @@
 //! How long each stage of the flow takes: laps are taken from outside, since the method has no clock.
 
-use std::time::{Duration, Instant};
+use std::time::Instant;
+
+use crate::quantiles::Quantiles;
 
 /// Lap times of the stages, frame by frame.
 pub(crate) struct Clock {
@@ -12,7 +14,8 @@ pub(crate) struct Clock {
 pub(crate) struct Stage {
     /// What the stage is called.
     pub(crate) name: &'static str,
-    laps: Vec<Duration>,
+    /// Their times, ms.
+    pub(crate) laps_ms: Quantiles,
 }
 
 impl Clock {
@@ -29,30 +32,20 @@ impl Clock {
     /// The stage `name` ends now; it began where the lap before ended.
     pub(crate) fn lap(&mut self, name: &'static str) {
         let now = Instant::now();
-        let lap = now - self.last;
+        let lap_ms = 1e3 * (now - self.last).as_secs_f64();
         self.last = now;
         match self.stages.iter_mut().find(|stage| stage.name == name) {
-            Some(stage) => stage.laps.push(lap),
-            None => self.stages.push(Stage { name, laps: vec![lap] }),
+            Some(stage) => stage.laps_ms.add(lap_ms),
+            None => {
+                let mut laps_ms = Quantiles::default();
+                laps_ms.add(lap_ms);
+                self.stages.push(Stage { name, laps_ms });
+            }
         }
     }
 
     /// The stages, in the order of their first laps.
     pub(crate) fn stages(&self) -> &[Stage] {
         &self.stages
-    }
-}
-
-impl Stage {
-    /// The lap in the middle, ms.
-    pub(crate) fn median_ms(&self) -> f64 {
-        let mut laps = self.laps.clone();
-        laps.sort_unstable();
-        laps.get(laps.len() / 2).map_or(0.0, |lap| 1e3 * lap.as_secs_f64())
-    }
-
-    /// The longest lap, ms.
-    pub(crate) fn longest_ms(&self) -> f64 {
-        self.laps.iter().max().map_or(0.0, |lap| 1e3 * lap.as_secs_f64())
     }
 }

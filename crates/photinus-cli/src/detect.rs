@@ -1,5 +1,7 @@
 //! `photinus detect`: frames -> spots. No camera is needed.
 
+use std::path::PathBuf;
+
 use photinus::spots::Detector;
 use photinus_io::results::{RejectedRecord, SpotRecord};
 use photinus_io::{Error, Place};
@@ -41,33 +43,27 @@ impl Args {
 
 /// Runs the command.
 pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> Result<(), Failure> {
+    let done = args.output.done()?;
     let input = args.input.open()?;
     let mask = args.spots.mask(input.dataset.as_ref(), terminal)?;
     let mut detector =
         Detector::new(args.spots.settings()).map_err(|error| Failure::Input(error.to_string()))?;
-    let mut outputs = args.output.open(None, &input.files, None)?;
-    let for_people = args.output.is_for_people(None);
-
-    run::run(
-        input,
-        &mut outputs,
-        terminal,
-        |entry, clock| {
-            let Some(image) = &entry.image else { return Ok(()) };
-            let frame = image.view();
-            if let Some(mask) = &mask {
-                mask.check_size(frame.width(), frame.height())?;
-            }
-            let found = detector
-                .detect(&frame, mask_of(mask.as_ref()))
-                .map_err(|error| in_frame(Error::new(&entry.record.source, error), entry))?;
-            clock.lap("spots");
-            entry.record.spots = found.spots.iter().map(SpotRecord::from).collect();
-            entry.record.rejected = found.rejected.iter().map(RejectedRecord::from).collect();
-            Ok(())
-        },
-        |entry, terminal| if for_people { print_spots(entry, terminal) } else { Ok(()) },
-    )
+    let read: Vec<PathBuf> = input.files.iter().cloned().chain(args.spots.file()).collect();
+    let outputs = args.output.claim(None, &read, None, lines)?;
+    run::run(input, outputs, done.as_ref(), terminal, |entry, clock| {
+        let Some(image) = &entry.image else { return Ok(()) };
+        let frame = image.view();
+        if let Some(mask) = &mask {
+            mask.check_size(frame.width(), frame.height())?;
+        }
+        let found = detector
+            .detect(&frame, mask_of(mask.as_ref()))
+            .map_err(|error| in_frame(Error::new(&entry.record.source, error), entry))?;
+        clock.lap("spots");
+        entry.record.spots = found.spots.iter().map(SpotRecord::from).collect();
+        entry.record.rejected = found.rejected.iter().map(RejectedRecord::from).collect();
+        Ok(())
+    })
 }
 
 /// Says which frame an error is about, where the file does not say it.
@@ -78,13 +74,13 @@ pub(crate) fn in_frame(error: Error, entry: &Entry) -> Error {
     }
 }
 
-fn print_spots(entry: &Entry, terminal: &Terminal) -> Result<(), Failure> {
+fn lines(entry: &Entry) -> Vec<String> {
     let frame = entry.record.frame.unwrap_or_default();
-    for (number, spot) in entry.record.spots.iter().enumerate() {
-        terminal.result(format_args!(
+    let line = |(number, spot): (usize, &SpotRecord)| {
+        format!(
             "frame {frame:>5}  spot {number:>2}  at {:8.2} {:8.2} px  sigma {:.2} px  {:>4} px bright, peak {:>3}",
             spot.u_px, spot.v_px, spot.sigma_px, spot.area_px, spot.peak
-        ))?;
-    }
-    Ok(())
+        )
+    };
+    entry.record.spots.iter().enumerate().map(line).collect()
 }

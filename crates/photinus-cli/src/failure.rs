@@ -5,6 +5,8 @@ use std::process::ExitCode;
 
 use photinus_io::{Cause, Error};
 
+use crate::interrupt;
+
 /// Why the program stops early.
 #[derive(Debug)]
 pub(crate) enum Failure {
@@ -17,8 +19,12 @@ pub(crate) enum Failure {
         /// Whether there was no good one among them.
         all: bool,
     },
+    /// An output failed and was reported; the others are whole: exit 1.
+    Output,
     /// The reader of standard output has had enough, as `head` does: no failure.
     Closed,
+    /// Somebody asked the run to end: exit 130. Says where it ended.
+    Interrupted(String),
 }
 
 impl Failure {
@@ -38,8 +44,8 @@ impl Failure {
     /// What is still to be said.
     pub(crate) fn message(&self) -> Option<&str> {
         match self {
-            Self::Input(message) | Self::Running(message) => Some(message),
-            Self::Frames { .. } | Self::Closed => None,
+            Self::Input(message) | Self::Running(message) | Self::Interrupted(message) => Some(message),
+            Self::Frames { .. } | Self::Output | Self::Closed => None,
         }
     }
 
@@ -47,7 +53,8 @@ impl Failure {
     pub(crate) fn exit_code(&self) -> ExitCode {
         match self {
             Self::Input(_) | Self::Frames { all: true } => ExitCode::from(2),
-            Self::Running(_) | Self::Frames { all: false } => ExitCode::from(1),
+            Self::Running(_) | Self::Output | Self::Frames { all: false } => ExitCode::from(1),
+            Self::Interrupted(_) => interrupt::exit_code(),
             Self::Closed => ExitCode::SUCCESS,
         }
     }

@@ -14,6 +14,7 @@ use photinus_io::{Error, Result};
 
 use crate::failure::Failure;
 use crate::kind::{Kind, kind_of};
+use crate::terminal::input_name;
 
 /// What the user says about frames.
 #[derive(Debug, clap::Args)]
@@ -25,8 +26,11 @@ pub(crate) struct InputArgs {
     #[arg(long, value_name = "WIDTHxHEIGHT[@RATE]", value_parser = raw_format)]
     raw: Option<RawFormat>,
     /// Stop after N frames
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     frames: Option<u64>,
+    /// Let a dataset name images outside of its folder
+    #[arg(long)]
+    allow_outside: bool,
 }
 
 /// A frame on its way to a record of results.
@@ -44,26 +48,61 @@ pub(crate) struct Entry {
 /// Frames ready to be read.
 pub(crate) struct Input {
     /// The frames; one that cannot be read is an error in its place.
-    pub(crate) entries: Box<dyn Iterator<Item = Result<Entry>>>,
+    pub(crate) entries: Entries,
     /// How many there are, where that is known beforehand.
     pub(crate) count: Option<u64>,
     /// The dataset that they are of.
     pub(crate) dataset: Option<Dataset>,
     /// The files that are read, which no output may replace.
     pub(crate) files: Vec<PathBuf>,
+    /// What it is called in messages.
+    pub(crate) name: String,
+}
+
+/// Frames, or spots in their place, in order.
+pub(crate) struct Entries {
+    source: Source,
+    /// How many may still come.
+    left: u64,
+}
+
+enum Source {
+    Frames(FrameSource),
+    Spots(ResultsReader<Box<dyn Read + Send>>),
+}
+
+impl Entries {
+    /// Moves on to frame number `frame`, where that can be done without reading those before it.
+    pub(crate) fn skip_to(&mut self, frame: u64) {
+        if let Source::Frames(frames) = &mut self.source {
+            self.left = self.left.saturating_sub(frames.skip_to(frame));
+        }
+    }
+}
+
+impl Iterator for Entries {
+    type Item = Result<Entry>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        self.left = self.left.checked_sub(1)?;
+        match &mut self.source {
+            Source::Frames(frames) => Some(frames.next()?.map(Entry::from_frame)),
+            Source::Spots(records) => Some(records.next()?.map(Entry::from_spots)),
+        }
+    }
 }
 
 impl InputArgs {
-    /// Inputs without further options.
-    pub(crate) fn of(inputs: &[PathBuf]) -> Self {
-        Self { inputs: inputs.to_vec(), raw: None, frames: None }
+    /// All frames of these inputs.
+    pub(crate) fn of(inputs: &[PathBuf], allow_outside: bool) -> Self {
+        Self { inputs: inputs.to_vec(), raw: None, frames: None, allow_outside }
     }
 
     /// Opens the frames.
     pub(crate) fn open(&self) -> std::result::Result<Input, Failure> {
         let mut input = self.source()?;
         if let Some(limit) = self.frames {
-            input.entries = Box::new(input.entries.take(usize::try_from(limit).unwrap_or(usize::MAX)));
+            input.entries.left = limit;
             input.count = input.count.map(|count| count.min(limit));
         }
         Ok(input)
@@ -74,16 +113,19 @@ impl InputArgs {
         if !self.inputs.is_empty() || self.raw.is_some() {
             return Err(Failure::Input("frames and --spots are given: keep one of them".to_owned()));
         }
-        let reader = ResultsReader::new(open(path)?, path);
-        let limit = self.frames.and_then(|limit| usize::try_from(limit).ok()).unwrap_or(usize::MAX);
-        let entries = reader.take(limit).map(|record| record.map(Entry::from_spots));
-        Ok(Input { entries: Box::new(entries), count: None, dataset: None, files: vec![path.to_owned()] })
+        let spots = Source::Spots(ResultsReader::new(open(path)?, path));
+        let mut input = Input::new(spots, None, vec![path.to_owned()], path);
+        input.entries.left = self.frames.unwrap_or(u64::MAX);
+        Ok(input)
     }
 
     fn source(&self) -> std::result::Result<Input, Failure> {
+        let video = |frames: Result<FrameSource>, path: &Path| {
+            let frames = Source::Frames(frames.map_err(Failure::input)?);
+            Ok(Input::new(frames, None, self.inputs.clone(), path))
+        };
         if let (Some(format), [path]) = (self.raw, self.inputs.as_slice()) {
-            let frames = FrameSource::raw(open(path)?, path, format).map_err(Failure::input)?;
-            return Ok(Input::new(frames, None, self.inputs.clone()));
+            return video(FrameSource::raw(open(path)?, path, format), path);
         }
         match self.inputs.as_slice() {
             [] => Err(Failure::Input(
@@ -93,31 +135,29 @@ impl InputArgs {
             _ if self.raw.is_some() => Err(Failure::Input(
                 "--raw takes one stream: name one file, or - for standard input".to_owned(),
             )),
-            [path] if path.is_dir() => {
-                let dataset = Dataset::read(path).map_err(Failure::input)?;
-                let files = dataset.frames().iter().map(|row| dataset.path(&row.image)).collect();
-                let count = dataset.frames().len() as u64;
-                let mut input = Input::new(FrameSource::dataset(dataset.clone()), Some(count), files);
-                input.dataset = Some(dataset);
-                Ok(input)
-            }
-            [path] if is_video(path)? => {
-                let frames = FrameSource::y4m(open(path)?, path).map_err(Failure::input)?;
-                Ok(Input::new(frames, None, self.inputs.clone()))
-            }
+            [path] if path.is_dir() => self.dataset(path),
+            [path] if is_video(path)? => video(FrameSource::y4m(open(path)?, path), path),
             paths => images(paths),
         }
+    }
+
+    fn dataset(&self, folder: &Path) -> std::result::Result<Input, Failure> {
+        let dataset = Dataset::read(folder).map_err(Failure::input)?;
+        if !self.allow_outside {
+            let advice = "move it there, or allow it with --allow-outside";
+            dataset.check_inside().map_err(|error| Failure::input(error.advise(advice)))?;
+        }
+        let frames = Source::Frames(FrameSource::dataset(dataset.clone()));
+        let mut input = Input::new(frames, Some(dataset.frames().len() as u64), dataset.files(), folder);
+        input.dataset = Some(dataset);
+        Ok(input)
     }
 }
 
 impl Input {
-    fn new(frames: FrameSource, count: Option<u64>, files: Vec<PathBuf>) -> Self {
-        Self {
-            entries: Box::new(frames.map(|frame| frame.map(Entry::from_frame))),
-            count,
-            dataset: None,
-            files,
-        }
+    fn new(source: Source, count: Option<u64>, files: Vec<PathBuf>, name: &Path) -> Self {
+        let entries = Entries { source, left: u64::MAX };
+        Self { entries, count, dataset: None, files, name: input_name(name).into_owned() }
     }
 }
 
@@ -141,10 +181,9 @@ impl Entry {
     }
 }
 
-/// Whether an input is a video. What can be read only once (standard input, a pipe) is taken for one.
+/// Whether an input is a video. Standard input is taken for one, since it can be read only once.
 fn is_video(path: &Path) -> std::result::Result<bool, Failure> {
-    let is_pipe = path.exists() && !path.is_file();
-    Ok(path.as_os_str() == "-" || is_pipe || kind_of(path).map_err(Failure::input)? == Kind::Video)
+    Ok(path.as_os_str() == "-" || kind_of(path).map_err(Failure::input)? == Kind::Video)
 }
 
 /// Image files: all of them must be there, whatever they hold.
@@ -164,7 +203,9 @@ fn images(paths: &[PathBuf]) -> std::result::Result<Input, Failure> {
         }
     }
     let count = paths.len() as u64;
-    Ok(Input::new(FrameSource::images(paths.to_vec()), Some(count), paths.to_vec()))
+    let frames = Source::Frames(FrameSource::images(paths.to_vec()));
+    let name = paths.first().map_or(Path::new("no file"), PathBuf::as_path);
+    Ok(Input::new(frames, Some(count), paths.to_vec(), name))
 }
 
 /// A file, or standard input for `-`.

@@ -1,9 +1,9 @@
 //! What kind of file a path names: told by the content, never by the name.
 
-use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
+use photinus_io::whole::open_regular;
 use photinus_io::{Error, Result};
 
 /// As much of a file as tells what it is.
@@ -38,7 +38,7 @@ pub(crate) fn kind_of(path: &Path) -> Result<Kind> {
         return Ok(Kind::Dataset);
     }
     let mut head = Vec::new();
-    let file = File::open(path).map_err(|error| Error::io(path, error))?;
+    let file = open_regular(path)?;
     file.take(HEAD_BYTES).read_to_end(&mut head).map_err(|error| Error::io(path, error))?;
     Ok(kind_of_content(&head))
 }

@@ -26,6 +26,7 @@ use crate::terminal::Terminal;
 const EXAMPLES: &str = "\
 Examples:
   photinus locate recording --out results.jsonl     a dataset folder says itself what camera and airframe are
+  photinus locate recording --out results.jsonl --resume     goes on where a stopped run ended
   photinus locate *.png --camera camera.txt --airframe quad.toml --overlay seen
   photinus locate video.y4m --camera camera.txt --airframe quad.toml --gravity 0,1,0 --csv results.csv
   photinus locate --spots spots.jsonl --camera camera.txt --airframe quad.toml --out -
@@ -78,6 +79,15 @@ impl Args {
         self.output.quiet
     }
 
+    /// The files that are read beside the input.
+    fn files(&self) -> impl Iterator<Item = PathBuf> {
+        [&self.camera, &self.airframe, &self.spot_curve]
+            .into_iter()
+            .flatten()
+            .cloned()
+            .chain(self.spot_options.file())
+    }
+
     fn open_input(&self) -> std::result::Result<Input, Failure> {
         match &self.spots {
             Some(path) => self.input.open_spots(path),
@@ -121,6 +131,7 @@ impl Args {
 
 /// Runs the command.
 pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> std::result::Result<(), Failure> {
+    let done = args.output.done()?;
     let input = args.open_input()?;
     let dataset = input.dataset.as_ref();
     let camera = args.camera(dataset, terminal)?;
@@ -130,7 +141,8 @@ pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> std::result::Result<(
     if let Some(mask) = &mask {
         mask.check_size(camera.width(), camera.height()).map_err(Failure::input)?;
     }
-    let mut outputs = args.output.open(args.csv.as_deref(), &input.files, Some(&camera))?;
+    let read: Vec<PathBuf> = input.files.iter().cloned().chain(args.files()).collect();
+    let outputs = args.output.claim(args.csv.as_deref(), &read, Some(&camera), lines)?;
     let settings = Settings {
         spots: args.spot_options.settings(),
         max_tilt_rad: args.max_tilt.to_radians(),
@@ -140,15 +152,11 @@ pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> std::result::Result<(
     let mut locator = Locator::new(camera, &airframe, curve, settings).map_err(refuse)?;
     locator.set_mask(mask_of(mask.as_ref()).cloned()).map_err(refuse)?;
 
-    let for_people = args.output.is_for_people(args.csv.as_deref());
     let fill = |entry: &mut Entry, clock: &mut Clock| {
         entry.gravity = args.gravity.or(entry.gravity);
         fill(entry, &mut locator, airframe.name(), clock)
     };
-    let show = |entry: &Entry, terminal: &Terminal| {
-        if for_people { print_neighbours(entry, terminal) } else { Ok(()) }
-    };
-    run::run(input, &mut outputs, terminal, fill, show)
+    run::run(input, outputs, done.as_ref(), terminal, fill)
 }
 
 /// Completes the record of a frame.
@@ -198,11 +206,10 @@ fn name(stage: Stage) -> &'static str {
     }
 }
 
-fn print_neighbours(entry: &Entry, terminal: &Terminal) -> std::result::Result<(), Failure> {
+fn lines(entry: &Entry) -> Vec<String> {
     let frame = entry.record.frame.unwrap_or_default();
-    entry.record.neighbours.iter().try_for_each(|neighbour| {
-        terminal.result(format_args!("frame {frame:>5}  {}", neighbour_line(neighbour)))
-    })
+    let line = |neighbour| format!("frame {frame:>5}  {}", neighbour_line(neighbour));
+    entry.record.neighbours.iter().map(line).collect()
 }
 
 /// Distance, bounds and direction of a neighbour, to be read.

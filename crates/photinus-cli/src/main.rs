@@ -19,27 +19,35 @@ mod demo;
 mod detect;
 mod evaluate;
 mod failure;
+mod fault;
 mod info;
 mod input;
+mod interrupt;
 mod kind;
 mod locate;
 mod number;
+mod odd_frame;
 mod output;
 mod overlay;
 mod page;
 mod plots;
 mod pose_options;
+mod quantiles;
 mod reproduce;
+mod resume;
 mod run;
 mod simulate;
 mod spot_options;
 mod summary;
+mod targets;
 mod terminal;
 
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
+use failure::Failure;
 use terminal::Terminal;
 
 /// Tells a flying robot where its neighbours are, from one ultraviolet camera.
@@ -62,7 +70,7 @@ Examples:
 
 Every command explains itself: photinus locate --help
 
-Exit codes: 0 done, 1 something failed while running, 2 bad usage or input.";
+Exit codes: 0 done, 1 something failed while running, 2 bad usage or input, 130 interrupted.";
 
 #[derive(Subcommand)]
 enum Command {
@@ -78,33 +86,46 @@ enum Command {
 }
 
 fn main() -> ExitCode {
+    fault::be_quiet();
+    interrupt::listen();
     let command = Program::parse().command;
-    let quiet = match &command {
-        Command::Locate(args) => args.quiet(),
-        Command::Detect(args) => args.quiet(),
-        Command::Simulate(args) => args.quiet(),
-        Command::Evaluate(args) => args.quiet(),
-        Command::Reproduce(args) => args.quiet(),
-        Command::Calibrate(args) => args.quiet(),
-        Command::Info(_) | Command::Convert(_) | Command::Demo(_) => false,
-    };
-    let mut terminal = Terminal::new(quiet);
-    let done = match command {
-        Command::Locate(args) => locate::run(&args, &mut terminal),
-        Command::Detect(args) => detect::run(&args, &mut terminal),
-        Command::Info(args) => info::run(&args, &terminal),
-        Command::Convert(args) => convert::run(&args, &mut terminal),
-        Command::Simulate(args) => simulate::run(&args, &mut terminal),
-        Command::Evaluate(args) => evaluate::run(&args, &terminal),
-        Command::Demo(args) => demo::run(&args, &mut terminal),
-        Command::Reproduce(args) => reproduce::run(&args, &mut terminal),
-        Command::Calibrate(args) => calibrate::run(&args, &mut terminal),
-    };
+    let mut terminal = Terminal::new(command.quiet());
+    let done = catch_unwind(AssertUnwindSafe(|| command.run(&mut terminal))).unwrap_or_else(|payload| {
+        Err(Failure::Running(format!("{}; {}", fault::told(payload.as_ref()), fault::ADVICE)))
+    });
     let Err(failure) = done else { return ExitCode::SUCCESS };
     if let Some(message) = failure.message() {
         terminal.error(message);
     }
     failure.exit_code()
+}
+
+impl Command {
+    fn quiet(&self) -> bool {
+        match self {
+            Self::Locate(args) => args.quiet(),
+            Self::Detect(args) => args.quiet(),
+            Self::Simulate(args) => args.quiet(),
+            Self::Evaluate(args) => args.quiet(),
+            Self::Reproduce(args) => args.quiet(),
+            Self::Calibrate(args) => args.quiet(),
+            Self::Info(_) | Self::Convert(_) | Self::Demo(_) => false,
+        }
+    }
+
+    fn run(&self, terminal: &mut Terminal) -> Result<(), Failure> {
+        match self {
+            Self::Locate(args) => locate::run(args, terminal),
+            Self::Detect(args) => detect::run(args, terminal),
+            Self::Info(args) => info::run(args, terminal),
+            Self::Convert(args) => convert::run(args, terminal),
+            Self::Simulate(args) => simulate::run(args, terminal),
+            Self::Evaluate(args) => evaluate::run(args, terminal),
+            Self::Demo(args) => demo::run(args, terminal),
+            Self::Reproduce(args) => reproduce::run(args, terminal),
+            Self::Calibrate(args) => calibrate::run(args, terminal),
+        }
+    }
 }
 
 #[cfg(test)]

@@ -1,16 +1,19 @@
-//! Where results go: JSON lines, CSV, pictures. Every one is opened before any work is done.
+//! Where what was found in frames goes: JSON lines, a table, pictures, lines to read. Every output is opened before any work
+//! is done; one that fails is reported and left out, and the others go on.
 
-use std::fs::File;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use photinus::camera::Camera;
-use photinus_io::Error;
+use photinus_io::Result;
 use photinus_io::results::{CsvWriter, ResultsWriter};
 
 use crate::failure::Failure;
 use crate::input::Entry;
 use crate::overlay::Overlay;
+use crate::resume::Done;
+use crate::targets::{FileTarget, FolderTarget, Targets, WriteArgs};
+use crate::terminal::Terminal;
 
 /// What the user says about results.
 #[derive(Debug, clap::Args)]
@@ -21,125 +24,166 @@ pub(crate) struct OutputArgs {
     /// Draw what was found into a PNG per frame in this folder, which is made
     #[arg(long, value_name = "DIR")]
     overlay: Option<PathBuf>,
+    /// Go on after the last whole line that a stopped run left in --out
+    #[arg(long, requires = "out", conflicts_with = "force")]
+    resume: bool,
+    #[command(flatten)]
+    write: WriteArgs,
     /// Print no notes, no progress, no summary
     #[arg(short, long)]
     pub(crate) quiet: bool,
 }
 
+/// Lines to read, of what was found in a frame.
+type Lines = fn(&Entry) -> Vec<String>;
+
+/// Outputs that may be opened.
+pub(crate) struct Claimed {
+    out: Option<FileTarget>,
+    csv: Option<FileTarget>,
+    overlay: Option<FolderTarget>,
+    camera: Option<Camera>,
+    lines: Option<Lines>,
+}
+
 /// Open outputs.
-#[derive(Default)]
 pub(crate) struct Outputs {
-    results: Option<ResultsWriter<Box<dyn Write>>>,
-    table: Option<CsvWriter<Box<dyn Write>>>,
-    overlay: Option<Overlay>,
+    sinks: Vec<Sink>,
+    /// Whether one was left out.
+    failed: bool,
+    /// The file that results grow in, where they go to one.
+    results: Option<PathBuf>,
+}
+
+/// One of them.
+enum Sink {
+    Results(ResultsWriter<Box<dyn Write>>),
+    Table(CsvWriter<Box<dyn Write>>),
+    Pictures(Overlay),
+    Lines(Lines),
 }
 
 impl OutputArgs {
-    /// Opens the outputs; none of them may replace one of the files that are `read`. The camera, where it is known,
-    /// is for the view from above.
-    pub(crate) fn open(
+    /// What a stopped run has done, if this one is to go on with it.
+    pub(crate) fn done(&self) -> std::result::Result<Option<Done>, Failure> {
+        match (&self.out, self.resume) {
+            (Some(path), true) => Done::read(path),
+            _ => Ok(None),
+        }
+    }
+
+    /// Where the outputs may go; none of them may replace one of the files that are `read`. The camera, where it is known,
+    /// is for the view from above. Without --out and --csv, lines to read are printed.
+    ///
+    /// # Errors
+    /// [`Failure`] when an output would replace something, or cannot be written.
+    pub(crate) fn claim(
         &self,
         csv: Option<&Path>,
         read: &[PathBuf],
         camera: Option<&Camera>,
-    ) -> Result<Outputs, Failure> {
-        for path in self.out.as_deref().into_iter().chain(csv) {
-            refuse_to_replace(path, read)?;
-        }
-        if self.out.as_deref().is_some_and(is_stdout) && csv.is_some_and(is_stdout) {
-            let reason = "--out and --csv both write to standard output: name a file for one of them";
-            return Err(Failure::Input(reason.to_owned()));
-        }
-        let results = match &self.out {
-            None => None,
-            Some(path) => {
-                let (sink, name) = sink(path)?;
-                Some(ResultsWriter::new(sink, name))
-            }
-        };
-        let table = match csv {
-            None => None,
-            Some(path) => {
-                let (sink, name) = sink(path)?;
-                Some(CsvWriter::new(sink, name).map_err(Failure::input)?)
-            }
-        };
-        let overlay = self
-            .overlay
-            .as_ref()
-            .map(|folder| Overlay::create(folder, camera.cloned()).map_err(Failure::input))
-            .transpose()?;
-        Ok(Outputs { results, table, overlay })
+        lines: Lines,
+    ) -> std::result::Result<Claimed, Failure> {
+        // What goes on after a stopped run writes over its files.
+        let write = WriteArgs { force: self.write.force || self.resume };
+        let mut targets = Targets::new(write, read.iter().cloned());
+        let out = self.out.as_deref().map(|path| targets.file(path)).transpose()?;
+        let csv = csv.map(|path| targets.file(path)).transpose()?;
+        let overlay = self.overlay.as_deref().map(|path| targets.folder(path)).transpose()?;
+        let lines = (out.is_none() && csv.is_none()).then_some(lines);
+        Ok(Claimed { out, csv, overlay, camera: camera.cloned(), lines })
     }
+}
 
-    /// Whether the lines of the result are to be read by a person on standard output.
-    pub(crate) fn is_for_people(&self, csv: Option<&Path>) -> bool {
-        self.out.is_none() && csv.is_none()
+impl Claimed {
+    /// Opens the outputs. What is `done` stays, and they go on after it.
+    ///
+    /// # Errors
+    /// [`photinus_io::Error`] when one cannot be opened.
+    pub(crate) fn open(self, done: Option<&Done>) -> Result<Outputs> {
+        let mut sinks = Vec::new();
+        let results = self.out.as_ref().filter(|out| out.is_file()).map(|out| out.path().to_owned());
+        if let Some(target) = self.out {
+            let file = match done {
+                Some(done) => Box::new(done.reopen()?),
+                None => sink(&target)?,
+            };
+            sinks.push(Sink::Results(ResultsWriter::new(file, target.name())));
+        }
+        if let Some(target) = self.csv {
+            let mut table = CsvWriter::new(sink(&target)?, target.name())?;
+            if let Some(done) = done {
+                done.records()?.try_for_each(|record| table.write(&record?))?;
+            }
+            sinks.push(Sink::Table(table));
+        }
+        if let Some(target) = self.overlay {
+            sinks.push(Sink::Pictures(Overlay::new(target.grow()?, self.camera)?));
+        }
+        sinks.extend(self.lines.map(Sink::Lines));
+        Ok(Outputs { sinks, failed: false, results })
     }
 }
 
 impl Outputs {
-    /// Writes a frame everywhere.
-    pub(crate) fn write(&mut self, entry: &Entry) -> Result<(), Failure> {
-        if let Some(results) = &mut self.results {
-            results.write(&entry.record).map_err(Failure::running)?;
+    /// Writes a frame everywhere. An output that fails is reported and left out.
+    ///
+    /// # Errors
+    /// [`Failure`] when no output is left.
+    pub(crate) fn write(&mut self, entry: &Entry, terminal: &Terminal) -> std::result::Result<(), Failure> {
+        let alone = self.sinks.len() == 1;
+        let mut last = None;
+        self.sinks.retain_mut(|sink| match sink.write(entry, terminal) {
+            Ok(()) => true,
+            Err(error) if alone => {
+                last = Some(error);
+                false
+            }
+            Err(error) => {
+                self.failed = true;
+                terminal
+                    .error(format_args!("{error}; nothing more is written there, the other outputs go on"));
+                false
+            }
+        });
+        match last {
+            // A reader that has had enough is no failure, unless something else was lost before.
+            Some(error) if self.failed => Err(Failure::Running(error.to_string())),
+            Some(error) => Err(Failure::running(error)),
+            None if self.sinks.is_empty() => Err(Failure::Output),
+            None => Ok(()),
         }
-        if let Some(table) = &mut self.table {
-            table.write(&entry.record).map_err(Failure::running)?;
-        }
-        if let Some(overlay) = &self.overlay {
-            let image = entry.image.as_ref().map(|image| image.view());
-            overlay.draw(&entry.record, image, entry.gravity.as_ref(), &[]).map_err(Failure::running)?;
-        }
-        Ok(())
+    }
+
+    /// Whether an output was left out.
+    pub(crate) fn failed(&self) -> bool {
+        self.failed
+    }
+
+    /// The file that results grow in, where they go to one.
+    pub(crate) fn results(&self) -> Option<&Path> {
+        self.results.as_deref()
     }
 }
 
-fn is_stdout(path: &Path) -> bool {
-    path.as_os_str() == "-"
-}
-
-/// Opens an output, with its name for the messages; `-` is standard output.
-fn sink(path: &Path) -> Result<(Box<dyn Write>, &Path), Failure> {
-    match is_stdout(path) {
-        true => Ok((Box::new(std::io::stdout()), Path::new("standard output"))),
-        false => Ok((Box::new(create(path)?), path)),
+impl Sink {
+    fn write(&mut self, entry: &Entry, terminal: &Terminal) -> Result<()> {
+        match self {
+            Self::Results(results) => results.write(&entry.record),
+            Self::Table(table) => table.write(&entry.record),
+            Self::Pictures(overlay) => {
+                let image = entry.image.as_ref().map(|image| image.view());
+                overlay.draw(&entry.record, image, entry.gravity.as_ref(), &[])
+            }
+            Self::Lines(lines) => lines(entry).iter().try_for_each(|line| terminal.line(line)),
+        }
     }
 }
 
-/// Creates a file, or says why it cannot be.
-pub(crate) fn create(path: &Path) -> Result<File, Failure> {
-    File::create(path).map_err(|error| {
-        let advice = match error.kind() {
-            std::io::ErrorKind::NotFound => "make its folder first, or write elsewhere",
-            std::io::ErrorKind::IsADirectory => "name a file, not a folder",
-            _ => "write elsewhere, or change the permissions",
-        };
-        Failure::input(Error::io(path, error).advise(advice))
-    })
-}
-
-/// Refuses to write to a file that is read: it would be emptied before its turn comes.
-pub(crate) fn refuse_to_replace(path: &Path, read: &[PathBuf]) -> Result<(), Failure> {
-    let Ok(target) = path.canonicalize() else { return Ok(()) };
-    let is_target = |file: &&PathBuf| file.canonicalize().is_ok_and(|file| file == target);
-    match read.iter().find(is_target) {
-        None => Ok(()),
-        Some(_) => Err(Failure::Input(format!(
-            "{}: this file is an input, it would be replaced; write elsewhere",
-            path.display()
-        ))),
-    }
-}
-
-/// Files of somebody else, or of another run, are left alone.
-pub(crate) fn refuse_to_mix(folder: &Path) -> Result<(), Failure> {
-    let is_empty = |mut entries: std::fs::ReadDir| entries.next().is_none();
-    match folder.exists() && !std::fs::read_dir(folder).is_ok_and(is_empty) {
-        false => Ok(()),
-        true => Err(Failure::Input(format!(
-            "{}: it is there already; remove it, or name another folder with --out",
-            folder.display()
-        ))),
+/// Opens a file that grows, or standard output.
+fn sink(target: &FileTarget) -> Result<Box<dyn Write>> {
+    match target.is_standard() {
+        true => Ok(Box::new(std::io::stdout())),
+        false => Ok(Box::new(target.grow()?)),
     }
 }

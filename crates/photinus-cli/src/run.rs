@@ -1,37 +1,53 @@
 //! The loop that detect and locate share: a frame comes in, its record is filled in, written and counted.
 //!
-//! A frame that fails is reported, counted and skipped; what was written before it stays.
+//! A frame that fails is reported, counted and skipped; what was written before it stays. So it is with a frame on which the
+//! method itself panics: that is a fault of Photinus, but no reason to lose the frames after it.
 
 use std::collections::HashSet;
 use std::mem::discriminant;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
-use photinus_io::Result;
 use photinus_io::image::Conversion;
+use photinus_io::{Error, Place, Result};
 
 use crate::clock::Clock;
 use crate::failure::Failure;
-use crate::input::{Entry, Input};
-use crate::output::Outputs;
+use crate::fault;
+use crate::input::{Entries, Entry, Input};
+use crate::interrupt;
+use crate::odd_frame::Oddity;
+use crate::output::{Claimed, Outputs};
+use crate::resume::Done;
 use crate::summary::Summary;
 use crate::terminal::{Terminal, input_name};
 
 /// After so many failed frames the others are only counted: the first ones say what is wrong.
 const REPORTED_FAILURES: u64 = 10;
 
-/// Takes every frame of `input` through `fill`, which completes its record, and gives `show` what is to be read by a
-/// person.
+/// Takes every frame of `input` through `fill`, which completes its record, and writes it. What is `done` is skipped; its last
+/// frame is made once more, to see that this run finds the same.
 pub(crate) fn run(
     input: Input,
-    outputs: &mut Outputs,
+    outputs: Claimed,
+    done: Option<&Done>,
     terminal: &mut Terminal,
     mut fill: impl FnMut(&mut Entry, &mut Clock) -> Result<()>,
-    mut show: impl FnMut(&Entry, &Terminal) -> std::result::Result<(), Failure>,
 ) -> std::result::Result<(), Failure> {
     let (mut summary, mut clock, mut told) = (Summary::default(), Clock::new(), HashSet::new());
-    terminal.start(input.count);
     let mut entries = input.entries;
-    loop {
+    let mut fill = |entry: &mut Entry, clock: &mut Clock| guarded(entry, clock, &mut fill);
+    let again = match done {
+        Some(done) => Some(go_on(done, &mut entries, &mut clock, &mut fill)?),
+        None => None,
+    };
+    let mut outputs = outputs.open(done).map_err(Failure::input)?;
+    terminal.start(input.count);
+    if let Some(again) = again {
+        outputs.write(&again, terminal)?;
+        terminal.note(format_args!("{}: goes on after frame {}", place(&outputs), number(&again)));
+    }
+    while !interrupt::is_asked() {
         clock.skip();
         let Some(read) = entries.next() else { break };
         clock.lap("reading");
@@ -44,9 +60,9 @@ pub(crate) fn run(
         match filled {
             Ok(entry) => {
                 clock.skip();
-                outputs.write(&entry)?;
-                show(&entry, terminal)?;
+                outputs.write(&entry, terminal)?;
                 clock.lap("writing");
+                tell_oddity(&entry, &mut summary, terminal);
                 summary.count(&entry.record);
             }
             Err(error) => {
@@ -58,14 +74,87 @@ pub(crate) fn run(
         }
         terminal.frame_done();
     }
+    interrupt::look_away();
     terminal.finish();
     if summary.failed > REPORTED_FAILURES {
         terminal.error(format_args!("{} more frames failed", summary.failed - REPORTED_FAILURES));
     }
-    terminal.summary(summary.text(&clock));
+    let resumed = done.is_some();
+    if summary.frames() > 0 || summary.failed > 0 || !resumed {
+        terminal.summary(summary.text(&clock));
+    }
+    if interrupt::is_asked() {
+        return Err(interrupted(&summary, &outputs));
+    }
     match summary.failed {
+        0 if summary.frames() == 0 && !resumed => {
+            Err(Failure::Input(format!("{}: it holds no frame", input.name)))
+        }
+        0 if outputs.failed() => Err(Failure::Output),
         0 => Ok(()),
-        _ => Err(Failure::Frames { all: summary.frames() == 0 }),
+        _ => Err(Failure::Frames { all: summary.frames() == 0 && !resumed }),
+    }
+}
+
+/// Skips what is done and makes its last frame once more.
+fn go_on(
+    done: &Done,
+    entries: &mut Entries,
+    clock: &mut Clock,
+    fill: &mut impl FnMut(&mut Entry, &mut Clock) -> Result<()>,
+) -> std::result::Result<Entry, Failure> {
+    entries.skip_to(done.frame());
+    let reached = entries.find(|entry| {
+        entry.as_ref().is_ok_and(|entry| entry.record.frame.is_some_and(|frame| frame >= done.frame()))
+    });
+    let Some(Ok(mut entry)) = reached else { return Err(done.never_reached()) };
+    if entry.record.frame != Some(done.frame()) {
+        return Err(done.never_reached());
+    }
+    fill(&mut entry, clock).map_err(Failure::input)?;
+    done.check(&entry.record)?;
+    Ok(entry)
+}
+
+/// A panic on a frame is an error of that frame.
+fn guarded(
+    entry: &mut Entry,
+    clock: &mut Clock,
+    fill: &mut impl FnMut(&mut Entry, &mut Clock) -> Result<()>,
+) -> Result<()> {
+    // Every buffer of the method is filled anew by the next frame.
+    match catch_unwind(AssertUnwindSafe(|| fill(entry, clock))) {
+        Ok(filled) => filled,
+        Err(payload) => {
+            let error = Error::format(&entry.record.source, fault::told(payload.as_ref()));
+            Err(error.at(Place::Frame(number(entry))).advise(fault::ADVICE))
+        }
+    }
+}
+
+/// What was done before the run was ended, and how to go on.
+fn interrupted(summary: &Summary, outputs: &Outputs) -> Failure {
+    let done = format!("interrupted after {} frames", summary.frames());
+    Failure::Interrupted(match outputs.results() {
+        Some(path) => format!("{done}; {} holds them, --resume goes on after them", path.display()),
+        None => done,
+    })
+}
+
+fn place(outputs: &Outputs) -> String {
+    outputs.results().map_or("results".to_owned(), |path| path.display().to_string())
+}
+
+fn number(entry: &Entry) -> u64 {
+    entry.record.frame.unwrap_or_default()
+}
+
+/// Says of the first frame of a kind why nothing can be found in it; the summary counts the others.
+fn tell_oddity(entry: &Entry, summary: &mut Summary, terminal: &Terminal) {
+    let Some(oddity) = entry.image.as_ref().and_then(Oddity::of) else { return };
+    if summary.count_odd(oddity) {
+        let source = input_name(Path::new(&entry.record.source));
+        terminal.warning(format_args!("{source}, frame {}: {oddity} (said once)", number(entry)));
     }
 }
 

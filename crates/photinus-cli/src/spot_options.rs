@@ -30,6 +30,11 @@ pub(crate) struct SpotArgs {
 }
 
 impl SpotArgs {
+    /// The mask that was named.
+    pub(crate) fn file(&self) -> Option<PathBuf> {
+        self.mask.clone()
+    }
+
     /// The settings of the detector.
     pub(crate) fn settings(&self) -> Settings {
         let brightness = match (self.threshold, self.contrast) {

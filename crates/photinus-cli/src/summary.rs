@@ -6,6 +6,11 @@ use photinus_io::results::FrameRecord;
 
 use crate::aligned::{Aligned, Side};
 use crate::clock::Clock;
+use crate::odd_frame::Oddity;
+use crate::quantiles::Quantiles;
+
+/// Reasons of rejection that are told apart; spots of other programs may bring any number.
+const MOST_REASONS: usize = 32;
 
 /// What was counted over the frames of a run.
 #[derive(Debug, Default)]
@@ -17,7 +22,8 @@ pub(crate) struct Summary {
     rejected: BTreeMap<String, usize>,
     neighbours: usize,
     frames_with_neighbours: u64,
-    distances_m: Vec<f64>,
+    distances_m: Quantiles,
+    odd: BTreeMap<&'static str, u64>,
     span_s: Option<(f64, f64)>,
 }
 
@@ -27,12 +33,22 @@ impl Summary {
         self.frames += 1;
         self.spots += record.spots.len();
         for rejected in &record.rejected {
-            *self.rejected.entry(rejected.reason.clone()).or_default() += 1;
+            let is_new = !self.rejected.contains_key(&rejected.reason);
+            let others = is_new && self.rejected.len() >= MOST_REASONS;
+            let reason = if others { "others" } else { &rejected.reason };
+            *self.rejected.entry(reason.to_owned()).or_default() += 1;
         }
         self.neighbours += record.neighbours.len();
         self.frames_with_neighbours += u64::from(!record.neighbours.is_empty());
-        self.distances_m
-            .extend(record.neighbours.iter().filter_map(|neighbour| neighbour.distance_m.estimate));
+        let estimates = record.neighbours.iter().filter_map(|neighbour| neighbour.distance_m.estimate);
+        estimates.for_each(|distance_m| self.distances_m.add(distance_m));
+    }
+
+    /// Counts a frame in which nothing can be found; whether it is the first of its kind.
+    pub(crate) fn count_odd(&mut self, oddity: Oddity) -> bool {
+        let count = self.odd.entry(oddity.kind()).or_default();
+        *count += 1;
+        *count == 1
     }
 
     /// When the first and the last frame were taken, s.
@@ -61,6 +77,9 @@ impl Summary {
         }
         table.row(["spots".to_owned(), format!("{}{}", self.spots, self.per_frame())]);
         table.row(["rejected".to_owned(), self.reasons()]);
+        for (kind, count) in &self.odd {
+            table.row(["odd".to_owned(), format!("{count} frames are {kind}: nothing can be found in them")]);
+        }
         if self.neighbours > 0 {
             let seen = format!("{} in {} of the frames", self.neighbours, self.frames_with_neighbours);
             table.row(["neighbours".to_owned(), seen]);
@@ -73,11 +92,13 @@ impl Summary {
 
     /// What was counted, and the time per frame of each stage.
     pub(crate) fn text(&self, clock: &Clock) -> String {
-        let mut times = Aligned::new(0, &[Side::Left, Side::Right, Side::Right]);
-        times.row(["ms per frame", "median", "longest"]);
+        let mut times = Aligned::new(0, &[Side::Left, Side::Right, Side::Right, Side::Right, Side::Right]);
+        times.row(["ms per frame", "p50", "p99", "p99.9", "longest"]);
         for stage in clock.stages() {
-            let number = |ms: f64| format!("{ms:.2}");
-            times.row([format!("  {}", stage.name), number(stage.median_ms()), number(stage.longest_ms())]);
+            let laps = &stage.laps_ms;
+            let told = [laps.at(0.5), laps.at(0.99), laps.at(0.999), laps.largest()];
+            let [p50, p99, p999, longest] = told.map(|ms| ms.map_or(String::new(), |ms| format!("{ms:.2}")));
+            times.row([format!("  {}", stage.name), p50, p99, p999, longest]);
         }
         match self.frames {
             0 => self.counts(0).to_string(),
@@ -104,13 +125,11 @@ impl Summary {
     }
 
     fn distances(&self) -> Option<String> {
-        let mut sorted = self.distances_m.clone();
-        sorted.sort_unstable_by(f64::total_cmp);
-        let (first, last) = (sorted.first()?, sorted.last()?);
-        let median = sorted[sorted.len() / 2];
-        Some(match sorted.len() {
-            1 => format!("{first:.2} m"),
-            _ => format!("median {median:.2} m, from {first:.2} to {last:.2} m"),
+        let distances = &self.distances_m;
+        let (first, last) = (distances.smallest()?, distances.largest()?);
+        Some(match (distances.count(), distances.at(0.5)) {
+            (2.., Some(median)) => format!("median {median:.2} m, from {first:.2} to {last:.2} m"),
+            _ => format!("{first:.2} m"),
         })
     }
 }

@@ -5,11 +5,13 @@
 
 use std::borrow::Cow;
 use std::fmt::Display;
-use std::io::{ErrorKind, Write};
+use std::io::Write;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+use photinus_io::Error;
 
 use crate::failure::Failure;
 
@@ -91,10 +93,16 @@ impl Terminal {
 
     /// A line of the result.
     pub(crate) fn result(&self, line: impl Display) -> Result<(), Failure> {
-        self.bar.suspend(|| writeln!(std::io::stdout(), "{line}")).map_err(|error| match error.kind() {
-            ErrorKind::BrokenPipe => Failure::Closed,
-            _ => Failure::Running(format!("standard output: {error}")),
-        })
+        self.line(line).map_err(Failure::running)
+    }
+
+    /// A line of the result.
+    ///
+    /// # Errors
+    /// [`Error`] when standard output is closed or full.
+    pub(crate) fn line(&self, line: impl Display) -> photinus_io::Result<()> {
+        let written = self.bar.suspend(|| writeln!(std::io::stdout(), "{line}"));
+        written.map_err(|error| Error::io("standard output", error))
     }
 
     fn say(&self, line: impl Display) {

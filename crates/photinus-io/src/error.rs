@@ -38,6 +38,9 @@ pub enum Cause {
     /// The operating system refused.
     #[error("{0}")]
     Io(#[from] std::io::Error),
+    /// The last line of a stream of lines is no whole one: whoever wrote it was stopped.
+    #[error("the last line is cut: the run that wrote it was stopped")]
+    Cut,
     /// The text or bytes do not follow the format.
     #[error("{0}")]
     Format(String),

@@ -76,6 +76,27 @@ impl FrameSource {
     }
 }
 
+impl FrameSource {
+    /// Moves on to frame number `frame` without reading those before it, and says how many it passed: none in a stream, where
+    /// they must be read.
+    pub fn skip_to(&mut self, frame: u64) -> u64 {
+        let (next, target) = match &mut self.0 {
+            Kind::Images { paths, next } => {
+                let target = usize::try_from(frame).unwrap_or(usize::MAX).min(paths.len());
+                (next, target)
+            }
+            Kind::Dataset { dataset, next } => {
+                let target = dataset.frames().partition_point(|row| row.frame < frame);
+                (next, target)
+            }
+            Kind::Y4m { .. } | Kind::Raw { .. } => return 0,
+        };
+        let passed = target.saturating_sub(*next);
+        *next += passed;
+        passed as u64
+    }
+}
+
 impl Iterator for FrameSource {
     type Item = Result<Frame>;
 

@@ -7,6 +7,7 @@
 //! image, video, dataset -> frames -> (photinus) -> results
 //! camera, airframe, mask, blink, spot_curve: what the method is told beforehand
 //! calibration: tables that calibrations are made from
+//! whole: files that are read and written whole or not at all
 //! ```
 
 pub mod airframe;
@@ -26,7 +27,7 @@ mod scratch;
 pub mod spot_curve;
 pub mod table;
 pub mod video;
-mod whole;
+pub mod whole;
 
 pub use camera::{CameraFile, CameraFormat, read_camera};
 pub use error::{Cause, Error, Place, Result};

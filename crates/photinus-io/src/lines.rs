@@ -8,7 +8,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use crate::error::json_reason;
-use crate::{Error, Place, Result};
+use crate::{Cause, Error, Place, Result};
 
 /// Longest line: thousands of spots.
 const MAX_LINE_BYTES: usize = 16 << 20;
@@ -60,7 +60,11 @@ impl<R: Read, T: DeserializeOwned> Iterator for JsonLines<R, T> {
             };
             self.ended = line.is_empty();
             if !line.trim_ascii().is_empty() {
-                return Some(serde_json::from_slice(&line).map_err(|error| self.refuse(&error)));
+                let record = serde_json::from_slice(&line);
+                return Some(record.map_err(|error| match line.ends_with(b"\n") {
+                    true => self.refuse(&error),
+                    false => self.cut(),
+                }));
             }
         }
         None
@@ -68,6 +72,10 @@ impl<R: Read, T: DeserializeOwned> Iterator for JsonLines<R, T> {
 }
 
 impl<R, T> JsonLines<R, T> {
+    fn cut(&self) -> Error {
+        Error::new(&self.name, Cause::Cut).at(Place::Line(self.line)).advise("remove it, or run again")
+    }
+
     fn refuse(&self, error: &serde_json::Error) -> Error {
         let advice = match error.classify() {
             serde_json::error::Category::Eof => "the line is cut: remove it, or run again",

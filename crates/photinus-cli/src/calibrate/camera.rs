@@ -1,18 +1,18 @@
 //! `photinus calibrate camera`: photos of a grid -> a camera, and how sure it is.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::ValueEnum;
 use photinus_calibrate::camera::{BoardChoice, Calibration, Choices, calibrate};
 use photinus_calibrate::lens::LensModel;
-use photinus_io::Error;
 use photinus_io::camera::{CalibrationSummary, write_calibrated_camera_toml, write_ocam_text};
+use photinus_io::whole::{Existing, write_whole};
 
 use super::photos::{PhotoArgs, side_by_side};
 use super::report::{CameraReport, Repeats};
 use super::{advice, page, table};
 use crate::failure::Failure;
-use crate::output::{create, refuse_to_replace};
+use crate::targets::{FileTarget, FolderTarget, Targets, WriteArgs};
 use crate::terminal::Terminal;
 
 const EXAMPLES: &str = "\
@@ -51,6 +51,8 @@ pub(crate) struct Args {
     /// Calibrations from photos drawn with replacement
     #[arg(long, value_name = "N", default_value_t = 100)]
     bootstraps: u64,
+    #[command(flatten)]
+    write: WriteArgs,
     /// Print errors only
     #[arg(short, long)]
     quiet: bool,
@@ -91,9 +93,12 @@ impl Args {
 
 /// Runs the command.
 pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> Result<(), Failure> {
-    for out in [Some(&args.out), args.ocam.as_ref()].into_iter().flatten() {
-        refuse_to_replace(out, args.photos.files())?;
-    }
+    let mut targets = Targets::new(args.write, args.photos.files().iter().cloned());
+    let out = Outputs {
+        camera: targets.file(&args.out)?,
+        ocam: args.ocam.as_deref().map(|path| targets.file(path)).transpose()?,
+        report: args.report.as_deref().map(|path| targets.folder(path)).transpose()?,
+    };
     let searched = args.photos.search(terminal)?;
     let name = |photo: usize| &searched.photos[photo].name;
     for (photo, error) in &searched.refused {
@@ -120,7 +125,7 @@ pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> Result<(), Failure> {
     for warning in &report.warnings {
         terminal.warning(warning);
     }
-    write(args, &calibration, &report, terminal)
+    out.write(&calibration, &report, terminal)
 }
 
 /// Halves of the photos and photos drawn with replacement, on all processors.
@@ -140,46 +145,60 @@ fn repeat(calibration: &Calibration, args: &Args, terminal: &Terminal) -> Repeat
     }
 }
 
-fn write(
-    args: &Args,
-    calibration: &Calibration,
-    report: &CameraReport,
-    terminal: &Terminal,
-) -> Result<(), Failure> {
-    let summary = CalibrationSummary {
-        photos_used: u32::try_from(report.photos_used).unwrap_or(u32::MAX),
-        mean_px: report.mean_px,
-        rms_px: report.rms_px,
-        max_px: report.max_px,
-    };
-    let mut file = create(&args.out)?;
-    write_calibrated_camera_toml(calibration.camera(), Some(&summary), &mut file, &args.out)
-        .map_err(Failure::running)?;
-    terminal.summary(format_args!("{}: written", args.out.display()));
-    if let Some(path) = &args.ocam {
-        let ocam =
-            calibration.ocam().map_err(|error| Failure::Running(format!("{}: {error}", path.display())))?;
-        let inverse = write_ocam_text(&ocam.camera, &mut create(path)?, path).map_err(Failure::running)?;
-        terminal.summary(format_args!(
-            "{}: written, within {:.3} mrad of the camera, its polynomials within {:.4} px of each other",
-            path.display(),
-            1e3 * ocam.max_off_rad,
-            inverse.max_px
-        ));
-    }
-    match &args.report {
-        Some(folder) => write_report(folder, report, terminal),
-        None => Ok(()),
+/// Where the calibration goes.
+struct Outputs {
+    camera: FileTarget,
+    ocam: Option<FileTarget>,
+    report: Option<FolderTarget>,
+}
+
+impl Outputs {
+    fn write(
+        &self,
+        calibration: &Calibration,
+        report: &CameraReport,
+        terminal: &Terminal,
+    ) -> Result<(), Failure> {
+        let summary = CalibrationSummary {
+            photos_used: u32::try_from(report.photos_used).unwrap_or(u32::MAX),
+            mean_px: report.mean_px,
+            rms_px: report.rms_px,
+            max_px: report.max_px,
+        };
+        let (mut text, path) = (Vec::new(), self.camera.path());
+        write_calibrated_camera_toml(calibration.camera(), Some(&summary), &mut text, path)
+            .and_then(|()| self.camera.write(&text))
+            .map_err(Failure::running)?;
+        terminal.summary(format_args!("{}: written", path.display()));
+        self.ocam.as_ref().map_or(Ok(()), |target| write_ocam(target, calibration, terminal))?;
+        self.report.as_ref().map_or(Ok(()), |folder| write_report(folder, report, terminal))
     }
 }
 
-fn write_report(folder: &Path, report: &CameraReport, terminal: &Terminal) -> Result<(), Failure> {
-    std::fs::create_dir_all(folder).map_err(|error| Failure::running(Error::io(folder, error)))?;
-    let path = folder.join("report.json");
+fn write_ocam(target: &FileTarget, calibration: &Calibration, terminal: &Terminal) -> Result<(), Failure> {
+    let (mut text, path) = (Vec::new(), target.path());
+    let ocam =
+        calibration.ocam().map_err(|error| Failure::Running(format!("{}: {error}", path.display())))?;
+    let inverse = write_ocam_text(&ocam.camera, &mut text, path).map_err(Failure::running)?;
+    target.write(&text).map_err(Failure::running)?;
+    terminal.summary(format_args!(
+        "{}: written, within {:.3} mrad of the camera, its polynomials within {:.4} px of each other",
+        path.display(),
+        1e3 * ocam.max_off_rad,
+        inverse.max_px
+    ));
+    Ok(())
+}
+
+fn write_report(target: &FolderTarget, report: &CameraReport, terminal: &Terminal) -> Result<(), Failure> {
     let text = serde_json::to_string_pretty(report)
-        .map_err(|error| Failure::Running(format!("{}: {error}", path.display())))?;
-    std::fs::write(&path, text).map_err(|error| Failure::running(Error::io(&path, error)))?;
-    page::write(folder, report).map_err(Failure::running)?;
+        .map_err(|error| Failure::Running(format!("{}: {error}", target.path().display())))?;
+    let folder = target.whole().map_err(Failure::running)?;
+    write_whole(folder.path().join("report.json"), text.as_bytes(), Existing::Keep)
+        .and_then(|()| page::write(folder.path(), report))
+        .map_err(|error| Failure::running(folder.tell(error)))?;
+    folder.keep().map_err(Failure::running)?;
+    let path = target.path().join("report.json");
     terminal.summary(format_args!("{}: written, with a page to look at, index.html", path.display()));
     Ok(())
 }

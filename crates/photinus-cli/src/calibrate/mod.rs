@@ -11,14 +11,9 @@ mod report;
 mod spot_size;
 mod table;
 
-use std::io::Write;
-use std::path::Path;
-
 use clap::Subcommand;
-use photinus_io::Error;
 
 use crate::failure::Failure;
-use crate::output::create;
 use crate::terminal::Terminal;
 
 /// Calibrate: from photos and recordings to a camera whose errors are known
@@ -60,9 +55,4 @@ pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> Result<(), Failure> {
         What::Mounting(args) => mounting::run(args, terminal),
         What::Airframe(args) => airframe::run(args, terminal),
     }
-}
-
-/// Writes a file of text, or says why it cannot be.
-fn write(path: &Path, text: &str) -> Result<(), Failure> {
-    create(path)?.write_all(text.as_bytes()).map_err(|error| Failure::running(Error::io(path, error)))
 }

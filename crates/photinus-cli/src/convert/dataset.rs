@@ -8,14 +8,17 @@ use photinus_io::airframe::read_airframe;
 use photinus_io::dataset::{Dataset, DatasetInfo, DatasetWriter, TruthFrame};
 use photinus_io::mask::read_mask;
 use photinus_io::spot_curve::read_spot_curve;
+use photinus_io::whole::WholeFolder;
 use photinus_io::{Error, Result, read_camera};
 
 use super::frames::FrameArgs;
 use crate::failure::Failure;
 use crate::input::Entry;
+use crate::targets::FolderTarget;
 
 /// A dataset folder that frames are written to.
 pub(super) struct DatasetSink {
+    making: WholeFolder,
     writer: DatasetWriter,
     rate_hz: f64,
     truth: HashMap<u64, TruthFrame>,
@@ -32,7 +35,7 @@ struct Parts {
 impl DatasetSink {
     /// Starts a dataset in `out`; what the command line does not say is taken from the dataset that is converted.
     pub(super) fn create(
-        out: &Path,
+        out: &FolderTarget,
         args: &FrameArgs,
         rate_hz: Option<f64>,
         source: Option<&Dataset>,
@@ -57,10 +60,12 @@ impl DatasetSink {
         parts.check().map_err(Failure::input)?;
         let truth = source.map_or(Ok(None), Dataset::truth).map_err(Failure::input)?.unwrap_or_default();
         let info = parts.info(exposure_us, rate_hz);
-        let writer = DatasetWriter::create(out, &info).map_err(Failure::input)?;
-        parts.copy(&info, out).map_err(Failure::running)?;
+        let making = out.whole().map_err(Failure::input)?;
+        let writer = DatasetWriter::create(making.path(), &info)
+            .map_err(|error| Failure::input(making.tell(error)))?;
+        parts.copy(&info, making.path()).map_err(|error| Failure::running(making.tell(error)))?;
         let truth = truth.into_iter().map(|truth| (truth.frame, truth)).collect();
-        Ok(Self { writer, rate_hz, truth })
+        Ok(Self { making, writer, rate_hz, truth })
     }
 
     /// Writes a frame, with its number, its time and its truth.
@@ -68,8 +73,16 @@ impl DatasetSink {
         let Some(image) = &entry.image else { return Ok(()) };
         let number = entry.record.frame.unwrap_or_default();
         let time_s = entry.record.time_s.unwrap_or(number as f64 / self.rate_hz);
-        self.writer.numbered_frame(number, &image.view(), time_s, entry.gravity)?;
-        self.truth.get(&number).map_or(Ok(()), |truth| self.writer.truth(truth))
+        let written = self.writer.numbered_frame(number, &image.view(), time_s, entry.gravity);
+        let truth = self.truth.get(&number);
+        let written = written.and_then(|()| truth.map_or(Ok(()), |truth| self.writer.truth(truth)));
+        written.map_err(|error| self.making.tell(error))
+    }
+
+    /// The folder is whole.
+    pub(super) fn keep(self) -> Result<()> {
+        drop(self.writer);
+        self.making.keep()
     }
 }
 

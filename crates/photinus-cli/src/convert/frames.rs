@@ -1,18 +1,20 @@
 //! Frames to a Y4M video or to a dataset folder.
 
-use std::fs::File;
 use std::io::BufWriter;
 use std::path::{Path, PathBuf};
 
 use photinus_io::video::Y4mWriter;
+use photinus_io::whole::WholeFile;
+use photinus_io::{Cause, Error};
 
 use super::Format;
 use super::dataset::DatasetSink;
 use crate::detect::in_frame;
 use crate::failure::Failure;
 use crate::input::{Entry, Input};
+use crate::interrupt;
 use crate::number;
-use crate::output::create;
+use crate::targets::{FileTarget, Targets};
 use crate::terminal::Terminal;
 
 /// What frames do not say themselves.
@@ -27,14 +29,24 @@ pub(super) struct FrameArgs {
     /// The airframe of a new dataset; the file is copied into it [default: that of the input, if a dataset]
     #[arg(long, value_name = "FILE")]
     pub(super) airframe: Option<PathBuf>,
+    /// Let a dataset name images outside of its folder
+    #[arg(long)]
+    pub(super) allow_outside: bool,
     /// The exposure of a new dataset, microseconds [default: that of the input, if a dataset]
     #[arg(long, value_name = "US", value_parser = number::positive)]
     pub(super) exposure_us: Option<f64>,
 }
 
+impl FrameArgs {
+    /// The files that are read beside the frames.
+    pub(super) fn files(&self) -> impl Iterator<Item = PathBuf> {
+        [&self.camera, &self.airframe].into_iter().flatten().cloned()
+    }
+}
+
 /// Where frames go.
 enum Sink {
-    Video { writer: Option<Y4mWriter<BufWriter<File>>>, file: Option<File>, rate: (u32, u32) },
+    Video { target: FileTarget, writer: Option<Y4mWriter<BufWriter<WholeFile>>>, rate: (u32, u32) },
     Dataset(DatasetSink),
 }
 
@@ -44,6 +56,7 @@ pub(super) fn convert(
     out: &Path,
     format: Format,
     args: &FrameArgs,
+    mut targets: Targets,
     terminal: &mut Terminal,
 ) -> Result<(), Failure> {
     let dataset = input.dataset.as_ref();
@@ -52,8 +65,8 @@ pub(super) fn convert(
     let head: Vec<_> = entries.by_ref().take(2).collect();
     let rate_hz = args.rate.or(of_dataset).or_else(|| rate_of(&head));
     let mut sink = match format {
-        Format::Dataset => Sink::Dataset(DatasetSink::create(out, args, rate_hz, dataset)?),
-        _ => Sink::Video { writer: None, file: Some(create(out)?), rate: rate_hz.map_or((0, 0), fraction) },
+        Format::Dataset => Sink::Dataset(DatasetSink::create(&targets.folder(out)?, args, rate_hz, dataset)?),
+        _ => Sink::Video { target: targets.file(out)?, writer: None, rate: rate_hz.map_or((0, 0), fraction) },
     };
     if format == Format::Y4m && rate_hz.is_none() {
         terminal.note(format_args!(
@@ -64,51 +77,79 @@ pub(super) fn convert(
     let (mut good, mut failed, mut with_gravity) = (0_u64, 0_u64, 0_u64);
     terminal.start(input.count);
     for entry in head.into_iter().chain(entries) {
-        let written = entry.and_then(|entry| {
-            with_gravity += u64::from(entry.gravity.is_some());
-            sink.write(&entry, out)
-        });
-        match written {
-            Ok(()) => good += 1,
+        match entry {
+            Ok(entry) => {
+                with_gravity += u64::from(entry.gravity.is_some());
+                match sink.write(&entry) {
+                    Ok(()) => good += 1,
+                    // A full disk stays full; a frame that does not fit is the frame's own fault.
+                    Err(error) if matches!(error.cause, Cause::Io(_)) => {
+                        return Err(Failure::running(error));
+                    }
+                    Err(error) => {
+                        failed += 1;
+                        terminal.error(error);
+                    }
+                }
+            }
             Err(error) => {
                 failed += 1;
                 terminal.error(error);
             }
         }
         terminal.frame_done();
+        if interrupt::is_asked() {
+            break;
+        }
     }
+    interrupt::look_away();
     terminal.finish();
-    sink.finish().map_err(Failure::running)?;
+    if good == 0 {
+        let none = || Failure::Input(format!("{}: it holds no frame", input.name));
+        return Err(if failed > 0 { Failure::Frames { all: true } } else { none() });
+    }
+    sink.keep().map_err(Failure::running)?;
     if with_gravity > 0 && format == Format::Y4m {
         let reason = "a video holds no gravity and no times of single frames: they are not kept";
         terminal.note(format_args!("{}: {reason}", out.display()));
     }
-    if failed > 0 { Err(Failure::Frames { all: good == 0 }) } else { Ok(()) }
+    if interrupt::is_asked() {
+        let told = format!("interrupted after {good} frames; {} holds them", out.display());
+        return Err(Failure::Interrupted(told));
+    }
+    if failed > 0 { Err(Failure::Frames { all: false }) } else { Ok(()) }
 }
 
 impl Sink {
-    fn write(&mut self, entry: &Entry, out: &Path) -> photinus_io::Result<()> {
+    fn write(&mut self, entry: &Entry) -> photinus_io::Result<()> {
         match self {
             Self::Dataset(dataset) => dataset.write(entry),
-            Self::Video { writer, file, rate } => {
+            Self::Video { target, writer, rate } => {
                 let Some(image) = &entry.image else { return Ok(()) };
                 let frame = image.view();
-                if let (None, Some(file)) = (&writer, file.take()) {
-                    let size = (frame.width(), frame.height());
-                    *writer = Some(Y4mWriter::new(BufWriter::new(file), out, size, *rate)?);
-                }
-                match writer {
-                    Some(writer) => writer.write(&frame).map_err(|error| in_frame(error, entry)),
-                    None => Ok(()),
-                }
+                let writer = match writer {
+                    Some(writer) => writer,
+                    none => {
+                        let size = (frame.width(), frame.height());
+                        let file = BufWriter::new(target.whole()?);
+                        none.insert(Y4mWriter::new(file, target.path(), size, *rate)?)
+                    }
+                };
+                writer.write(&frame).map_err(|error| in_frame(error, entry))
             }
         }
     }
 
-    fn finish(self) -> photinus_io::Result<()> {
+    /// What was written is whole.
+    fn keep(self) -> photinus_io::Result<()> {
         match self {
-            Self::Video { writer: Some(writer), .. } => writer.finish().map(drop),
-            Self::Video { .. } | Self::Dataset(_) => Ok(()),
+            Self::Video { target, writer, .. } => {
+                let Some(writer) = writer else { return Ok(()) };
+                let buffered = writer.finish()?;
+                let refuse = |error| Error::io(target.path(), error);
+                buffered.into_inner().map_err(|error| refuse(error.into_error()))?.keep()
+            }
+            Self::Dataset(dataset) => dataset.keep(),
         }
     }
 }

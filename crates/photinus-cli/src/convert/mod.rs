@@ -11,7 +11,7 @@ use clap::ValueEnum;
 use crate::failure::Failure;
 use crate::input::InputArgs;
 use crate::kind::{Kind, kind_of};
-use crate::output::refuse_to_replace;
+use crate::targets::{FileTarget, Targets, WriteArgs};
 use crate::terminal::Terminal;
 
 const EXAMPLES: &str = "\
@@ -42,6 +42,8 @@ pub(crate) struct Args {
     to: Option<Format>,
     #[command(flatten)]
     frames: frames::FrameArgs,
+    #[command(flatten)]
+    write: WriteArgs,
 }
 
 /// The formats that are written.
@@ -72,7 +74,6 @@ pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> Result<(), Failure> {
     if args.out.as_os_str() == "-" {
         return Err(Failure::Input("standard output: convert writes files; name one".to_owned()));
     }
-    refuse_to_replace(&args.out, &args.inputs)?;
     let is_frames = matches!(format, Format::Y4m | Format::Dataset);
     if let (false, [other, ..]) = (is_frames, others) {
         return Err(Failure::Input(format!(
@@ -80,24 +81,29 @@ pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> Result<(), Failure> {
             other.display()
         )));
     }
-    match (kind, format) {
-        (Kind::Camera, Format::Ocam) => text::camera_to_ocam(first, &args.out, terminal),
-        (Kind::Camera, Format::Toml) => text::camera_to_toml(first, &args.out, terminal),
-        (Kind::Airframe, Format::Layout) => text::airframe_to_layout(first, &args.out, terminal),
-        (Kind::Airframe, Format::Toml) => text::airframe_to_toml(first, &args.out, terminal),
-        (Kind::Results, Format::Csv) => text::results_to_csv(first, &args.out, terminal),
-        (Kind::Image | Kind::Video | Kind::Dataset, Format::Y4m | Format::Dataset) => {
-            let input = InputArgs::of(&args.inputs).open()?;
-            frames::convert(input, &args.out, format, &args.frames, terminal)
-        }
-        _ => Err(Failure::Input(format!(
-            "{}: this is {}, which cannot become {}; choose {}",
-            first.display(),
-            what(kind),
-            name(format),
-            choices(kind)
-        ))),
+    let targets = |read: &[PathBuf]| Targets::new(args.write, read.iter().cloned());
+    if is_frames && matches!(kind, Kind::Image | Kind::Video | Kind::Dataset) {
+        let input = InputArgs::of(&args.inputs, args.frames.allow_outside).open()?;
+        let read: Vec<PathBuf> = input.files.iter().cloned().chain(args.frames.files()).collect();
+        return frames::convert(input, &args.out, format, &args.frames, targets(&read), terminal);
     }
+    let convert: fn(&Path, &FileTarget, &Terminal) -> Result<(), Failure> = match (kind, format) {
+        (Kind::Camera, Format::Ocam) => text::camera_to_ocam,
+        (Kind::Camera, Format::Toml) => text::camera_to_toml,
+        (Kind::Airframe, Format::Layout) => text::airframe_to_layout,
+        (Kind::Airframe, Format::Toml) => text::airframe_to_toml,
+        (Kind::Results, Format::Csv) => text::results_to_csv,
+        _ => {
+            return Err(Failure::Input(format!(
+                "{}: this is {}, which cannot become {}; choose {}",
+                first.display(),
+                what(kind),
+                name(format),
+                choices(kind)
+            )));
+        }
+    };
+    convert(first, &targets(&args.inputs).file(&args.out)?, terminal)
 }
 
 /// What was asked for, or what the extension tells.
@@ -154,11 +160,4 @@ fn choices(kind: Kind) -> &'static str {
         Kind::DatasetTable => "its folder as the input",
         Kind::Blink | Kind::SpotCurve => "another input: there is only one format of it",
     }
-}
-
-/// Writes a text whole.
-fn write(out: &Path, text: &[u8]) -> Result<(), Failure> {
-    use std::io::Write;
-    let mut file = crate::output::create(out)?;
-    file.write_all(text).map_err(|error| Failure::running(photinus_io::Error::io(out, error)))
 }

@@ -6,20 +6,20 @@ use photinus_io::airframe::{layout_text, toml_text};
 use photinus_io::camera::{write_calibrated_camera_toml, write_ocam_text};
 use photinus_io::results::{CsvWriter, read_results};
 
-use super::write;
 use crate::beforehand;
 use crate::failure::Failure;
-use crate::output::create;
+use crate::targets::FileTarget;
 use crate::terminal::Terminal;
 
 /// An inverse polynomial farther than this from the direct one is worth a warning, px.
 const POOR_INVERSE_PX: f64 = 0.1;
 
-pub(super) fn camera_to_ocam(path: &Path, out: &Path, terminal: &Terminal) -> Result<(), Failure> {
+pub(super) fn camera_to_ocam(path: &Path, target: &FileTarget, terminal: &Terminal) -> Result<(), Failure> {
+    let out = target.path();
     let file = beforehand::camera(path, terminal).map_err(Failure::input)?;
     let mut text = Vec::new();
     let inverse = write_ocam_text(&file.camera, &mut text, out).map_err(Failure::input)?;
-    write(out, &text)?;
+    target.write(&text).map_err(Failure::running)?;
     let told = format!(
         "{}: the inverse polynomial is a new one of degree {}, within {:.2e} px of the direct one",
         out.display(),
@@ -37,12 +37,13 @@ pub(super) fn camera_to_ocam(path: &Path, out: &Path, terminal: &Terminal) -> Re
     Ok(())
 }
 
-pub(super) fn camera_to_toml(path: &Path, out: &Path, terminal: &Terminal) -> Result<(), Failure> {
+pub(super) fn camera_to_toml(path: &Path, target: &FileTarget, terminal: &Terminal) -> Result<(), Failure> {
+    let out = target.path();
     let file = beforehand::camera(path, terminal).map_err(Failure::input)?;
     let mut text = Vec::new();
     write_calibrated_camera_toml(&file.camera, file.calibration.as_ref(), &mut text, out)
         .map_err(Failure::running)?;
-    write(out, &text)?;
+    target.write(&text).map_err(Failure::running)?;
     if file.inverse.is_some() {
         terminal.note(format_args!(
             "{}: the file's inverse polynomial is not kept; Photinus inverts the direct one itself",
@@ -52,9 +53,14 @@ pub(super) fn camera_to_toml(path: &Path, out: &Path, terminal: &Terminal) -> Re
     Ok(())
 }
 
-pub(super) fn airframe_to_layout(path: &Path, out: &Path, terminal: &Terminal) -> Result<(), Failure> {
+pub(super) fn airframe_to_layout(
+    path: &Path,
+    target: &FileTarget,
+    terminal: &Terminal,
+) -> Result<(), Failure> {
+    let out = target.path();
     let airframe = beforehand::airframe(path, terminal).map_err(Failure::input)?;
-    write(out, layout_text(&airframe).as_bytes())?;
+    target.write(layout_text(&airframe).as_bytes()).map_err(Failure::running)?;
     if out.file_stem().is_none_or(|stem| stem.to_string_lossy() != airframe.name()) {
         terminal.note(format_args!(
             "{}: the name `{}` is not kept; a layout is named by its file",
@@ -73,14 +79,16 @@ pub(super) fn airframe_to_layout(path: &Path, out: &Path, terminal: &Terminal) -
     Ok(())
 }
 
-pub(super) fn airframe_to_toml(path: &Path, out: &Path, terminal: &Terminal) -> Result<(), Failure> {
+pub(super) fn airframe_to_toml(path: &Path, target: &FileTarget, terminal: &Terminal) -> Result<(), Failure> {
     let airframe = beforehand::airframe(path, terminal).map_err(Failure::input)?;
-    write(out, toml_text(&airframe).as_bytes())
+    target.write(toml_text(&airframe).as_bytes()).map_err(Failure::running)
 }
 
-pub(super) fn results_to_csv(path: &Path, out: &Path, terminal: &Terminal) -> Result<(), Failure> {
+pub(super) fn results_to_csv(path: &Path, target: &FileTarget, terminal: &Terminal) -> Result<(), Failure> {
+    let out = target.path();
     let records = read_results(path).map_err(Failure::input)?;
-    let mut table = CsvWriter::new(create(out)?, out).map_err(Failure::running)?;
+    let mut file = target.whole().map_err(Failure::running)?;
+    let mut table = CsvWriter::new(&mut file, out).map_err(Failure::running)?;
     let (mut good, mut failed, mut spots, mut rejected, mut empty) = (0_u64, 0_u64, 0, 0, 0);
     for record in records {
         match record {
@@ -97,6 +105,8 @@ pub(super) fn results_to_csv(path: &Path, out: &Path, terminal: &Terminal) -> Re
             }
         }
     }
+    drop(table);
+    file.keep().map_err(Failure::running)?;
     terminal.note(format_args!(
         "{}: a row is a neighbour; {spots} spots, {rejected} rejected ones and {empty} frames without neighbours are not kept",
         out.display()

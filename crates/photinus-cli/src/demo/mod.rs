@@ -26,14 +26,14 @@ use photinus_sim::scene::Target;
 use photinus_sim::{Rendered, Scene, Simulator};
 
 use crate::clock::Clock;
-use crate::evaluate::PlotFolder;
+use crate::evaluate::plot;
 use crate::failure::Failure;
 use crate::input::Entry;
 use crate::locate;
-use crate::output::{create, refuse_to_mix};
 use crate::overlay::{self, Overlay};
 use crate::page::Page;
 use crate::simulate::write_truth;
+use crate::targets::{Targets, WriteArgs};
 use crate::terminal::Terminal;
 use pace::Pace;
 
@@ -49,6 +49,8 @@ pub(crate) struct Args {
     /// Seconds of the flight, from its start
     #[arg(long, value_name = "S", hide = true)]
     seconds: Option<u32>,
+    #[command(flatten)]
+    write: WriteArgs,
 }
 
 /// What was there and what was found, frame by frame.
@@ -63,20 +65,23 @@ struct Flown {
 /// Runs the command.
 pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> std::result::Result<(), Failure> {
     let started = Instant::now();
-    refuse_to_mix(&args.out)?;
-    let mut scene = carried::unpack(&args.out.join("scene")).map_err(Failure::input)?;
+    let target = Targets::new(args.write, []).folder(&args.out)?;
+    let making = target.whole().map_err(Failure::input)?;
+    let folder = making.path();
+    let mut scene = carried::unpack(&folder.join("scene")).map_err(Failure::input)?;
     if let Some(seconds) = args.seconds {
         scene.frames = scene.frames.min((f64::from(seconds) * scene.rate_hz) as u64);
     }
-    let flown = fly(&scene, &args.out, terminal)?;
+    let flown = fly(&scene, folder, terminal)?;
     let settings =
         photinus_evaluate::Settings { time_tolerance_s: 0.5 / scene.rate_hz, ..Default::default() };
     let evaluation = evaluate(&flown.truth, &flown.records, &settings)
         .map_err(|error| Failure::Running(error.to_string()))?;
-    let figures = PlotFolder::create(&args.out.join(FIGURES)).map_err(Failure::running)?;
-    figures.draw(&evaluation, &flown.truth).map_err(Failure::running)?;
+    let figures = made(folder.join(FIGURES)).map_err(Failure::running)?;
+    plot(&figures, &evaluation, &flown.truth).map_err(Failure::running)?;
     let told = told::lines(&scene, &flown.truth, &evaluation.scores);
-    page(&scene, &flown.drawn, &told).write(&args.out).map_err(Failure::running)?;
+    page(&scene, &flown.drawn, &told).write(folder).map_err(Failure::running)?;
+    making.keep().map_err(Failure::running)?;
     let out = args.out.display();
     terminal.result(told)?;
     terminal.result(format_args!(
@@ -106,18 +111,27 @@ fn page<'a>(scene: &Scene, drawn: &[u64], told: &'a str) -> Page<'a> {
     }
 }
 
+/// A folder, made.
+fn made(folder: PathBuf) -> Result<PathBuf> {
+    std::fs::create_dir_all(&folder).map_err(|error| Error::io(&folder, error))?;
+    Ok(folder)
+}
+
 /// Renders and locates every frame, writes truth and results, and draws a choice of frames.
 fn fly(scene: &Scene, out: &Path, terminal: &mut Terminal) -> std::result::Result<Flown, Failure> {
     let no_target = || Failure::Running("the scene has no camera or no target".to_owned());
     let simulator = Simulator::new(scene, 0).ok_or_else(no_target)?;
     let airframe = &scene.targets.first().ok_or_else(no_target)?.airframe;
     let camera = scene.cameras[0].camera.clone();
-    let overlay = Overlay::create(&out.join(PICTURES), Some(camera.clone())).map_err(Failure::input)?;
+    let pictures = made(out.join(PICTURES)).map_err(Failure::input)?;
+    let overlay = Overlay::new(pictures, Some(camera.clone())).map_err(Failure::input)?;
     let mut locator = Locator::new(camera, airframe, None, Settings::default())
         .map_err(|error| Failure::Running(error.to_string()))?;
     let (truth_path, results_path) = (out.join("truth.jsonl"), out.join("results.jsonl"));
+    let create =
+        |path: &Path| File::create_new(path).map_err(|error| Failure::running(Error::io(path, error)));
     let mut truth_file = BufWriter::new(create(&truth_path)?);
-    let mut results: ResultsWriter<File> = ResultsWriter::new(create(&results_path)?, &results_path);
+    let mut results = ResultsWriter::new(create(&results_path)?, &results_path);
 
     let (mut flown, mut pace, mut clock) = (Flown::default(), Pace::of(scene), Clock::new());
     terminal.start(Some(scene.frames));

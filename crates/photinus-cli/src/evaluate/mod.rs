@@ -6,21 +6,19 @@ mod bins;
 mod plots;
 mod tables;
 
-use std::fs::File;
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use photinus_evaluate::{EvaluateError, RangeBins, Scores, Settings, Side, evaluate};
 use photinus_io::dataset::{Dataset, TruthFrame};
 use photinus_io::results::{FrameRecord, read_results};
-use photinus_io::{Error, Place};
+use photinus_io::{Cause, Error, Place};
 use serde::Serialize;
 
 use crate::failure::Failure;
 use crate::number;
-use crate::output::{create, refuse_to_replace};
+use crate::targets::{FileTarget, Targets, WriteArgs};
 use crate::terminal::Terminal;
-pub(crate) use plots::PlotFolder;
+pub(crate) use plots::plot;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -59,6 +57,8 @@ pub(crate) struct Args {
     /// A neighbour's bearing is no farther than this from truth, but for near ones, which may be 0.6 m aside
     #[arg(long, value_name = "DEG", default_value_t = 3.0, value_parser = number::positive)]
     bearing_gate: f64,
+    #[command(flatten)]
+    write: WriteArgs,
     /// Print no tables and no warnings
     #[arg(short, long)]
     quiet: bool,
@@ -111,18 +111,21 @@ pub(crate) fn run(args: &Args, terminal: &Terminal) -> Result<(), Failure> {
     let dataset = Dataset::read(&args.dataset).map_err(Failure::input)?;
     let truth = read_truth(args, &dataset)?;
     let (results, bad_lines) = read_records(args, &dataset, terminal)?;
-    let json = args.json.as_deref().map(|path| JsonFile::open(path, args, &dataset)).transpose()?;
-    let plots = args.plots.as_deref().map(PlotFolder::create).transpose().map_err(Failure::input)?;
+    let mut targets = Targets::new(args.write, dataset.files().into_iter().chain([args.results.clone()]));
+    let json = args.json.as_deref().map(|path| targets.file(path)).transpose()?;
+    let plots = args.plots.as_deref().map(|path| targets.folder(path)).transpose()?;
     let settings = args.settings(&dataset);
     let evaluation = evaluate(&truth, &results, &settings).map_err(|error| args.refuse(&error))?;
 
-    let is_for_people = !args.quiet && !matches!(json, Some(JsonFile::Standard));
+    let is_for_people = !args.quiet && !json.as_ref().is_some_and(FileTarget::is_standard);
     if let Some(json) = json {
         let (dataset, results, scores) = (&args.dataset, &args.results, &evaluation.scores);
-        json.write(&Report { dataset, results, settings: &settings, scores }, terminal)?;
+        write_json(&json, &Report { dataset, results, settings: &settings, scores }, terminal)?;
     }
     if let Some(plots) = plots {
-        plots.draw(&evaluation, &truth).map_err(Failure::running)?;
+        let folder = plots.whole().map_err(Failure::running)?;
+        let drawn = plot(folder.path(), &evaluation, &truth).map_err(|error| folder.tell(error));
+        drawn.and_then(|()| folder.keep()).map_err(Failure::running)?;
     }
     warn(&evaluation.scores, args, terminal);
     if is_for_people {
@@ -151,6 +154,8 @@ fn read_records(
     for record in read_results(&args.results).map_err(Failure::input)? {
         match record {
             Ok(record) => records.push(record),
+            Err(error) if matches!(error.cause, Cause::Cut) => terminal
+                .warning(format_args!("{error}; the {} whole lines before it are used", records.len())),
             Err(error) => {
                 bad_lines += 1;
                 if bad_lines <= REPORTED_LINES {
@@ -180,32 +185,12 @@ fn read_records(
     }
 }
 
-/// Where the JSON goes, open before any work is done.
-enum JsonFile {
-    Standard,
-    File(File, PathBuf),
-}
-
-impl JsonFile {
-    fn open(path: &Path, args: &Args, dataset: &Dataset) -> Result<Self, Failure> {
-        if path.as_os_str() == "-" {
-            return Ok(Self::Standard);
-        }
-        let of_dataset = ["dataset.toml", "frames.csv", "truth.jsonl"].map(|name| dataset.path(name));
-        let read: Vec<PathBuf> = of_dataset.into_iter().chain([args.results.clone()]).collect();
-        refuse_to_replace(path, &read)?;
-        Ok(Self::File(create(path)?, path.to_owned()))
-    }
-
-    fn write(self, report: &Report<'_>, terminal: &Terminal) -> Result<(), Failure> {
-        let text = serde_json::to_string_pretty(report)
-            .map_err(|error| Failure::Running(format!("the scores as JSON: {error}")))?;
-        match self {
-            Self::Standard => terminal.result(text),
-            Self::File(mut file, path) => {
-                writeln!(file, "{text}").map_err(|error| Failure::running(Error::io(path, error)))
-            }
-        }
+fn write_json(target: &FileTarget, report: &Report<'_>, terminal: &Terminal) -> Result<(), Failure> {
+    let text = serde_json::to_string_pretty(report)
+        .map_err(|error| Failure::Running(format!("the scores as JSON: {error}")))?;
+    match target.is_standard() {
+        true => terminal.result(text),
+        false => target.write(format!("{text}\n").as_bytes()).map_err(Failure::running),
     }
 }
 

@@ -1,6 +1,5 @@
 //! Images, masks, videos and datasets.
 
-use std::fs::File;
 use std::path::Path;
 
 use photinus_io::airframe::read_airframe;
@@ -9,7 +8,8 @@ use photinus_io::image::{ImageFile, read_image};
 use photinus_io::mask::read_mask;
 use photinus_io::spot_curve::read_spot_curve;
 use photinus_io::video::Y4mFrames;
-use photinus_io::{Error, Result, read_camera};
+use photinus_io::whole::open_regular;
+use photinus_io::{Result, read_camera};
 
 use super::{Report, airframe, counted};
 
@@ -40,7 +40,7 @@ pub(super) fn image(path: &Path) -> Result<Report> {
 }
 
 pub(super) fn video(path: &Path) -> Result<Report> {
-    let file = File::open(path).map_err(|error| Error::io(path, error))?;
+    let file = open_regular(path)?;
     let mut frames = Y4mFrames::new(file, path)?;
     let mut report = Report::new("a Y4M video");
     report.fact("size", format!("{} x {} px", frames.width(), frames.height()));
@@ -59,7 +59,12 @@ pub(super) fn video(path: &Path) -> Result<Report> {
     }
     let duration = rate_hz.map_or(String::new(), |rate_hz| format!(", {:.2} s", f64::from(whole) / rate_hz));
     report.fact("frames", format!("{whole}{duration}"));
-    report.notes.extend(last.map(|error| error.to_string()));
+    if let Some(error) = last {
+        report.broken(error.to_string());
+    }
+    if whole == 0 && !report.is_broken {
+        report.broken("it holds no frame");
+    }
     Ok(report)
 }
 
@@ -82,7 +87,7 @@ pub(super) fn dataset(folder: &Path) -> Result<Report> {
         Ok(text) => report.facts.row([name.to_owned(), text]),
         Err(error) => {
             report.facts.row([name.to_owned(), "not usable".to_owned()]);
-            report.notes.push(error.to_string());
+            report.broken(error.to_string());
         }
     };
     let in_px = |(width, height): (usize, usize)| format!("{width} x {height} px");
@@ -115,16 +120,19 @@ pub(super) fn dataset(folder: &Path) -> Result<Report> {
         None => "none".to_owned(),
     });
     part("truth", truth);
-    let images = images(&dataset, size, &mut report.notes);
+    if let Err(error) = dataset.check_inside() {
+        report.notes.push(error.advise("--allow-outside lets the other commands read it").to_string());
+    }
+    let images = images(&dataset, size, &mut report);
     report.fact("images", images);
     Ok(report)
 }
 
 /// How many images are there, and whether the first one fits the camera.
-fn images(dataset: &Dataset, size: Option<(usize, usize)>, notes: &mut Vec<String>) -> String {
+fn images(dataset: &Dataset, size: Option<(usize, usize)>, report: &mut Report) -> String {
     let missing: Vec<_> = dataset.frames().iter().filter(|row| !dataset.path(&row.image).is_file()).collect();
     if let Some(first) = missing.first() {
-        notes.push(format!(
+        report.broken(format!(
             "{} missing, the first is {}: restore it, or remove line {} of frames.csv",
             counted(missing.len(), "image"),
             first.image.display(),
@@ -136,14 +144,14 @@ fn images(dataset: &Dataset, size: Option<(usize, usize)>, notes: &mut Vec<Strin
         Some(Ok(file)) => {
             let (width, height) = (file.image.width(), file.image.height());
             if size.is_some_and(|size| size != (width, height)) {
-                notes.push(format!(
+                report.broken(format!(
                     "the first image is {width}x{height}, which is not the size of the camera"
                 ));
             }
             format!("{}, {width} x {height} px", dataset.frames().len() - missing.len())
         }
         Some(Err(error)) => {
-            notes.push(error.to_string());
+            report.broken(error.to_string());
             "the first one cannot be read".to_owned()
         }
         None => "none".to_owned(),

@@ -41,6 +41,8 @@ pub(crate) struct Report {
     tables: Vec<Aligned>,
     /// What a user should know or do, a sentence each.
     notes: Vec<String>,
+    /// Whether something is missing or damaged, which a note tells.
+    is_broken: bool,
 }
 
 impl Report {
@@ -50,7 +52,14 @@ impl Report {
             facts: Aligned::new(2, &[Side::Left]),
             tables: Vec::new(),
             notes: Vec::new(),
+            is_broken: false,
         }
+    }
+
+    /// Something is missing or damaged.
+    fn broken(&mut self, note: impl Into<String>) {
+        self.notes.push(note.into());
+        self.is_broken = true;
     }
 
     fn fact(&mut self, name: &str, value: impl Into<String>) {
@@ -60,14 +69,16 @@ impl Report {
 
 /// Runs the command. A file that is not in order does not keep the others from being told.
 pub(crate) fn run(args: &Args, terminal: &Terminal) -> std::result::Result<(), Failure> {
-    let mut failed = 0;
-    for (number, path) in args.files.iter().enumerate() {
+    let (mut failed, mut told) = (0, 0);
+    for path in &args.files {
         match report(path) {
             Ok(report) => {
-                if number > failed {
+                if told > 0 {
                     terminal.result("")?;
                 }
                 print(path, &report, terminal)?;
+                told += 1;
+                failed += usize::from(report.is_broken);
             }
             Err(error) => {
                 failed += 1;

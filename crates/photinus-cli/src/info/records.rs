@@ -29,6 +29,7 @@ pub(super) fn results(path: &Path) -> Result<Report> {
             }
             Err(error) => {
                 summary.failed += 1;
+                report.is_broken = true;
                 if summary.failed <= REPORTED_LINES {
                     report.notes.push(error.to_string());
                 }

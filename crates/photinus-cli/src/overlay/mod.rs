@@ -16,12 +16,13 @@ mod legend;
 mod map_panel;
 mod text;
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use nalgebra::{Unit, Vector3};
 use photinus::camera::{Bearing, Camera};
 use photinus::frame::FrameView;
 use photinus_io::results::FrameRecord;
+use photinus_io::whole::{Existing, write_whole};
 use photinus_io::{Error, Result};
 use tiny_skia::{Point, Rect};
 
@@ -44,17 +45,14 @@ pub(crate) struct Overlay {
 }
 
 impl Overlay {
-    /// Makes the folder. With a camera, the pictures show the view from above, too.
+    /// Pictures into `folder`, which is there. With a camera they show the view from above, too.
     ///
     /// # Errors
-    /// [`Error`] when the folder cannot be made or written to.
-    pub(crate) fn create(folder: &Path, camera: Option<Camera>) -> Result<Self> {
-        let refuse = |error| Error::io(folder, error).advise("name a folder that can be made and written to");
-        std::fs::create_dir_all(folder).map_err(refuse)?;
-        let probe = folder.join(".photinus-probe");
-        std::fs::write(&probe, []).and_then(|()| std::fs::remove_file(&probe)).map_err(refuse)?;
-        let font = Font::new().ok_or_else(|| Error::format(folder, "the font of the pictures is damaged"))?;
-        Ok(Self { folder: folder.to_owned(), camera, font })
+    /// [`Error`] when the program's font is damaged.
+    pub(crate) fn new(folder: PathBuf, camera: Option<Camera>) -> Result<Self> {
+        let font =
+            Font::new().ok_or_else(|| Error::format(&folder, "the font of the pictures is damaged"))?;
+        Ok(Self { folder, camera, font })
     }
 
     /// Writes the picture of a frame; without pixels, spots stand on black. `truth_m` is where neighbours are, camera frame, m,
@@ -89,7 +87,7 @@ impl Overlay {
         let kinds = legend::Kinds { neighbours: self.camera.is_some(), truth: !truth_m.is_empty() };
         legend::draw(&mut canvas, layout.legend, kinds, layout.unit);
         let bytes = canvas.png().map_err(|reason| Error::format(&path, reason))?;
-        std::fs::write(&path, bytes).map_err(|error| Error::io(&path, error))
+        write_whole(&path, &bytes, Existing::Replace)
     }
 
     /// Columns and rows of the frame, px: of its pixels, else of the camera, else what holds every spot.

@@ -115,7 +115,7 @@ fn picture(
     frame: Option<FrameView<'_>>,
     camera: Option<Camera>,
 ) -> GreyImage {
-    let overlay = Overlay::create(&folder.0, camera).unwrap();
+    let overlay = Overlay::new(folder.0.clone(), camera).unwrap();
     overlay.draw(record, frame, None, &[]).unwrap();
     read_image(folder.0.join("overlay-000017.png")).unwrap().image
 }

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use kuva::prelude::{Layout, Plot};
-use photinus_io::{Error, Result};
+use photinus_io::Result;
 
 use super::save;
 
@@ -21,15 +21,9 @@ pub(crate) struct Figure {
 pub(crate) struct FigureFolder(PathBuf);
 
 impl FigureFolder {
-    /// Makes the folder.
-    ///
-    /// # Errors
-    /// [`Error`] when it cannot be made.
-    pub(crate) fn create(folder: &Path) -> Result<Self> {
-        std::fs::create_dir_all(folder).map_err(|error| {
-            Error::io(folder, error).advise("name a folder that can be made and written to")
-        })?;
-        Ok(Self(folder.to_owned()))
+    /// A folder that is there.
+    pub(crate) fn new(folder: &Path) -> Self {
+        Self(folder.to_owned())
     }
 
     /// Writes a figure as PNG and SVG, and gives the text of the SVG.

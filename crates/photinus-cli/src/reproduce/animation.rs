@@ -4,6 +4,7 @@ use std::path::Path;
 
 use nalgebra::Vector3;
 use photinus::locator::{Locator, Settings};
+use photinus_io::Error;
 use photinus_reproduce::Effort;
 use photinus_sim::{Scene, Simulator};
 
@@ -41,7 +42,9 @@ pub(super) fn save(
     let mut simulator = Simulator::new(scene, 0).ok_or_else(lacks)?;
     let airframe = &scene.targets.first().ok_or_else(lacks)?.airframe;
     let camera = scene.cameras[0].camera.clone();
-    let overlay = Overlay::create(&folder.join(PICTURES), Some(camera.clone())).map_err(Failure::running)?;
+    let pictures = folder.join(PICTURES);
+    std::fs::create_dir_all(&pictures).map_err(|error| Failure::running(Error::io(&pictures, error)))?;
+    let overlay = Overlay::new(pictures, Some(camera.clone())).map_err(Failure::running)?;
     let mut locator = Locator::new(camera, airframe, None, Settings::default())
         .map_err(|error| Failure::Running(error.to_string()))?;
     let mut clock = Clock::new();

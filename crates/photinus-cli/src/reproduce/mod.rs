@@ -21,7 +21,8 @@ use photinus_reproduce::{Effort, Experiment, Figure, Report, ReproduceError, Rig
 
 use crate::demo::carried;
 use crate::failure::Failure;
-use crate::output::refuse_to_mix;
+use crate::fault;
+use crate::targets::{Targets, WriteArgs};
 use crate::terminal::Terminal;
 
 const EXAMPLES: &str = "\
@@ -49,6 +50,8 @@ pub(crate) struct Args {
     /// Simulate a fraction of the frames, to see that it works
     #[arg(long)]
     quick: bool,
+    #[command(flatten)]
+    write: WriteArgs,
     /// Print no table and no progress
     #[arg(short, long)]
     quiet: bool,
@@ -79,8 +82,10 @@ fn figure(name: &str) -> Result<Figure, String> {
 /// Runs the command.
 pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> Result<(), Failure> {
     let started = Instant::now();
-    refuse_to_mix(&args.out)?;
-    let scene = carried::unpack(&args.out.join("scene")).map_err(Failure::input)?;
+    let target = Targets::new(args.write, []).folder(&args.out)?;
+    let making = target.whole().map_err(Failure::input)?;
+    let folder = making.path();
+    let scene = carried::unpack(&folder.join("scene")).map_err(Failure::input)?;
     let rig = Rig::new(scene).map_err(|error| Failure::Running(error.to_string()))?;
     let wanted: BTreeSet<Experiment> =
         Figure::ALL.into_iter().filter(|figure| args.wants(*figure)).map(Figure::experiment).collect();
@@ -92,13 +97,14 @@ pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> Result<(), Failure> {
     reports.retain(|report| args.wants(report.figure));
     reports.sort_by_key(|report| report.figure);
     for report in &reports {
-        drawing::save(&args.out, report).map_err(Failure::running)?;
-        tables::save_data(&args.out, report).map_err(Failure::running)?;
+        drawing::save(folder, report).map_err(Failure::running)?;
+        tables::save_data(folder, report).map_err(Failure::running)?;
     }
     if !pictures.is_empty() {
-        animation::save(&args.out, rig.scene(), &pictures, terminal)?;
+        animation::save(folder, rig.scene(), &pictures, terminal)?;
     }
-    tables::save_summary(&args.out, &reports).map_err(Failure::running)?;
+    tables::save_summary(folder, &reports).map_err(Failure::running)?;
+    making.keep().map_err(Failure::running)?;
     terminal.finish();
     if !args.quiet {
         terminal.result(tables::to_read(&reports).trim_end())?;
@@ -134,7 +140,9 @@ fn run_all(
     });
     let mut reports = Vec::new();
     for worker in done {
-        let worker = worker.map_err(|_| Failure::Running("an experiment stopped early".to_owned()))?;
+        let worker = worker.map_err(|payload| {
+            Failure::Running(format!("{}; {}", fault::told(payload.as_ref()), fault::ADVICE))
+        })?;
         reports.extend(worker.map_err(|error| Failure::Running(error.to_string()))?);
     }
     Ok(reports)

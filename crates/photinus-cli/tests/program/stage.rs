@@ -51,6 +51,67 @@ impl Stage {
         std::fs::read_to_string(self.path(name)).unwrap()
     }
 
+    /// A dataset folder of so many frames, with truth.
+    pub(crate) fn dataset(&self, name: &str, frames: usize) {
+        std::fs::create_dir_all(self.path(name).join("images")).unwrap();
+        let (mut rows, mut truth) = ("frame,time_s,image,gx,gy,gz\n".to_owned(), String::new());
+        for number in 0..frames {
+            let image = format!("images/{number:06}.png");
+            write_png(self.path(name).join(&image), &frame().view()).unwrap();
+            let time_s = number as f64 / 20.0;
+            rows += &format!("{number},{time_s},{image},0,1,0\n");
+            truth += &format!("{{\"frame\":{number},\"time_s\":{time_s},\"neighbours\":[]}}\n");
+        }
+        let table = "camera = \"camera.toml\"\nairframe = \"hexa.toml\"\nexposure_us = 1000\nrate_hz = 20\n";
+        for (file, text) in [
+            ("dataset.toml", table),
+            ("frames.csv", &rows),
+            ("truth.jsonl", &truth),
+            ("camera.toml", CAMERA),
+            ("hexa.toml", AIRFRAME),
+        ] {
+            self.file(&format!("{name}/{file}"), text);
+        }
+    }
+
+    /// The names of what a folder holds, sorted.
+    pub(crate) fn names(&self, folder: &str) -> Vec<String> {
+        let entries = std::fs::read_dir(self.path(folder)).unwrap();
+        let mut names: Vec<String> =
+            entries.map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned()).collect();
+        names.sort();
+        names
+    }
+
+    /// The program, to be started in the folder with these words.
+    pub(crate) fn command(&self, words: &str) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_photinus"));
+        command.args(words.split_whitespace()).current_dir(&self.0).env_remove("RUST_BACKTRACE");
+        command
+    }
+
+    /// Runs a line of shell in the folder, with `$photinus` for the program.
+    pub(crate) fn shell(&self, line: &str) -> Done {
+        let done = Command::new("sh")
+            .args(["-c", line])
+            .current_dir(&self.0)
+            .env("photinus", env!("CARGO_BIN_EXE_photinus"))
+            .env_remove("RUST_BACKTRACE")
+            .stdin(Stdio::null())
+            .output()
+            .unwrap();
+        self.told(line, done)
+    }
+
+    fn told(&self, words: &str, done: std::process::Output) -> Done {
+        let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
+        let code = done.status.code().unwrap_or_else(|| panic!("{words}: ended by {}", done.status));
+        let done = Done { code, out: text(done.stdout), err: text(done.stderr) };
+        println!("$ {words}\n{}{}[exit {}]", done.out, done.err, done.code);
+        assert!(!done.err.contains("panicked") && !done.err.contains("a fault in Photinus"), "{}", done.err);
+        done
+    }
+
     /// Runs `photinus` with these words, separated by spaces, in the folder.
     pub(crate) fn run(&self, words: &str) -> Done {
         self.run_with(words, &[])
@@ -60,17 +121,8 @@ impl Stage {
     pub(crate) fn run_with(&self, words: &str, input: &[u8]) -> Done {
         self.file(".stdin", input);
         let stdin = std::fs::File::open(self.path(".stdin")).unwrap();
-        let done = Command::new(env!("CARGO_BIN_EXE_photinus"))
-            .args(words.split_whitespace())
-            .current_dir(&self.0)
-            .stdin(Stdio::from(stdin))
-            .output()
-            .unwrap();
-        let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
-        let done = Done { code: done.status.code().unwrap(), out: text(done.stdout), err: text(done.stderr) };
-        println!("$ photinus {words}\n{}{}[exit {}]", done.out, done.err, done.code);
-        assert!(!done.err.contains("panicked"), "{}", done.err);
-        done
+        let done = self.command(words).stdin(Stdio::from(stdin)).output().unwrap();
+        self.told(&format!("photinus {words}"), done)
     }
 }
 

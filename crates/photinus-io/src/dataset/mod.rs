@@ -7,6 +7,7 @@
 //! truth.jsonl    optional: where everything was, a line per frame        -> TruthFrame
 //! ```
 
+mod files;
 mod frames_csv;
 mod truth;
 mod writer;

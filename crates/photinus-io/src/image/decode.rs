@@ -3,7 +3,7 @@
 use std::io::{Cursor, ErrorKind};
 use std::path::Path;
 
-use image::codecs::pnm::PnmDecoder;
+use image::codecs::pnm::{PnmDecoder, PnmSubtype, SampleEncoding};
 use image::{ImageDecoder, ImageFormat, ImageReader, Limits};
 use photinus::frame::FrameView;
 
@@ -26,6 +26,14 @@ pub(super) struct Samples<S> {
 /// As [`super::read_image`].
 pub fn decode_image(bytes: &[u8], path: impl AsRef<Path>) -> Result<ImageFile> {
     let path = path.as_ref();
+    // Decoders are other people's code, bytes anybody's: a panic of one is a bad file like another.
+    std::panic::catch_unwind(|| decode(bytes, path)).unwrap_or_else(|payload| {
+        let reason = format!("its decoder failed: {}", panic_reason(payload.as_ref()));
+        Err(Error::format(path, reason).advise(RENEW))
+    })
+}
+
+fn decode(bytes: &[u8], path: &Path) -> Result<ImageFile> {
     let refuse = |refused: Refused| match refused {
         Refused::Cut => Error::format(path, "the file ends before the end of the image").advise(RENEW),
         Refused::Damaged(reason) => {
@@ -47,6 +55,12 @@ pub fn decode_image(bytes: &[u8], path: impl AsRef<Path>) -> Result<ImageFile> {
         _ => Err(Error::format(path, "this is no image that Photinus reads")
             .advise("use PNG, JPEG, BMP, TIFF or PGM/PPM; for video, Y4M")),
     }
+}
+
+/// What a panic says.
+fn panic_reason(payload: &(dyn std::any::Any + Send)) -> &str {
+    let text = payload.downcast_ref::<&str>().copied();
+    text.or_else(|| payload.downcast_ref::<String>().map(String::as_str)).unwrap_or("it does not say why")
 }
 
 /// What to do about a file that is not what was written.
@@ -104,12 +118,45 @@ fn decode_as(bytes: &[u8], format: ImageFormat) -> std::result::Result<ImageFile
     }
 }
 
+/// The largest sample that the header announces. The decoder clamps to it in silence; larger ones mean that the bytes are not
+/// what the header says.
 fn pnm_maximum(bytes: &[u8]) -> std::result::Result<u32, Refused> {
     let decoder = PnmDecoder::new(bytes)?;
     let (width, height) = decoder.dimensions();
     // Before the pixels: the decoder allocates by the header.
     check_size(width as usize, height as usize).map_err(Refused::Unusable)?;
-    Ok(decoder.header().maximal_sample())
+    let (samples, header) = decoder.into_inner();
+    let maximum = header.maximal_sample();
+    let text = match header.subtype() {
+        PnmSubtype::Bitmap(_) => return Ok(maximum),
+        PnmSubtype::Graymap(encoding) | PnmSubtype::Pixmap(encoding) => encoding == SampleEncoding::Ascii,
+        PnmSubtype::ArbitraryMap => false,
+    };
+    let largest = match (text, maximum) {
+        (true, _) => samples
+            .split(u8::is_ascii_whitespace)
+            .filter_map(|word| std::str::from_utf8(word).ok()?.parse().ok())
+            .max(),
+        (false, ..=255) => samples.iter().copied().max().map(u32::from),
+        (false, _) => {
+            samples.chunks_exact(2).map(|word| u32::from(u16::from_be_bytes([word[0], word[1]]))).max()
+        }
+    };
+    check_maximum(largest.unwrap_or(0), maximum, "the byte with the higher bits first")
+        .map_err(Refused::Damaged)?;
+    Ok(maximum)
+}
+
+/// Refuses samples above the maximum that their file announces; `order` is that of the bytes of a sample.
+pub(crate) fn check_maximum(largest: u32, maximum: u32, order: &str) -> std::result::Result<(), String> {
+    match largest <= maximum {
+        true => Ok(()),
+        false => {
+            let hint =
+                if maximum > 255 { format!("; samples of two bytes have {order}") } else { String::new() };
+            Err(format!("a sample is {largest}, above the maximum of {maximum} that the file gives{hint}"))
+        }
+    }
 }
 
 /// Refuses what no frame may be.

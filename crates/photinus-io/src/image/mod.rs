@@ -15,8 +15,8 @@ use std::path::Path;
 use photinus::frame::FrameView;
 
 use crate::{Error, Result, whole};
-pub(crate) use decode::check_size;
 pub use decode::decode_image;
+pub(crate) use decode::{check_maximum, check_size};
 pub use grey::GreyImage;
 
 /// Most pixels of an image or video frame: a file of a few bytes cannot ask for all the memory.
@@ -100,7 +100,7 @@ pub fn write_png(path: impl AsRef<Path>, frame: &FrameView<'_>) -> Result<()> {
         ::image::ExtendedColorType::L8,
     )
     .map_err(|error| Error::format(path, error.to_string()))?;
-    std::fs::write(path, bytes).map_err(|error| Error::io(path, error))
+    whole::write_whole(path, &bytes, whole::Existing::Replace)
 }
 
 #[cfg(test)]

@@ -75,6 +75,9 @@ struct Given {
     signal: Option<u32>,
 }
 
+/// How well a centre may be known, px: neither better than any light tells, nor worse than not at all.
+const SIGMAS_PX: std::ops::RangeInclusive<f64> = 1e-6..=1e4;
+
 /// One standard deviation, or one per axis.
 #[derive(Clone, Copy, Deserialize)]
 #[serde(untagged, expecting = "sigma_px must be a number or [u, v]")]
@@ -98,8 +101,14 @@ impl TryFrom<Given> for SpotRecord {
             Some(Sigma::PerAxis(sigmas)) => sigmas,
             None => [DEFAULT_SIGMA_PX; 2],
         };
-        if !(sigma_u > 0.0 && sigma_v > 0.0) {
-            return Err("sigma_px is not above 0".to_owned());
+        for sigma_px in [sigma_u, sigma_v] {
+            if sigma_px <= 0.0 {
+                return Err("sigma_px is not above 0".to_owned());
+            }
+            if !SIGMAS_PX.contains(&sigma_px) {
+                let (least, most) = (SIGMAS_PX.start(), SIGMAS_PX.end());
+                return Err(format!("sigma_px is {sigma_px}; a centre is known to {least:e} to {most} px"));
+            }
         }
         let covariance_px2 =
             given.covariance_px2.unwrap_or([[sigma_u * sigma_u, 0.0], [0.0, sigma_v * sigma_v]]);
@@ -108,7 +117,8 @@ impl TryFrom<Given> for SpotRecord {
             _ => Self::sigma_of(covariance_px2),
         };
         let [[uu, uv], [vu, vv]] = covariance_px2;
-        if !(uu > 0.0 && vv > 0.0 && uu * vv > uv * vu && (uv - vu).abs() <= 1e-9 * uv.abs()) {
+        let is_variance = |px2: f64| SIGMAS_PX.contains(&px2.max(0.0).sqrt());
+        if !(is_variance(uu) && is_variance(vv) && uu * vv > uv * vu && (uv - vu).abs() <= 1e-9 * uv.abs()) {
             return Err(format!("covariance_px2 {covariance_px2:?} is no covariance"));
         }
         let is_box = |[left, top, right, bottom]: [u32; 4]| {

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::y4m_header::Header;
 use super::{VideoFrame, cut, read_plane, y4m_header};
-use crate::image::{Conversion, GreyImage};
+use crate::image::{Conversion, GreyImage, check_maximum};
 use crate::{Error, Place, Result};
 
 /// Longest line that a stream may have before its pixels.
@@ -86,7 +86,10 @@ impl<R: Read> Y4mFrames<R> {
             let have = luma_bytes + usize::try_from(skipped).unwrap_or(0);
             return Err(cut(&self.name, self.next, have, luma_bytes + chroma_bytes));
         }
-        let image = GreyImage::new(self.to_eight_bit(luma), self.header.width, self.header.height)
+        let luma = self.to_eight_bit(luma).map_err(|reason| {
+            Error::format(&self.name, reason).at(Place::Frame(self.next)).advise("record or convert it again")
+        })?;
+        let image = GreyImage::new(luma, self.header.width, self.header.height)
             .map_err(|error| Error::new(&self.name, error).at(Place::Frame(self.next)))?;
         let time_s = self.header.rate_hz.map(|rate_hz| self.next as f64 / rate_hz);
         let frame = VideoFrame { index: self.next, time_s, image };
@@ -94,21 +97,19 @@ impl<R: Read> Y4mFrames<R> {
         Ok(Some(frame))
     }
 
-    fn to_eight_bit(&self, mut luma: Vec<u8>) -> Vec<u8> {
+    fn to_eight_bit(&self, mut luma: Vec<u8>) -> std::result::Result<Vec<u8>, String> {
         if self.header.layout.bits > 8 {
             let maximum = self.header.layout.maximum();
-            let sample = |word: &[u8]| u32::from(u16::from_le_bytes([word[0], word[1]])).min(maximum);
-            luma = luma
-                .chunks_exact(2)
-                .map(|word| ((sample(word) * 255 + maximum / 2) / maximum) as u8)
-                .collect();
+            let samples = luma.chunks_exact(2).map(|word| u32::from(u16::from_le_bytes([word[0], word[1]])));
+            check_maximum(samples.clone().max().unwrap_or(0), maximum, "the byte with the lower bits first")?;
+            luma = samples.map(|sample| ((sample * 255 + maximum / 2) / maximum) as u8).collect();
         }
         if self.header.limited_range {
             for pixel in &mut luma {
                 *pixel = (((u32::from((*pixel).clamp(16, 235)) - 16) * 255 + 109) / 219) as u8;
             }
         }
-        luma
+        Ok(luma)
     }
 }
 

@@ -16,11 +16,10 @@ use photinus_io::airframe::toml_text;
 use photinus_io::calibration::{self, read_led_sightings};
 use photinus_io::{Error, Place};
 
-use super::write;
 use crate::beforehand;
 use crate::failure::Failure;
 use crate::number;
-use crate::output::refuse_to_replace;
+use crate::targets::{Targets, WriteArgs};
 use crate::terminal::Terminal;
 
 const EXAMPLES: &str = "\
@@ -58,6 +57,8 @@ pub(crate) struct Args {
     /// Write the airframe as measured
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
+    #[command(flatten)]
+    write: WriteArgs,
     /// Print errors only
     #[arg(short, long)]
     quiet: bool,
@@ -72,9 +73,9 @@ impl Args {
 
 /// Runs the command.
 pub(crate) fn run(args: &Args, terminal: &Terminal) -> Result<(), Failure> {
-    if let Some(out) = &args.out {
-        refuse_to_replace(out, &[args.table.clone(), args.camera.clone(), args.nominal.clone()])?;
-    }
+    let mut targets =
+        Targets::new(args.write, [args.table.clone(), args.camera.clone(), args.nominal.clone()]);
+    let out = args.out.as_deref().map(|path| targets.file(path)).transpose()?;
     let camera = beforehand::camera(&args.camera, terminal).map_err(Failure::input)?.camera;
     let nominal = beforehand::airframe(&args.nominal, terminal).map_err(Failure::input)?;
     let rows = read_led_sightings(&args.table).map_err(Failure::input)?;
@@ -84,11 +85,11 @@ pub(crate) fn run(args: &Args, terminal: &Terminal) -> Result<(), Failure> {
     let nominal_m: Vec<Vector3<f64>> = nominal.markers().iter().map(|marker| marker.position_m).collect();
     let found =
         calibrate(&nominal_m, &sightings, &distances).map_err(|error| refuse(args, &nominal, error))?;
-    if let Some(out) = &args.out {
+    if let Some(out) = out {
         let airframe = measured(&nominal, &found)
             .map_err(|error| Failure::Running(format!("the LEDs as measured: {error}")))?;
         let told = report::comment(&found, !args.distance.is_empty());
-        write(out, &format!("{told}{}", toml_text(&airframe)))?;
+        out.write(format!("{told}{}", toml_text(&airframe)).as_bytes()).map_err(Failure::running)?;
     }
     match args.quiet {
         true => Ok(()),

@@ -11,10 +11,9 @@ use photinus_calibrate::sighted::Sighted;
 use photinus_io::calibration::{self, KnownSighting, mounting_text, read_known_sightings};
 use photinus_io::{Error, Place};
 
-use super::write;
 use crate::beforehand;
 use crate::failure::Failure;
-use crate::output::refuse_to_replace;
+use crate::targets::{Targets, WriteArgs};
 use crate::terminal::Terminal;
 
 const EXAMPLES: &str = "\
@@ -43,6 +42,8 @@ pub(crate) struct Args {
     /// Write the mounting, described in docs/file-formats.md
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
+    #[command(flatten)]
+    write: WriteArgs,
     /// Print errors only
     #[arg(short, long)]
     quiet: bool,
@@ -57,22 +58,22 @@ impl Args {
 
 /// Runs the command.
 pub(crate) fn run(args: &Args, terminal: &Terminal) -> Result<(), Failure> {
-    if let Some(out) = &args.out {
-        refuse_to_replace(out, &[args.table.clone(), args.camera.clone()])?;
-    }
+    let mut targets = Targets::new(args.write, [args.table.clone(), args.camera.clone()]);
+    let out = args.out.as_deref().map(|path| targets.file(path)).transpose()?;
     let camera = beforehand::camera(&args.camera, terminal).map_err(Failure::input)?.camera;
     let rows = read_known_sightings(&args.table).map_err(Failure::input)?;
     let observations: Vec<Observation> =
         rows.iter().map(|row| observation(args, &camera, row)).collect::<Result<_, _>>()?;
     let found = calibrate(&observations).map_err(|error| refuse(args, error))?;
-    if let Some(out) = &args.out {
+    if let Some(out) = out {
         let file = calibration::MountingFile {
             body_from_camera: found.body_from_camera,
             rotation_covariance_rad2: found.rotation_covariance_rad2,
             position_m: found.centre.map(|centre| centre.0),
             position_covariance_m2: found.centre.map(|centre| centre.1),
         };
-        write(out, &format!("{}{}", report::comment(&found), mounting_text(&file)))?;
+        out.write(format!("{}{}", report::comment(&found), mounting_text(&file)).as_bytes())
+            .map_err(Failure::running)?;
     }
     match args.quiet {
         true => Ok(()),

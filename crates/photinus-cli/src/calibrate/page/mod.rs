@@ -25,12 +25,12 @@ struct Shown {
     figure: Figure,
 }
 
-/// Writes `index.html` and the figures into `folder`, which is made.
+/// Writes `index.html` and the figures into `folder`.
 ///
 /// # Errors
 /// [`Error`] when something cannot be drawn or written.
 pub(super) fn write(folder: &Path, report: &CameraReport) -> Result<()> {
-    let figures = FigureFolder::create(folder)?;
+    let figures = FigureFolder::new(folder);
     let mut sections = String::new();
     for Shown { title, caption, mut figure } in
         residuals::figures(report).into_iter().chain(field::figures(report))

@@ -15,12 +15,11 @@ use std::path::{Path, PathBuf};
 use photinus_calibrate::spot_size::{SpotSizeError, calibrate};
 use photinus_io::Error;
 
-use super::write;
 use crate::failure::Failure;
 use crate::number;
-use crate::output::refuse_to_replace;
 use crate::plots::FigureFolder;
 use crate::spot_options::SpotArgs;
+use crate::targets::{FileTarget, Targets, WriteArgs};
 use crate::terminal::Terminal;
 use recordings::Recording;
 
@@ -57,6 +56,11 @@ pub(crate) struct Args {
     brighter: f64,
     #[command(flatten)]
     spots: SpotArgs,
+    /// Let a dataset name images outside of its folder
+    #[arg(long)]
+    allow_outside: bool,
+    #[command(flatten)]
+    write: WriteArgs,
     /// Print errors only
     #[arg(short, long)]
     quiet: bool,
@@ -83,29 +87,39 @@ impl Args {
 
 /// Runs the command.
 pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> Result<(), Failure> {
-    for path in args.out.iter().chain(&args.json) {
-        refuse_to_replace(path, std::slice::from_ref(&args.input))?;
-    }
-    let figures = args.plots.as_deref().map(FigureFolder::create).transpose().map_err(Failure::input)?;
-    let recordings = recordings::read(&args.input, &args.spots, terminal)?;
+    let mut targets = Targets::new(args.write, [args.input.clone()].into_iter().chain(args.spots.file()));
+    let json = args.json.as_deref().map(|path| targets.file(path)).transpose()?;
+    let plots = args.plots.as_deref().map(|path| targets.folder(path)).transpose()?;
+    let recordings = recordings::read(&args.input, args.allow_outside, &args.spots, terminal)?;
+    let out = |recording| args.out(recording, recordings.len() > 1);
+    let curves =
+        recordings.iter().map(|recording| out(recording).map(|path| targets.file(&path)).transpose());
+    let curves: Vec<Option<FileTarget>> = curves.collect::<Result<_, _>>()?;
+    let figures = plots.map(|plots| plots.whole()).transpose().map_err(Failure::input)?;
     let mut reports = Vec::new();
-    for recording in &recordings {
+    for (recording, curve) in recordings.iter().zip(curves) {
         let found = calibrate(&recording.samples, args.brighter / 100.0)
             .map_err(|error| refuse(&args.input, recording, error))?;
         recording.warn(&args.input, terminal);
-        if let Some(path) = args.out(recording, recordings.len() > 1) {
-            write(&path, &report::curve_file(recording, &found, args.brighter))?;
+        if let Some(curve) = curve {
+            let text = report::curve_file(recording, &found, args.brighter);
+            curve.write(text.as_bytes()).map_err(Failure::running)?;
         }
         if let Some(figures) = &figures {
-            figures.write(plot::figure(recording, &found)).map_err(Failure::running)?;
+            let drawn = FigureFolder::new(figures.path()).write(plot::figure(recording, &found));
+            drawn.map_err(|error| Failure::running(figures.tell(error)))?;
         }
         if !args.quiet {
             terminal.result(report::Told { recording, found: &found, brighter_percent: args.brighter })?;
         }
         reports.push(report::json(recording, &found));
     }
-    if let Some(path) = &args.json {
-        write(path, &format!("{:#}\n", serde_json::Value::from(reports)))?;
+    if let Some(figures) = figures {
+        figures.keep().map_err(Failure::running)?;
+    }
+    if let Some(json) = json {
+        let text = format!("{:#}\n", serde_json::Value::from(reports));
+        json.write(text.as_bytes()).map_err(Failure::running)?;
     }
     Ok(())
 }

@@ -39,11 +39,12 @@ pub(super) struct Recording {
 /// Reads a dataset folder or a table.
 pub(super) fn read(
     input: &Path,
+    allow_outside: bool,
     spots: &SpotArgs,
     terminal: &mut Terminal,
 ) -> Result<Vec<Recording>, Failure> {
     match input.is_dir() {
-        true => Ok(vec![of_dataset(input, spots, terminal)?]),
+        true => Ok(vec![of_dataset(input, allow_outside, spots, terminal)?]),
         false => Ok(of_table(read_spot_sizes(input).map_err(Failure::input)?)),
     }
 }
@@ -81,7 +82,12 @@ fn of_table(rows: Vec<SpotSizeRow>) -> Vec<Recording> {
     recordings
 }
 
-fn of_dataset(input: &Path, spots: &SpotArgs, terminal: &mut Terminal) -> Result<Recording, Failure> {
+fn of_dataset(
+    input: &Path,
+    allow_outside: bool,
+    spots: &SpotArgs,
+    terminal: &mut Terminal,
+) -> Result<Recording, Failure> {
     let dataset = Dataset::read(input).map_err(Failure::input)?;
     let airframe_file = dataset.path(&dataset.info().airframe);
     let airframe = beforehand::airframe(&airframe_file, terminal).map_err(Failure::input)?;
@@ -98,7 +104,7 @@ fn of_dataset(input: &Path, spots: &SpotArgs, terminal: &mut Terminal) -> Result
         places: Some(Default::default()),
     };
     let mut without_one_led = 0;
-    let frames = InputArgs::of(&[input.to_owned()]).open()?;
+    let frames = InputArgs::of(&[input.to_owned()], allow_outside).open()?;
     terminal.start(frames.count);
     for entry in frames.entries {
         terminal.frame_done();

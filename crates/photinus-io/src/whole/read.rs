@@ -1,6 +1,4 @@
 //! A file read whole: enters a path, leaves its bytes or its text.
-//!
-//! Everything but streams (video, JSON lines) is read this way, so that a parser sees all of a file or none of it.
 
 use std::fs::File;
 use std::io::Read;
@@ -13,11 +11,27 @@ const MAX_FILE_BYTES: u64 = 1 << 30;
 
 /// The bytes of a file that is neither missing nor empty nor endless; `-` is standard input.
 pub(crate) fn read_bytes(path: &Path) -> Result<Vec<u8>> {
+    match path.as_os_str() == "-" {
+        true => bytes_of(std::io::stdin(), path),
+        false => bytes_of(open_regular(path)?, path),
+    }
+}
+
+/// Opens a file that has an end: a pipe would be waited for, a device may never end.
+///
+/// # Errors
+/// [`Error`] when it is missing, a pipe or a device.
+pub fn open_regular(path: &Path) -> Result<File> {
+    let metadata = std::fs::metadata(path).map_err(|error| Error::io(path, error))?;
+    if !metadata.is_file() && !metadata.is_dir() {
+        return Err(Error::format(path, "this is a pipe or a device, no file")
+            .advise("name a file; what comes through a pipe is read from standard input, as `-`"));
+    }
+    File::open(path).map_err(|error| Error::io(path, error))
+}
+
+fn bytes_of(source: impl Read, path: &Path) -> Result<Vec<u8>> {
     let mut bytes = Vec::new();
-    let source: Box<dyn Read> = match path.as_os_str() == "-" {
-        true => Box::new(std::io::stdin()),
-        false => Box::new(File::open(path).map_err(|error| Error::io(path, error))?),
-    };
     source.take(MAX_FILE_BYTES + 1).read_to_end(&mut bytes).map_err(|error| Error::io(path, error))?;
     if bytes.is_empty() {
         return Err(Error::format(path, "the file is empty").advise("write it again: a copy may have failed"));
@@ -50,6 +64,13 @@ mod tests {
         let message = read_text(Path::new("no/such/file.txt")).unwrap_err().to_string();
         assert!(message.starts_with("no/such/file.txt: "), "{message}");
         assert!(message.ends_with("; check the path, which is taken from the current folder"), "{message}");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_device_is_no_file() {
+        let message = read_bytes(Path::new("/dev/zero")).unwrap_err().to_string();
+        assert!(message.starts_with("/dev/zero: this is a pipe or a device, no file; "), "{message}");
     }
 
     #[test]

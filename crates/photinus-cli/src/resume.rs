@@ -28,7 +28,8 @@ impl Done {
     /// # Errors
     /// [`Failure`] when it cannot be read, or is no file of results.
     pub(crate) fn read(path: &Path) -> std::result::Result<Option<Self>, Failure> {
-        if !path.exists() {
+        let is_standard = path.as_os_str() == "-";
+        if !path.exists() && !is_standard {
             return Ok(None);
         }
         if !path.is_file() {

@@ -100,6 +100,10 @@ impl Targets {
     fn claim(&mut self, place: PathBuf, named: &Path) -> std::result::Result<(), Failure> {
         // Two outputs may well go to one pipe or to /dev/null, but not to standard output: nobody could tell them apart.
         let is_shared = place.exists() && !place.is_file() && !place.is_dir();
+        if self.claimed.contains(&place) && is_standard(named) {
+            let reason = "two outputs both write to standard output: name a file for one of them";
+            return Err(Failure::Input(reason.to_owned()));
+        }
         if self.claimed.contains(&place) && !is_shared {
             let advice = "name another place for one of them";
             return refuse(named, "two outputs would be written here", advice);

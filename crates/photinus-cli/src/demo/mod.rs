@@ -21,6 +21,7 @@ use photinus_evaluate::evaluate;
 use photinus_io::dataset::TruthFrame;
 use photinus_io::frames::Frame;
 use photinus_io::results::{FrameRecord, ResultsWriter};
+use photinus_io::whole::WholeFolder;
 use photinus_io::{Error, Result};
 use photinus_sim::scene::Target;
 use photinus_sim::{Rendered, Scene, Simulator};
@@ -68,19 +69,21 @@ pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> std::result::Result<(
     let target = Targets::new(args.write, []).folder(&args.out)?;
     let making = target.whole().map_err(Failure::input)?;
     let folder = making.path();
-    let mut scene = carried::unpack(&folder.join("scene")).map_err(Failure::input)?;
+    let mut scene =
+        carried::unpack(&folder.join("scene")).map_err(|error| Failure::input(making.tell(error)))?;
     if let Some(seconds) = args.seconds {
         scene.frames = scene.frames.min((f64::from(seconds) * scene.rate_hz) as u64);
     }
-    let flown = fly(&scene, folder, terminal)?;
+    let broken = |error| Failure::running(making.tell(error));
+    let flown = fly(&scene, &making, terminal)?;
     let settings =
         photinus_evaluate::Settings { time_tolerance_s: 0.5 / scene.rate_hz, ..Default::default() };
     let evaluation = evaluate(&flown.truth, &flown.records, &settings)
         .map_err(|error| Failure::Running(error.to_string()))?;
-    let figures = made(folder.join(FIGURES)).map_err(Failure::running)?;
-    plot(&figures, &evaluation, &flown.truth).map_err(Failure::running)?;
+    let figures = made(folder.join(FIGURES)).map_err(broken)?;
+    plot(&figures, &evaluation, &flown.truth).map_err(broken)?;
     let told = told::lines(&scene, &flown.truth, &evaluation.scores);
-    page(&scene, &flown.drawn, &told).write(folder).map_err(Failure::running)?;
+    page(&scene, &flown.drawn, &told).write(folder).map_err(broken)?;
     making.keep().map_err(Failure::running)?;
     let out = args.out.display();
     terminal.result(told)?;
@@ -118,18 +121,18 @@ fn made(folder: PathBuf) -> Result<PathBuf> {
 }
 
 /// Renders and locates every frame, writes truth and results, and draws a choice of frames.
-fn fly(scene: &Scene, out: &Path, terminal: &mut Terminal) -> std::result::Result<Flown, Failure> {
+fn fly(scene: &Scene, making: &WholeFolder, terminal: &mut Terminal) -> std::result::Result<Flown, Failure> {
     let no_target = || Failure::Running("the scene has no camera or no target".to_owned());
+    let (out, broken) = (making.path(), |error| Failure::running(making.tell(error)));
     let simulator = Simulator::new(scene, 0).ok_or_else(no_target)?;
     let airframe = &scene.targets.first().ok_or_else(no_target)?.airframe;
     let camera = scene.cameras[0].camera.clone();
-    let pictures = made(out.join(PICTURES)).map_err(Failure::input)?;
-    let overlay = Overlay::new(pictures, Some(camera.clone())).map_err(Failure::input)?;
+    let pictures = made(out.join(PICTURES)).map_err(broken)?;
+    let overlay = Overlay::new(pictures, Some(camera.clone())).map_err(broken)?;
     let mut locator = Locator::new(camera, airframe, None, Settings::default())
         .map_err(|error| Failure::Running(error.to_string()))?;
     let (truth_path, results_path) = (out.join("truth.jsonl"), out.join("results.jsonl"));
-    let create =
-        |path: &Path| File::create_new(path).map_err(|error| Failure::running(Error::io(path, error)));
+    let create = |path: &Path| File::create_new(path).map_err(|error| broken(Error::io(path, error)));
     let mut truth_file = BufWriter::new(create(&truth_path)?);
     let mut results = ResultsWriter::new(create(&results_path)?, &results_path);
 
@@ -151,8 +154,8 @@ fn fly(scene: &Scene, out: &Path, terminal: &mut Terminal) -> std::result::Resul
         terminal.frame_done();
         Ok(())
     };
-    simulator.render(0..scene.frames, threads, take).map_err(Failure::running)?;
-    truth_file.flush().map_err(|error| Failure::running(Error::io(&truth_path, error)))?;
+    simulator.render(0..scene.frames, threads, take).map_err(broken)?;
+    truth_file.flush().map_err(|error| broken(Error::io(&truth_path, error)))?;
     terminal.finish();
     Ok(flown)
 }

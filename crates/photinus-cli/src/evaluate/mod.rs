@@ -109,11 +109,11 @@ impl Args {
 /// Runs the command.
 pub(crate) fn run(args: &Args, terminal: &Terminal) -> Result<(), Failure> {
     let dataset = Dataset::read(&args.dataset).map_err(Failure::input)?;
-    let truth = read_truth(args, &dataset)?;
-    let (results, bad_lines) = read_records(args, &dataset, terminal)?;
     let mut targets = Targets::new(args.write, dataset.files().into_iter().chain([args.results.clone()]));
     let json = args.json.as_deref().map(|path| targets.file(path)).transpose()?;
     let plots = args.plots.as_deref().map(|path| targets.folder(path)).transpose()?;
+    let truth = read_truth(args, &dataset)?;
+    let (results, bad_lines) = read_records(args, &dataset, terminal)?;
     let settings = args.settings(&dataset);
     let evaluation = evaluate(&truth, &results, &settings).map_err(|error| args.refuse(&error))?;
 

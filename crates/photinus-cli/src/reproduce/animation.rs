@@ -1,10 +1,9 @@
 //! Figure 17: frames of the flight with what was found in them, and the same from above, with truth as a square.
 
-use std::path::Path;
-
 use nalgebra::Vector3;
 use photinus::locator::{Locator, Settings};
 use photinus_io::Error;
+use photinus_io::whole::WholeFolder;
 use photinus_reproduce::Effort;
 use photinus_sim::{Scene, Simulator};
 
@@ -33,31 +32,32 @@ pub(super) fn numbers(scene: &Scene, effort: Effort) -> Vec<u64> {
 
 /// Draws the frames and writes the page that plays them.
 pub(super) fn save(
-    folder: &Path,
+    making: &WholeFolder,
     scene: &Scene,
     numbers: &[u64],
     terminal: &Terminal,
 ) -> Result<(), Failure> {
+    let (folder, broken) = (making.path(), |error| Failure::running(making.tell(error)));
     let lacks = || Failure::Running("the scene has no camera or no target".to_owned());
     let mut simulator = Simulator::new(scene, 0).ok_or_else(lacks)?;
     let airframe = &scene.targets.first().ok_or_else(lacks)?.airframe;
     let camera = scene.cameras[0].camera.clone();
     let pictures = folder.join(PICTURES);
-    std::fs::create_dir_all(&pictures).map_err(|error| Failure::running(Error::io(&pictures, error)))?;
-    let overlay = Overlay::new(pictures, Some(camera.clone())).map_err(Failure::running)?;
+    std::fs::create_dir_all(&pictures).map_err(|error| broken(Error::io(&pictures, error)))?;
+    let overlay = Overlay::new(pictures, Some(camera.clone())).map_err(broken)?;
     let mut locator = Locator::new(camera, airframe, None, Settings::default())
         .map_err(|error| Failure::Running(error.to_string()))?;
     let mut clock = Clock::new();
     for &number in numbers {
         let (truth, mut entry) = apart(simulator.frame(number));
-        locate::fill(&mut entry, &mut locator, airframe.name(), &mut clock).map_err(Failure::running)?;
+        locate::fill(&mut entry, &mut locator, airframe.name(), &mut clock).map_err(broken)?;
         let places_m: Vec<Vector3<f64>> =
             truth.neighbours.iter().map(|neighbour| Vector3::from(neighbour.position_m)).collect();
         let image = entry.image.as_ref().map(|image| image.view());
-        overlay.draw(&entry.record, image, entry.gravity.as_ref(), &places_m).map_err(Failure::running)?;
+        overlay.draw(&entry.record, image, entry.gravity.as_ref(), &places_m).map_err(broken)?;
         terminal.frame_done();
     }
-    page(numbers).write(folder).map_err(Failure::running)
+    page(numbers).write(folder).map_err(broken)
 }
 
 fn page(numbers: &[u64]) -> Page<'static> {

@@ -85,7 +85,8 @@ pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> Result<(), Failure> {
     let target = Targets::new(args.write, []).folder(&args.out)?;
     let making = target.whole().map_err(Failure::input)?;
     let folder = making.path();
-    let scene = carried::unpack(&folder.join("scene")).map_err(Failure::input)?;
+    let broken = |error| Failure::running(making.tell(error));
+    let scene = carried::unpack(&folder.join("scene")).map_err(|error| Failure::input(making.tell(error)))?;
     let rig = Rig::new(scene).map_err(|error| Failure::Running(error.to_string()))?;
     let wanted: BTreeSet<Experiment> =
         Figure::ALL.into_iter().filter(|figure| args.wants(*figure)).map(Figure::experiment).collect();
@@ -97,13 +98,13 @@ pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> Result<(), Failure> {
     reports.retain(|report| args.wants(report.figure));
     reports.sort_by_key(|report| report.figure);
     for report in &reports {
-        drawing::save(folder, report).map_err(Failure::running)?;
-        tables::save_data(folder, report).map_err(Failure::running)?;
+        drawing::save(folder, report).map_err(broken)?;
+        tables::save_data(folder, report).map_err(broken)?;
     }
     if !pictures.is_empty() {
-        animation::save(folder, rig.scene(), &pictures, terminal)?;
+        animation::save(&making, rig.scene(), &pictures, terminal)?;
     }
-    tables::save_summary(folder, &reports).map_err(Failure::running)?;
+    tables::save_summary(folder, &reports).map_err(broken)?;
     making.keep().map_err(Failure::running)?;
     terminal.finish();
     if !args.quiet {

@@ -39,7 +39,7 @@ fn the_page_holds_every_figure() {
     stage.file("corners.csv", corners(&stage));
     let done = stage.run(
         "calibrate camera corners.csv --size 752x480 --grid 7x5 --model kannala-brandt --board flat --splits 2 --bootstraps 3 \
-         --out camera.toml --report report",
+         --out solved.toml --report report",
     );
     assert_eq!(done.code, 0);
     let page = stage.read("report/index.html");

@@ -48,7 +48,7 @@ fn every_kind_of_input_gives_the_same_neighbour() {
     stage.file("two.raw", raw);
     stage.file("two.y4m", video(2));
     stage.run("detect frame.png -q --out spots.jsonl");
-    let known = "--camera camera.toml --airframe hexa.toml -q --out r.jsonl";
+    let known = "--camera camera.toml --airframe hexa.toml -q --out r.jsonl --force";
     let mut seen = Vec::new();
     for words in [
         format!("locate frame.png {known}"),
@@ -103,7 +103,10 @@ fn locate_prints_writes_and_draws() {
 fn what_is_believed_of_a_neighbour_shows_in_its_sigma() {
     let stage = Stage::new("priors");
     let sigma_m = |options: &str| {
-        assert_eq!(stage.run(&format!("{LOCATE} -q --out r.jsonl --gravity 0,1,0 {options}")).code, 0);
+        assert_eq!(
+            stage.run(&format!("{LOCATE} -q --out r.jsonl --force --gravity 0,1,0 {options}")).code,
+            0
+        );
         records(&stage, "r.jsonl")[0].neighbours[0].distance_m.sigma.unwrap()
     };
     let usual_m = sigma_m("");
@@ -131,7 +134,7 @@ fn signals_of_spots_tell_the_yaw() {
             format!(r#"{{"u_px":{u_px},"v_px":31,"sigma_px":0.1,"signal":{signal}}}"#)
         };
         stage.file("s.jsonl", format!("{{\"spots\":[{},{}]}}", spot(42.0, left), spot(52.0, right)));
-        let known = "--camera camera.toml --airframe six.txt --gravity 0,1,0 -q --out r.jsonl";
+        let known = "--camera camera.toml --airframe six.txt --gravity 0,1,0 -q --out r.jsonl --force";
         assert_eq!(stage.run(&format!("locate --spots s.jsonl {known}")).code, 0);
         let record = &records(&stage, "r.jsonl")[0];
         assert_eq!(record.spots[1].signal, Some(right));

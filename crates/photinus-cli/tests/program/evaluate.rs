@@ -244,7 +244,10 @@ fn what_cannot_be_compared_is_refused() {
     refuses("evaluate flight results.jsonl --json results.jsonl", &["it would be replaced"]);
     refuses("evaluate flight results.jsonl --json flight/truth.jsonl", &["it would be replaced"]);
     refuses("evaluate flight results.jsonl --json no/s.json", &["no/s.json: ", "make its folder first"]);
-    refuses("evaluate flight results.jsonl --plots results.jsonl", &["name a folder that can be made"]);
+    refuses(
+        "evaluate flight results.jsonl --plots results.jsonl",
+        &["results.jsonl: it is there already, and no folder; name another folder"],
+    );
 
     let wrong = stage.read("flight/truth.jsonl").replace("\"distance_m\":7.0", "\"distance_m\":70.0");
     stage.file("flight/truth.jsonl", wrong);

@@ -41,7 +41,7 @@ const IS_THERE: &str = "it is there already; write elsewhere, or over it with --
 
 #[test]
 fn what_a_run_reads_is_never_written_over() {
-    let stage = stage("inputs");
+    let stage = stage("survive-inputs");
     std::fs::copy(stage.path("rec/images/000000.png"), stage.path("mask.png")).unwrap();
     stage
         .file("curve.toml", "exposure_us = 2000\nupper = { offset_px = 1, scale_px_m2 = 30, shift_m = 0 }\n");
@@ -100,7 +100,7 @@ fn what_a_run_reads_is_never_written_over() {
 #[cfg(unix)]
 #[test]
 fn another_name_of_a_file_is_the_same_file() {
-    let stage = stage("links");
+    let stage = stage("survive-links");
     std::os::unix::fs::symlink(stage.path("rec/truth.jsonl"), stage.path("link.jsonl")).unwrap();
     std::fs::hard_link(stage.path("rec/truth.jsonl"), stage.path("hard.jsonl")).unwrap();
     loses_nothing(&stage, "locate rec -q --out link.jsonl --force", IS_INPUT);
@@ -113,14 +113,13 @@ fn another_name_of_a_file_is_the_same_file() {
 
 #[test]
 fn what_is_there_stays_without_force() {
-    let stage = stage("there");
+    let stage = stage("survive-there");
     for words in [
         "locate rec -q --out mine.txt",
         "locate rec -q --csv mine.txt",
         "detect rec -q --out mine.txt",
         "convert hexa.toml camera.toml",
         "convert camera.toml mine.txt",
-        "convert rec/truth.jsonl rec/frames.csv",
         "convert frame.png mine.txt --to y4m",
         "simulate SCENE --out mine.txt --frames 1",
         "evaluate rec rec/truth.jsonl --json mine.txt",
@@ -155,8 +154,10 @@ fn what_is_there_stays_without_force() {
 
 #[test]
 fn two_outputs_do_not_share_a_place() {
-    let stage = stage("shared");
-    for (out, csv) in [("x", "x"), ("x", "./x"), ("rec/../x", "x"), ("-", "-")] {
+    let stage = stage("survive-shared");
+    let advice = "both write to standard output: name a file for one of them";
+    loses_nothing(&stage, "locate rec --out - --csv -", advice);
+    for (out, csv) in [("x", "x"), ("x", "./x"), ("rec/../x", "x")] {
         loses_nothing(
             &stage,
             &format!("locate rec --out {out} --csv {csv}"),
@@ -173,7 +174,7 @@ fn two_outputs_do_not_share_a_place() {
 
 #[test]
 fn what_may_go_goes_and_nothing_else() {
-    let stage = stage("force");
+    let stage = stage("survive-force");
     assert_eq!(stage.run("locate rec -q --out mine.txt --csv table.csv --overlay folder --force").code, 0);
     assert_eq!(stage.read("mine.txt").lines().count(), 3);
     assert_eq!(stage.read("table.csv").lines().count(), 4);

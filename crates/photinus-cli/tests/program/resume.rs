@@ -59,7 +59,7 @@ fn results_of_another_run_are_left_alone() {
     let cut = &whole[0][..whole[0].len() - 10];
     for (words, part) in [
         (
-            "locate rec --max-tilt 3",
+            "locate rec --marker-sigma 0.05",
             "this run finds something else in it; go on with the files, options and version",
         ),
         (

@@ -185,7 +185,6 @@ fn a_full_disk_is_told_and_leaves_no_half_file() {
         "convert rec disk/copy",
         "simulate SCENE --out disk/scene --frames 3 -q",
         "simulate SCENE --out disk/scene.y4m --frames 3 -q",
-        "evaluate rec good.jsonl --plots disk/plots -q",
         "demo --out disk/demo --seconds 1",
     ] {
         let scene = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/crossing.toml");

@@ -79,14 +79,14 @@ impl WholeFile {
 impl Write for WholeFile {
     fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
         match &mut self.sink {
-            Sink::Beside(file) => file.write(bytes),
+            Sink::Beside(file) => file.write(bytes).map_err(plain),
             Sink::Direct(file) => file.write(bytes),
         }
     }
 
     fn flush(&mut self) -> std::io::Result<()> {
         match &mut self.sink {
-            Sink::Beside(file) => file.flush(),
+            Sink::Beside(file) => file.flush().map_err(plain),
             Sink::Direct(file) => file.flush(),
         }
     }
@@ -204,7 +204,15 @@ fn refuse(path: &Path, error: std::io::Error) -> Error {
         std::io::ErrorKind::StorageFull => "free some space and run again",
         _ => "write elsewhere, or change the permissions",
     };
-    Error::io(path, error).advise(advice)
+    Error::io(path, plain(error)).advise(advice)
+}
+
+/// What the operating system said, without the temporary name that nobody gave.
+fn plain(error: std::io::Error) -> std::io::Error {
+    match error.to_string().split_once(" at path ") {
+        Some((reason, _)) => std::io::Error::new(error.kind(), reason.to_owned()),
+        None => error,
+    }
 }
 
 #[cfg(test)]

@@ -29,6 +29,8 @@ pub fn create(folder: impl AsRef<Path>, scene: &Scene, camera: usize) -> Result<
         rate_hz: scene.rate_hz,
         spot_curve: None,
         mask: None,
+        codes: None,
+        vehicles: None,
     };
     let writer = DatasetWriter::create(folder, &info)?;
     let mut text = Vec::new();
@@ -58,7 +60,7 @@ mod tests {
     use photinus_io::{airframe::read_airframe, read_camera};
 
     use super::*;
-    use crate::render::Simulator;
+    use crate::Simulator;
 
     #[test]
     fn what_is_written_is_read_back() {

@@ -45,19 +45,20 @@ impl Args {
 pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> Result<(), Failure> {
     let done = args.output.done()?;
     let input = args.input.open()?;
-    let mask = args.spots.mask(input.dataset.as_ref(), terminal)?;
+    let masks = args.spots.masks(&input, terminal)?;
     let mut detector =
         Detector::new(args.spots.settings()).map_err(|error| Failure::Input(error.to_string()))?;
     let read: Vec<PathBuf> = input.files.iter().cloned().chain(args.spots.file()).collect();
-    let outputs = args.output.claim(None, &read, None, lines)?;
+    let outputs = args.output.claim(None, &read, Vec::new(), lines)?;
     run::run(input, outputs, done.as_ref(), terminal, |entry, clock| {
         let Some(image) = &entry.image else { return Ok(()) };
         let frame = image.view();
-        if let Some(mask) = &mask {
+        let mask = masks[entry.camera].as_ref();
+        if let Some(mask) = mask {
             mask.check_size(frame.width(), frame.height())?;
         }
         let found = detector
-            .detect(&frame, mask_of(mask.as_ref()))
+            .detect(&frame, mask_of(mask))
             .map_err(|error| in_frame(Error::new(&entry.record.source, error), entry))?;
         clock.lap("spots");
         entry.record.spots = found.spots.iter().map(SpotRecord::from).collect();

@@ -5,7 +5,7 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use nalgebra::{Unit, Vector3};
-use photinus_io::dataset::Dataset;
+use photinus_io::dataset::{Dataset, DatasetCamera};
 use photinus_io::frames::{Frame, FrameSource};
 use photinus_io::image::{Conversion, GreyImage};
 use photinus_io::results::{FrameRecord, ResultsReader};
@@ -28,6 +28,16 @@ pub(crate) struct InputArgs {
     /// Stop after N frames
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     frames: Option<u64>,
+    #[command(flatten)]
+    dataset: DatasetArgs,
+}
+
+/// What the user says about a dataset.
+#[derive(Clone, Debug, Default, clap::Args)]
+pub(crate) struct DatasetArgs {
+    /// Of a dataset with several cameras, only the one of this name
+    #[arg(long, value_name = "NAME")]
+    pub(crate) only: Option<String>,
     /// Let a dataset name images outside of its folder
     #[arg(long)]
     allow_outside: bool,
@@ -39,6 +49,8 @@ pub(crate) struct Entry {
     pub(crate) record: FrameRecord,
     /// The pixels, unless spots came in their place.
     pub(crate) image: Option<GreyImage>,
+    /// Which of the input's cameras took it.
+    pub(crate) camera: usize,
     /// Direction of gravity (down) in the camera frame, where the source knows.
     pub(crate) gravity: Option<Unit<Vector3<f64>>>,
     /// What was done to the stored samples.
@@ -53,6 +65,8 @@ pub(crate) struct Input {
     pub(crate) count: Option<u64>,
     /// The dataset that they are of.
     pub(crate) dataset: Option<Dataset>,
+    /// The cameras of the dataset that they are of, in its order: of several cameras, frames come in the order of their times.
+    pub(crate) cameras: Vec<DatasetCamera>,
     /// The files that are read, which no output may replace.
     pub(crate) files: Vec<PathBuf>,
     /// What it is called in messages.
@@ -68,7 +82,48 @@ pub(crate) struct Entries {
 
 enum Source {
     Frames(FrameSource),
+    Rig(Rig),
     Spots(ResultsReader<Box<dyn Read + Send>>),
+}
+
+/// Frames of cameras that are mounted together.
+struct Rig {
+    names: Vec<Option<String>>,
+    frames: Vec<FrameSource>,
+    /// Which camera the next frame is of.
+    order: std::vec::IntoIter<usize>,
+}
+
+impl Rig {
+    /// Frames of these cameras of a dataset, by their times.
+    fn new(dataset: &Dataset, cameras: &[usize]) -> Self {
+        let all = dataset.cameras();
+        let times = |(place, &camera): (usize, &usize)| {
+            all[camera].frames.iter().map(move |row| (row.time_s, place)).collect::<Vec<_>>()
+        };
+        let mut order: Vec<(f64, usize)> = cameras.iter().enumerate().flat_map(times).collect();
+        order.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        let frames = cameras.iter().map(|&camera| FrameSource::dataset_camera(dataset.clone(), camera));
+        let order: Vec<usize> = order.into_iter().map(|(_, place)| place).collect();
+        Self {
+            names: cameras.iter().map(|&camera| all[camera].name.clone()).collect(),
+            frames: frames.collect(),
+            order: order.into_iter(),
+        }
+    }
+}
+
+impl Iterator for Rig {
+    type Item = Result<Entry>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        let camera = self.order.next()?;
+        Some(self.frames[camera].next()?.map(|frame| {
+            let mut entry = Entry::from_frame(frame);
+            entry.record.camera.clone_from(&self.names[camera]);
+            Entry { camera, ..entry }
+        }))
+    }
 }
 
 impl Entries {
@@ -87,6 +142,7 @@ impl Iterator for Entries {
         self.left = self.left.checked_sub(1)?;
         match &mut self.source {
             Source::Frames(frames) => Some(frames.next()?.map(Entry::from_frame)),
+            Source::Rig(rig) => rig.next(),
             Source::Spots(records) => Some(records.next()?.map(Entry::from_spots)),
         }
     }
@@ -94,8 +150,8 @@ impl Iterator for Entries {
 
 impl InputArgs {
     /// All frames of these inputs.
-    pub(crate) fn of(inputs: &[PathBuf], allow_outside: bool) -> Self {
-        Self { inputs: inputs.to_vec(), raw: None, frames: None, allow_outside }
+    pub(crate) fn of(inputs: &[PathBuf], dataset: &DatasetArgs) -> Self {
+        Self { inputs: inputs.to_vec(), raw: None, frames: None, dataset: dataset.clone() }
     }
 
     /// Opens the frames.
@@ -143,21 +199,69 @@ impl InputArgs {
 
     fn dataset(&self, folder: &Path) -> std::result::Result<Input, Failure> {
         let dataset = Dataset::read(folder).map_err(Failure::input)?;
-        if !self.allow_outside {
+        if !self.dataset.allow_outside {
             let advice = "move it there, or allow it with --allow-outside";
             dataset.check_inside().map_err(|error| Failure::input(error.advise(advice)))?;
         }
-        let frames = Source::Frames(FrameSource::dataset(dataset.clone()));
-        let mut input = Input::new(frames, Some(dataset.frames().len() as u64), dataset.files(), folder);
-        input.dataset = Some(dataset);
+        let cameras = self.dataset.cameras(&dataset)?;
+        let chosen: Vec<DatasetCamera> =
+            cameras.iter().map(|&camera| dataset.cameras()[camera].clone()).collect();
+        let count = chosen.iter().map(|camera| camera.frames.len() as u64).sum();
+        let source = match chosen.as_slice() {
+            [DatasetCamera { name: None, .. }] => Source::Frames(FrameSource::dataset(dataset.clone())),
+            _ => Source::Rig(Rig::new(&dataset, &cameras)),
+        };
+        let mut input = Input::new(source, Some(count), dataset.files(), folder);
+        (input.dataset, input.cameras) = (Some(dataset), chosen);
         Ok(input)
     }
 }
 
+impl DatasetArgs {
+    /// The cameras that are meant, by their places in the dataset.
+    ///
+    /// # Errors
+    /// [`Failure`] when there is none of that name.
+    fn cameras(&self, dataset: &Dataset) -> std::result::Result<Vec<usize>, Failure> {
+        let all = dataset.cameras();
+        let Some(name) = &self.only else { return Ok((0..all.len()).collect()) };
+        match all.iter().position(|camera| camera.name.as_ref() == Some(name)) {
+            Some(camera) => Ok(vec![camera]),
+            None => Err(Failure::Input(format!("--only {name}: the dataset has {}", names(all)))),
+        }
+    }
+}
+
+/// The names of cameras, in words.
+pub(crate) fn names(cameras: &[DatasetCamera]) -> String {
+    let names: Vec<&str> = cameras.iter().filter_map(|camera| camera.name.as_deref()).collect();
+    if names.is_empty() {
+        "one camera, without a name".to_owned()
+    } else {
+        format!("the cameras {}", names.join(", "))
+    }
+}
+
 impl Input {
+    /// The camera of the dataset, where there is a dataset.
+    ///
+    /// # Errors
+    /// [`Failure`] when there are several cameras.
+    pub(crate) fn one_camera(&self) -> std::result::Result<Option<&DatasetCamera>, Failure> {
+        match self.cameras.as_slice() {
+            [] => Ok(None),
+            [camera] => Ok(Some(camera)),
+            several => {
+                let reason = format!("{}: it has {}; choose one with --only NAME", self.name, names(several));
+                Err(Failure::Input(reason))
+            }
+        }
+    }
+
     fn new(source: Source, count: Option<u64>, files: Vec<PathBuf>, name: &Path) -> Self {
         let entries = Entries { source, left: u64::MAX };
-        Self { entries, count, dataset: None, files, name: input_name(name).into_owned() }
+        let (cameras, name) = (Vec::new(), input_name(name).into_owned());
+        Self { entries, count, dataset: None, cameras, files, name }
     }
 }
 
@@ -165,19 +269,21 @@ impl Entry {
     pub(crate) fn from_frame(frame: Frame) -> Self {
         let record = FrameRecord {
             frame: Some(frame.index),
+            camera: None,
             time_s: frame.time_s,
             latency_s: None,
-            source: frame.source,
+            source: frame.source.clone(),
             spots: Vec::new(),
             rejected: Vec::new(),
             neighbours: Vec::new(),
         };
-        Self { record, image: Some(frame.image), gravity: frame.gravity, conversions: frame.conversions }
+        let Frame { image, gravity, conversions, .. } = frame;
+        Self { record, image: Some(image), camera: 0, gravity, conversions }
     }
 
     fn from_spots(record: FrameRecord) -> Self {
         let record = FrameRecord { neighbours: Vec::new(), ..record };
-        Self { record, image: None, gravity: None, conversions: Vec::new() }
+        Self { record, image: None, camera: 0, gravity: None, conversions: Vec::new() }
     }
 }
 

@@ -5,10 +5,12 @@ use std::path::{Path, PathBuf};
 use nalgebra::{Unit, Vector3};
 use photinus::airframe::Airframe;
 use photinus::camera::{Bearing, Camera};
-use photinus::locator::{Locator, Settings, Stage};
+use photinus::locator::{Locator, LocatorError, Settings, Stage};
 use photinus::ranging::SpotCurve;
 use photinus::spots::Spot;
-use photinus_io::dataset::Dataset;
+use photinus_io::calibration::{MountingFile, read_mounting};
+use photinus_io::dataset::{Dataset, DatasetCamera};
+use photinus_io::mask::MaskFile;
 use photinus_io::results::NeighbourRecord;
 use photinus_io::{Error, Result};
 
@@ -53,6 +55,10 @@ pub(crate) struct Args {
     /// The neighbours' airframe: where its LEDs sit [default: that of the dataset]
     #[arg(long, value_name = "FILE")]
     airframe: Option<PathBuf>,
+    /// How the camera sits on its vehicle, as `photinus calibrate mounting` writes it: neighbours are told in the body frame, too
+    /// [default: that of the dataset, if any]
+    #[arg(long, value_name = "FILE")]
+    mounting: Option<PathBuf>,
     /// How large a spot can be at a distance: a TOML file, or `paper` [default: that of the dataset, if any]
     #[arg(long, value_name = "FILE|paper")]
     spot_curve: Option<PathBuf>,
@@ -81,7 +87,7 @@ impl Args {
 
     /// The files that are read beside the input.
     fn files(&self) -> impl Iterator<Item = PathBuf> {
-        [&self.camera, &self.airframe, &self.spot_curve]
+        [&self.camera, &self.airframe, &self.spot_curve, &self.mounting]
             .into_iter()
             .flatten()
             .cloned()
@@ -95,32 +101,68 @@ impl Args {
         }
     }
 
-    fn camera(&self, dataset: Option<&Dataset>, terminal: &Terminal) -> std::result::Result<Camera, Failure> {
-        let path = needed(self.camera.as_deref(), "camera", dataset.map(|d| d.path(&d.info().camera)))?;
-        Ok(beforehand::camera(&path, terminal).map_err(Failure::input)?.camera)
+    fn airframe(&self, input: &Input, terminal: &Terminal) -> std::result::Result<Airframe, Failure> {
+        let of_dataset = input.dataset.as_ref().map(|dataset| dataset.path(&dataset.info().airframe));
+        let path = needed(self.airframe.as_deref(), "airframe", of_dataset)?;
+        beforehand::airframe(&path, terminal).map_err(Failure::input)
     }
 
-    fn airframe(
+    fn settings(&self) -> Settings {
+        Settings {
+            spots: self.spot_options.settings(),
+            max_tilt_rad: self.max_tilt.to_radians(),
+            pose: self.pose_options.settings(),
+        }
+    }
+
+    /// What looks through each camera of the input.
+    fn views(
         &self,
-        dataset: Option<&Dataset>,
+        input: &Input,
+        airframe: &Airframe,
         terminal: &Terminal,
-    ) -> std::result::Result<Airframe, Failure> {
-        let path = needed(self.airframe.as_deref(), "airframe", dataset.map(|d| d.path(&d.info().airframe)))?;
-        beforehand::airframe(&path, terminal).map_err(Failure::input)
+    ) -> std::result::Result<Vec<View>, Failure> {
+        if self.camera.is_some() || self.spot_curve.is_some() || self.mounting.is_some() {
+            input.one_camera()?;
+        }
+        let cameras: Vec<Option<&DatasetCamera>> = match input.cameras.as_slice() {
+            [] => vec![None],
+            cameras => cameras.iter().map(Some).collect(),
+        };
+        let masks = self.spot_options.masks(input, terminal)?;
+        let view = |(of_dataset, mask): (Option<&DatasetCamera>, Option<MaskFile>)| {
+            let named = of_dataset.zip(input.dataset.as_ref());
+            let path = needed(self.camera.as_deref(), "camera", named.map(|(c, d)| d.path(&c.camera)))?;
+            let camera = beforehand::camera(&path, terminal).map_err(Failure::input)?.camera;
+            if let Some(mask) = &mask {
+                mask.check_size(camera.width(), camera.height()).map_err(Failure::input)?;
+            }
+            let mounting = match &self.mounting {
+                Some(path) => Some(read_mounting(path).map_err(Failure::input)?),
+                None => of_dataset.and_then(|camera| camera.mounting),
+            };
+            let curve = self.spot_curve(named, terminal)?;
+            let refuse = |error: LocatorError| Failure::Input(error.to_string());
+            let mut locator =
+                Locator::new(camera.clone(), airframe, curve, self.settings()).map_err(refuse)?;
+            locator.set_mask(mask_of(mask.as_ref()).cloned()).map_err(refuse)?;
+            Ok(View { camera, mounting, locator })
+        };
+        cameras.into_iter().zip(masks).map(view).collect()
     }
 
     fn spot_curve(
         &self,
-        dataset: Option<&Dataset>,
+        named: Option<(&DatasetCamera, &Dataset)>,
         terminal: &Terminal,
     ) -> std::result::Result<Option<SpotCurve>, Failure> {
-        let of_dataset = || dataset.and_then(|d| d.info().spot_curve.as_ref().map(|named| d.path(named)));
+        let of_dataset = || named.and_then(|(c, d)| c.spot_curve.as_ref().map(|named| d.path(named)));
         let Some(path) = self.spot_curve.clone().or_else(of_dataset) else { return Ok(None) };
         let file = beforehand::spot_curve(&path).map_err(Failure::input)?;
         let brightness = self.spot_options.settings().brightness;
         let now = Conditions {
             brightness: self.spots.is_none().then_some(brightness),
-            exposure_us: dataset.map(|dataset| dataset.info().exposure_us),
+            exposure_us: named.map(|(camera, _)| camera.exposure_us),
         };
         for difference in beforehand::differences(&file, &now) {
             terminal.warning(format_args!("{}: {difference}", path.display()));
@@ -129,32 +171,30 @@ impl Args {
     }
 }
 
+/// A camera of the input, how it sits on its vehicle, and what looks through it.
+struct View {
+    camera: Camera,
+    mounting: Option<MountingFile>,
+    locator: Locator,
+}
+
 /// Runs the command.
 pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> std::result::Result<(), Failure> {
     let done = args.output.done()?;
     let input = args.open_input()?;
-    let dataset = input.dataset.as_ref();
-    let camera = args.camera(dataset, terminal)?;
-    let airframe = args.airframe(dataset, terminal)?;
-    let curve = args.spot_curve(dataset, terminal)?;
-    let mask = args.spot_options.mask(dataset, terminal)?;
-    if let Some(mask) = &mask {
-        mask.check_size(camera.width(), camera.height()).map_err(Failure::input)?;
-    }
+    let airframe = args.airframe(&input, terminal)?;
     let read: Vec<PathBuf> = input.files.iter().cloned().chain(args.files()).collect();
-    let outputs = args.output.claim(args.csv.as_deref(), &read, Some(&camera), lines)?;
-    let settings = Settings {
-        spots: args.spot_options.settings(),
-        max_tilt_rad: args.max_tilt.to_radians(),
-        pose: args.pose_options.settings(),
-    };
-    let refuse = |error: photinus::locator::LocatorError| Failure::Input(error.to_string());
-    let mut locator = Locator::new(camera, &airframe, curve, settings).map_err(refuse)?;
-    locator.set_mask(mask_of(mask.as_ref()).cloned()).map_err(refuse)?;
-
+    let mut views = args.views(&input, &airframe, terminal)?;
+    let cameras = views.iter().map(|view| view.camera.clone()).collect();
+    let outputs = args.output.claim(args.csv.as_deref(), &read, cameras, lines)?;
     let fill = |entry: &mut Entry, clock: &mut Clock| {
+        let view = &mut views[entry.camera];
         entry.gravity = args.gravity.or(entry.gravity);
-        fill(entry, &mut locator, airframe.name(), clock)
+        fill(entry, &mut view.locator, airframe.name(), clock)?;
+        if let Some(mounting) = &view.mounting {
+            entry.record.put_mounting(mounting);
+        }
+        Ok(())
     };
     run::run(input, outputs, done.as_ref(), terminal, fill)
 }

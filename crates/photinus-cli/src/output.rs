@@ -42,7 +42,7 @@ pub(crate) struct Claimed {
     out: Option<FileTarget>,
     csv: Option<FileTarget>,
     overlay: Option<FolderTarget>,
-    camera: Option<Camera>,
+    cameras: Vec<Camera>,
     lines: Option<Lines>,
 }
 
@@ -72,8 +72,8 @@ impl OutputArgs {
         }
     }
 
-    /// Where the outputs may go; none of them may replace one of the files that are `read`. The camera, where it is known,
-    /// is for the view from above. Without --out and --csv, lines to read are printed.
+    /// Where the outputs may go; none of them may replace one of the files that are `read`. The input's cameras, where they are
+    /// known, are for the view from above. Without --out and --csv, lines to read are printed.
     ///
     /// # Errors
     /// [`Failure`] when an output would replace something, or cannot be written.
@@ -81,7 +81,7 @@ impl OutputArgs {
         &self,
         csv: Option<&Path>,
         read: &[PathBuf],
-        camera: Option<&Camera>,
+        cameras: Vec<Camera>,
         lines: Lines,
     ) -> std::result::Result<Claimed, Failure> {
         // What goes on after a stopped run writes over its files.
@@ -91,7 +91,7 @@ impl OutputArgs {
         let csv = csv.map(|path| targets.file(path)).transpose()?;
         let overlay = self.overlay.as_deref().map(|path| targets.folder(path)).transpose()?;
         let lines = (out.is_none() && csv.is_none()).then_some(lines);
-        Ok(Claimed { out, csv, overlay, camera: camera.cloned(), lines })
+        Ok(Claimed { out, csv, overlay, cameras, lines })
     }
 }
 
@@ -118,7 +118,7 @@ impl Claimed {
             sinks.push(Sink::Table(table));
         }
         if let Some(target) = self.overlay {
-            sinks.push(Sink::Pictures(Overlay::new(target.grow()?, self.camera)?));
+            sinks.push(Sink::Pictures(Overlay::new(target.grow()?, self.cameras)?));
         }
         sinks.extend(self.lines.map(Sink::Lines));
         Ok(Outputs { sinks, failed: false, results })
@@ -173,7 +173,7 @@ impl Sink {
             Self::Table(table) => table.write(&entry.record),
             Self::Pictures(overlay) => {
                 let image = entry.image.as_ref().map(|image| image.view());
-                overlay.draw(&entry.record, image, entry.gravity.as_ref(), &[])
+                overlay.draw(entry.camera, &entry.record, image, entry.gravity.as_ref(), &[])
             }
             Self::Lines(lines) => lines(entry).iter().try_for_each(|line| terminal.line(line)),
         }

@@ -17,8 +17,9 @@ pub(crate) struct Done {
     path: PathBuf,
     /// Bytes of the whole lines but the last.
     bytes_before_last: u64,
-    /// The frame of the last whole line.
+    /// The frame of the last whole line, and the camera, where there are several.
     frame: u64,
+    camera: Option<String>,
     last_line: Vec<u8>,
 }
 
@@ -50,19 +51,24 @@ impl Done {
             return Ok(None);
         }
         let record = ResultsReader::new(last_line.as_slice(), path).next();
-        let frame = match record {
-            Some(Ok(FrameRecord { frame: Some(frame), .. })) => frame,
+        let (frame, camera) = match record {
+            Some(Ok(FrameRecord { frame: Some(frame), camera, .. })) => (frame, camera),
             _ => {
                 let refused = Error::format(path, "its last whole line is no result");
                 return Err(Failure::input(refused.advise("remove that line, or write elsewhere")));
             }
         };
-        Ok(Some(Self { path: path.to_owned(), bytes_before_last, frame, last_line }))
+        Ok(Some(Self { path: path.to_owned(), bytes_before_last, frame, camera, last_line }))
     }
 
     /// The frame of the last whole line, which is made once more.
     pub(crate) fn frame(&self) -> u64 {
         self.frame
+    }
+
+    /// Whether a frame is that of the last whole line.
+    pub(crate) fn is_last(&self, record: &FrameRecord) -> bool {
+        record.frame == Some(self.frame) && record.camera == self.camera
     }
 
     /// Refuses to go on after results that this run would not have given.

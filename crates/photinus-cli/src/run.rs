@@ -104,13 +104,8 @@ fn go_on(
     fill: &mut impl FnMut(&mut Entry, &mut Clock) -> Result<()>,
 ) -> std::result::Result<Entry, Failure> {
     entries.skip_to(done.frame());
-    let reached = entries.find(|entry| {
-        entry.as_ref().is_ok_and(|entry| entry.record.frame.is_some_and(|frame| frame >= done.frame()))
-    });
+    let reached = entries.find(|entry| entry.as_ref().is_ok_and(|entry| done.is_last(&entry.record)));
     let Some(Ok(mut entry)) = reached else { return Err(done.never_reached()) };
-    if entry.record.frame != Some(done.frame()) {
-        return Err(done.never_reached());
-    }
     fill(&mut entry, clock).map_err(Failure::input)?;
     done.check(&entry.record)?;
     Ok(entry)

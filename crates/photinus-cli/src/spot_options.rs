@@ -4,10 +4,11 @@ use std::path::PathBuf;
 
 use photinus::frame::Mask;
 use photinus::spots::{Brightness, Settings, Shape};
-use photinus_io::dataset::Dataset;
+use photinus_io::dataset::DatasetCamera;
 use photinus_io::mask::{MaskFile, read_mask};
 
 use crate::failure::Failure;
+use crate::input::Input;
 use crate::number;
 use crate::terminal::Terminal;
 
@@ -46,14 +47,26 @@ impl SpotArgs {
         Settings { brightness, shape, ..Settings::default() }
     }
 
+    /// The masks of an input's cameras: the one that was named, or those of the dataset.
+    ///
+    /// # Errors
+    /// [`Failure`] when a mask cannot be read, or one is named for several cameras.
+    pub(crate) fn masks(&self, input: &Input, terminal: &Terminal) -> Result<Vec<Option<MaskFile>>, Failure> {
+        let Some(dataset) = &input.dataset else { return Ok(vec![self.mask(None, terminal)?]) };
+        if self.mask.is_some() {
+            input.one_camera()?;
+        }
+        let of = |camera: &DatasetCamera| camera.mask.as_ref().map(|named| dataset.path(named));
+        input.cameras.iter().map(|camera| self.mask(of(camera), terminal)).collect()
+    }
+
     /// The mask that was named, or that of the dataset.
     pub(crate) fn mask(
         &self,
-        dataset: Option<&Dataset>,
+        of_dataset: Option<PathBuf>,
         terminal: &Terminal,
     ) -> Result<Option<MaskFile>, Failure> {
-        let of_dataset = || dataset.and_then(|dataset| Some(dataset.path(dataset.info().mask.as_ref()?)));
-        let Some(path) = self.mask.clone().or_else(of_dataset) else { return Ok(None) };
+        let Some(path) = self.mask.clone().or(of_dataset) else { return Ok(None) };
         let file = read_mask(&path).map_err(Failure::input)?;
         for note in &file.notes {
             terminal.warning(format_args!("{}: {note}", path.display()));

@@ -37,6 +37,8 @@ pub(crate) fn found_at(position_m: [f64; 3]) -> NeighbourRecord {
         },
         position_m: Some(position_m),
         position_covariance_m2: Some([[0.01, 0.0, 0.0], [0.0, 0.01, 0.0], [0.0, 0.0, 0.01]]),
+        position_body_m: None,
+        position_body_covariance_m2: None,
         orientation_xyzw: None,
         orientation_covariance_rad2: None,
         modes: vec![],
@@ -79,6 +81,7 @@ pub(crate) fn truth(frame: u64, neighbours: Vec<TruthNeighbour>) -> TruthFrame {
 pub(crate) fn record(frame: u64, spots: Vec<SpotRecord>, neighbours: Vec<NeighbourRecord>) -> FrameRecord {
     FrameRecord {
         frame: Some(frame),
+        camera: None,
         time_s: Some(frame as f64 / 10.0),
         latency_s: None,
         source: String::new(),

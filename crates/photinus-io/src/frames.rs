@@ -90,9 +90,9 @@ impl FrameSource {
                 let target = usize::try_from(frame).unwrap_or(usize::MAX).min(paths.len());
                 (next, target)
             }
-            Kind::Dataset { dataset, next } => {
-                let target = dataset.frames().partition_point(|row| row.frame < frame);
-                (next, target)
+            Kind::Dataset { dataset, camera, next } => {
+                let rows = dataset.cameras().get(*camera).map_or(&[][..], |camera| &camera.frames);
+                (next, rows.partition_point(|row| row.frame < frame))
             }
             Kind::Y4m { .. } | Kind::Raw { .. } => return 0,
         };

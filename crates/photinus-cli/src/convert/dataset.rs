@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use photinus_io::airframe::read_airframe;
-use photinus_io::dataset::{Dataset, DatasetInfo, DatasetWriter, TruthFrame};
+use photinus_io::dataset::{Dataset, DatasetCamera, DatasetInfo, DatasetWriter, TruthFrame};
 use photinus_io::mask::read_mask;
 use photinus_io::spot_curve::read_spot_curve;
 use photinus_io::whole::WholeFolder;
@@ -38,33 +38,37 @@ impl DatasetSink {
         out: &FolderTarget,
         args: &FrameArgs,
         rate_hz: Option<f64>,
-        source: Option<&Dataset>,
+        source: Option<(&Dataset, &DatasetCamera)>,
     ) -> std::result::Result<Self, Failure> {
         let needed =
             |what: &str| Failure::Input(format!("a dataset needs --{what}; see photinus convert --help"));
-        let of_source = |named: fn(&DatasetInfo) -> Option<&PathBuf>| {
-            source.and_then(|dataset| Some(dataset.path(named(dataset.info())?)))
+        let of_source = |named: fn(&DatasetCamera) -> Option<&PathBuf>| {
+            source.and_then(|(dataset, camera)| Some(dataset.path(named(camera)?)))
         };
-        let camera = args.camera.clone().or_else(|| of_source(|info| Some(&info.camera)));
-        let airframe = args.airframe.clone().or_else(|| of_source(|info| Some(&info.airframe)));
-        let exposure_us = args.exposure_us.or(source.map(|dataset| dataset.info().exposure_us));
+        let of_dataset = || source.map(|(dataset, _)| dataset.path(&dataset.info().airframe));
+        let camera = args.camera.clone().or_else(|| of_source(|camera| Some(&camera.camera)));
+        let airframe = args.airframe.clone().or_else(of_dataset);
+        let exposure_us = args.exposure_us.or(source.map(|(_, camera)| camera.exposure_us));
         let parts = Parts {
             camera: camera.ok_or_else(|| needed("camera"))?,
             airframe: airframe.ok_or_else(|| needed("airframe"))?,
-            spot_curve: of_source(|info| info.spot_curve.as_ref()),
-            mask: of_source(|info| info.mask.as_ref()),
+            spot_curve: of_source(|camera| camera.spot_curve.as_ref()),
+            mask: of_source(|camera| camera.mask.as_ref()),
         };
         let exposure_us = exposure_us.ok_or_else(|| needed("exposure-us"))?;
         let rate_hz = rate_hz.ok_or_else(|| needed("rate"))?;
 
         parts.check().map_err(Failure::input)?;
-        let truth = source.map_or(Ok(None), Dataset::truth).map_err(Failure::input)?.unwrap_or_default();
+        let truth = source.map_or(Ok(None), |(dataset, _)| dataset.truth());
+        let truth = truth.map_err(Failure::input)?.unwrap_or_default();
+        let name = source.and_then(|(_, camera)| camera.name.clone());
+        let truth = truth.into_iter().filter(|truth| truth.camera == name);
         let info = parts.info(exposure_us, rate_hz);
         let making = out.whole().map_err(Failure::input)?;
         let writer = DatasetWriter::create(making.path(), &info)
             .map_err(|error| Failure::input(making.tell(error)))?;
         parts.copy(&info, making.path()).map_err(|error| Failure::running(making.tell(error)))?;
-        let truth = truth.into_iter().map(|truth| (truth.frame, truth)).collect();
+        let truth = truth.map(|truth| (truth.frame, TruthFrame { camera: None, ..truth })).collect();
         Ok(Self { making, writer, rate_hz, truth })
     }
 

@@ -11,7 +11,7 @@ use super::Format;
 use super::dataset::DatasetSink;
 use crate::detect::in_frame;
 use crate::failure::Failure;
-use crate::input::{Entry, Input};
+use crate::input::{DatasetArgs, Entry, Input};
 use crate::interrupt;
 use crate::number;
 use crate::targets::{FileTarget, Targets};
@@ -29,9 +29,8 @@ pub(super) struct FrameArgs {
     /// The airframe of a new dataset; the file is copied into it [default: that of the input, if a dataset]
     #[arg(long, value_name = "FILE")]
     pub(super) airframe: Option<PathBuf>,
-    /// Let a dataset name images outside of its folder
-    #[arg(long)]
-    pub(super) allow_outside: bool,
+    #[command(flatten)]
+    pub(super) dataset: DatasetArgs,
     /// The exposure of a new dataset, microseconds [default: that of the input, if a dataset]
     #[arg(long, value_name = "US", value_parser = number::positive)]
     pub(super) exposure_us: Option<f64>,
@@ -61,11 +60,17 @@ pub(super) fn convert(
 ) -> Result<(), Failure> {
     let dataset = input.dataset.as_ref();
     let of_dataset = dataset.map(|dataset| dataset.info().rate_hz);
+    input.one_camera()?;
     let mut entries = input.entries;
     let head: Vec<_> = entries.by_ref().take(2).collect();
     let rate_hz = args.rate.or(of_dataset).or_else(|| rate_of(&head));
     let mut sink = match format {
-        Format::Dataset => Sink::Dataset(DatasetSink::create(&targets.folder(out)?, args, rate_hz, dataset)?),
+        Format::Dataset => Sink::Dataset(DatasetSink::create(
+            &targets.folder(out)?,
+            args,
+            rate_hz,
+            dataset.zip(input.cameras.first()),
+        )?),
         _ => Sink::Video { target: targets.file(out)?, writer: None, rate: rate_hz.map_or((0, 0), fraction) },
     };
     if format == Format::Y4m && rate_hz.is_none() {

@@ -83,7 +83,7 @@ pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> Result<(), Failure> {
     }
     let targets = |read: &[PathBuf]| Targets::new(args.write, read.iter().cloned());
     if is_frames && matches!(kind, Kind::Image | Kind::Video | Kind::Dataset) {
-        let input = InputArgs::of(&args.inputs, args.frames.allow_outside).open()?;
+        let input = InputArgs::of(&args.inputs, &args.frames.dataset).open()?;
         let read: Vec<PathBuf> = input.files.iter().cloned().chain(args.frames.files()).collect();
         return frames::convert(input, &args.out, format, &args.frames, targets(&read), terminal);
     }

@@ -105,7 +105,10 @@ fn page<'a>(scene: &Scene, drawn: &[u64], told: &'a str) -> Page<'a> {
         told,
         caption: "Left: the frame, brightened, with what was found in it. Right: the same from above. Pictures stand 5 s \
                   apart, and 0.2 s apart while the neighbour spins.",
-        pictures: drawn.iter().map(|&frame| format!("{PICTURES}/{}", overlay::file_name(frame))).collect(),
+        pictures: drawn
+            .iter()
+            .map(|&frame| format!("{PICTURES}/{}", overlay::file_name(None, frame)))
+            .collect(),
         about_figures: (
             "Distance over time",
             "The strict bounds as a band, the two estimates of the paper, l_A and l_B, the estimate, and truth.",
@@ -128,7 +131,7 @@ fn fly(scene: &Scene, making: &WholeFolder, terminal: &mut Terminal) -> std::res
     let airframe = &scene.targets.first().ok_or_else(no_target)?.airframe;
     let camera = scene.cameras[0].camera.clone();
     let pictures = made(out.join(PICTURES)).map_err(broken)?;
-    let overlay = Overlay::new(pictures, Some(camera.clone())).map_err(broken)?;
+    let overlay = Overlay::new(pictures, vec![camera.clone()]).map_err(broken)?;
     let mut locator = Locator::new(camera, airframe, None, Settings::default())
         .map_err(|error| Failure::Running(error.to_string()))?;
     let (truth_path, results_path) = (out.join("truth.jsonl"), out.join("results.jsonl"));
@@ -146,7 +149,7 @@ fn fly(scene: &Scene, making: &WholeFolder, terminal: &mut Terminal) -> std::res
         results.write(&entry.record)?;
         if pace.is_due(truth.time_s) {
             let image = entry.image.as_ref().map(|image| image.view());
-            overlay.draw(&entry.record, image, entry.gravity.as_ref(), &[])?;
+            overlay.draw(0, &entry.record, image, entry.gravity.as_ref(), &[])?;
             flown.drawn.push(truth.frame);
         }
         flown.truth.push(truth);

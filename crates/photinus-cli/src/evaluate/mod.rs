@@ -9,12 +9,13 @@ mod tables;
 use std::path::{Path, PathBuf};
 
 use photinus_evaluate::{EvaluateError, RangeBins, Scores, Settings, Side, evaluate};
-use photinus_io::dataset::{Dataset, TruthFrame};
+use photinus_io::dataset::{Dataset, DatasetCamera, TruthFrame};
 use photinus_io::results::{FrameRecord, read_results};
 use photinus_io::{Cause, Error, Place};
 use serde::Serialize;
 
 use crate::failure::Failure;
+use crate::input::names;
 use crate::number;
 use crate::targets::{FileTarget, Targets, WriteArgs};
 use crate::terminal::Terminal;
@@ -57,6 +58,9 @@ pub(crate) struct Args {
     /// A neighbour's bearing is no farther than this from truth, but for near ones, which may be 0.6 m aside
     #[arg(long, value_name = "DEG", default_value_t = 3.0, value_parser = number::positive)]
     bearing_gate: f64,
+    /// Which camera, of a dataset with several
+    #[arg(long, value_name = "NAME")]
+    only: Option<String>,
     #[command(flatten)]
     write: WriteArgs,
     /// Print no tables and no warnings
@@ -112,8 +116,11 @@ pub(crate) fn run(args: &Args, terminal: &Terminal) -> Result<(), Failure> {
     let mut targets = Targets::new(args.write, dataset.files().into_iter().chain([args.results.clone()]));
     let json = args.json.as_deref().map(|path| targets.file(path)).transpose()?;
     let plots = args.plots.as_deref().map(|path| targets.folder(path)).transpose()?;
-    let truth = read_truth(args, &dataset)?;
-    let (results, bad_lines) = read_records(args, &dataset, terminal)?;
+    let camera = one_camera(args, &dataset)?;
+    let mut truth = read_truth(args, &dataset)?;
+    let (mut results, bad_lines) = read_records(args, camera, &dataset, terminal)?;
+    truth.retain(|truth| truth.camera == camera.name);
+    results.retain(|record| record.camera == camera.name);
     let settings = args.settings(&dataset);
     let evaluation = evaluate(&truth, &results, &settings).map_err(|error| args.refuse(&error))?;
 
@@ -134,6 +141,19 @@ pub(crate) fn run(args: &Args, terminal: &Terminal) -> Result<(), Failure> {
     if bad_lines > 0 { Err(Failure::Frames { all: results.is_empty() }) } else { Ok(()) }
 }
 
+/// The camera whose results are held against the truth.
+fn one_camera<'a>(args: &Args, dataset: &'a Dataset) -> Result<&'a DatasetCamera, Failure> {
+    let told = || format!("{}: it has {}", args.dataset.display(), names(dataset.cameras()));
+    match (dataset.cameras(), &args.only) {
+        ([camera], None) => Ok(camera),
+        (_, None) => Err(Failure::Input(format!("{}; choose one with --only NAME", told()))),
+        (cameras, Some(_)) => cameras
+            .iter()
+            .find(|camera| camera.name == args.only)
+            .ok_or_else(|| Failure::Input(format!("{}; --only names another", told()))),
+    }
+}
+
 fn read_truth(args: &Args, dataset: &Dataset) -> Result<Vec<TruthFrame>, Failure> {
     let truth = dataset.truth().map_err(Failure::input)?;
     truth.ok_or_else(|| {
@@ -147,6 +167,7 @@ fn read_truth(args: &Args, dataset: &Dataset) -> Result<Vec<TruthFrame>, Failure
 /// The records that can be read, and how many lines cannot: their frames count as missed.
 fn read_records(
     args: &Args,
+    camera: &DatasetCamera,
     dataset: &Dataset,
     terminal: &Terminal,
 ) -> Result<(Vec<FrameRecord>, usize), Failure> {
@@ -173,11 +194,12 @@ fn read_records(
             refused.advise("give what `photinus locate --out` wrote for this dataset"),
         ));
     }
-    let is_listed = |frame: u64| dataset.frames().binary_search_by_key(&frame, |row| row.frame).is_ok();
-    match records.iter().filter_map(|record| record.frame).find(|&frame| !is_listed(frame)) {
+    let is_listed = |frame: u64| camera.frames.binary_search_by_key(&frame, |row| row.frame).is_ok();
+    let of_camera = records.iter().filter(|record| record.camera == camera.name);
+    match of_camera.filter_map(|record| record.frame).find(|&frame| !is_listed(frame)) {
         None => Ok((records, bad_lines)),
         Some(frame) => {
-            let listed = dataset.path("frames.csv");
+            let listed = dataset.path(&camera.frames_file);
             let reason = format!("{} lists no such frame", listed.display());
             let refused = Error::format(&args.results, reason).at(Place::Frame(frame));
             Err(Failure::input(refused.advise("give the results of this dataset")))

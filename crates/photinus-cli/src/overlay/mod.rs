@@ -40,19 +40,19 @@ const SMALLEST_HEIGHT_PX: u32 = 480;
 /// A folder of pictures.
 pub(crate) struct Overlay {
     folder: PathBuf,
-    camera: Option<Camera>,
+    cameras: Vec<Camera>,
     font: Font,
 }
 
 impl Overlay {
-    /// Pictures into `folder`, which is there. With a camera they show the view from above, too.
+    /// Pictures into `folder`, which is there. With cameras they show the view from above, too.
     ///
     /// # Errors
     /// [`Error`] when the program's font is damaged.
-    pub(crate) fn new(folder: PathBuf, camera: Option<Camera>) -> Result<Self> {
+    pub(crate) fn new(folder: PathBuf, cameras: Vec<Camera>) -> Result<Self> {
         let font =
             Font::new().ok_or_else(|| Error::format(&folder, "the font of the pictures is damaged"))?;
-        Ok(Self { folder, camera, font })
+        Ok(Self { folder, cameras, font })
     }
 
     /// Writes the picture of a frame; without pixels, spots stand on black. `truth_m` is where neighbours are, camera frame, m,
@@ -62,53 +62,55 @@ impl Overlay {
     /// [`Error`] when it cannot be drawn or written.
     pub(crate) fn draw(
         &self,
+        camera: usize,
         record: &FrameRecord,
         frame: Option<FrameView<'_>>,
         gravity: Option<&Unit<Vector3<f64>>>,
         truth_m: &[Vector3<f64>],
     ) -> Result<()> {
-        let path = self.folder.join(file_name(record.frame.unwrap_or_default()));
-        let layout = Layout::new(self.size(record, frame), self.camera.is_some());
+        let camera = self.cameras.get(camera);
+        let path = self.folder.join(file_name(record.camera.as_deref(), record.frame.unwrap_or_default()));
+        let layout = Layout::new(size(camera, record, frame), camera.is_some());
         let mut canvas = Canvas::new(layout.width, layout.height, colours::PAPER, &self.font)
             .ok_or_else(|| Error::format(&path, "no memory for a picture of this size"))?;
         layout.heading(&mut canvas, record);
         layout.frame.draw(&mut canvas, record, frame);
-        let seen = |place_m: &Vector3<f64>| {
-            Bearing::new(*place_m).and_then(|bearing| self.camera.as_ref()?.pixel(&bearing))
-        };
+        let seen =
+            |place_m: &Vector3<f64>| Bearing::new(*place_m).and_then(|bearing| camera?.pixel(&bearing));
         truth_m.iter().filter_map(seen).for_each(|place| layout.frame.truth(&mut canvas, place));
-        if let (Some(camera), Some(area)) = (&self.camera, layout.map) {
+        if let (Some(camera), Some(area)) = (camera, layout.map) {
             let ground = Ground::new(gravity);
             let field = ground.field(camera);
             let map = MapPanel::new(area, ground, &field, record, layout.unit);
             map.draw(&mut canvas, record);
             truth_m.iter().for_each(|place_m| map.truth(&mut canvas, place_m));
         }
-        let kinds = legend::Kinds { neighbours: self.camera.is_some(), truth: !truth_m.is_empty() };
+        let kinds = legend::Kinds { neighbours: camera.is_some(), truth: !truth_m.is_empty() };
         legend::draw(&mut canvas, layout.legend, kinds, layout.unit);
         let bytes = canvas.png().map_err(|reason| Error::format(&path, reason))?;
         write_whole(&path, &bytes, Existing::Replace)
     }
-
-    /// Columns and rows of the frame, px: of its pixels, else of the camera, else what holds every spot.
-    fn size(&self, record: &FrameRecord, frame: Option<FrameView<'_>>) -> (u32, u32) {
-        let of_frame = frame.map(|frame| (frame.width(), frame.height()));
-        let of_camera = self.camera.as_ref().map(|camera| (camera.width(), camera.height()));
-        let of_spots = || {
-            let farthest = |of: fn(&photinus_io::results::SpotRecord) -> f64| {
-                record.spots.iter().map(of).fold(1.0, f64::max) as usize + 2
-            };
-            (farthest(|spot| spot.u_px), farthest(|spot| spot.v_px))
-        };
-        let (width, height) = of_frame.or(of_camera).unwrap_or_else(of_spots);
-        let side = |px: usize| u32::try_from(px).unwrap_or(u32::MAX).min(FrameView::MAX_SIDE_PX as u32);
-        (side(width), side(height))
-    }
 }
 
-/// What the picture of a frame is called.
-pub(crate) fn file_name(frame: u64) -> String {
-    format!("overlay-{frame:06}.png")
+/// Columns and rows of the frame, px: of its pixels, else of the camera, else what holds every spot.
+fn size(camera: Option<&Camera>, record: &FrameRecord, frame: Option<FrameView<'_>>) -> (u32, u32) {
+    let of_frame = frame.map(|frame| (frame.width(), frame.height()));
+    let of_camera = camera.map(|camera| (camera.width(), camera.height()));
+    let of_spots = || {
+        let farthest = |of: fn(&photinus_io::results::SpotRecord) -> f64| {
+            record.spots.iter().map(of).fold(1.0, f64::max) as usize + 2
+        };
+        (farthest(|spot| spot.u_px), farthest(|spot| spot.v_px))
+    };
+    let (width, height) = of_frame.or(of_camera).unwrap_or_else(of_spots);
+    let side = |px: usize| u32::try_from(px).unwrap_or(u32::MAX).min(FrameView::MAX_SIDE_PX as u32);
+    (side(width), side(height))
+}
+
+/// What the picture of a frame is called, of a camera that has a name or has none.
+pub(crate) fn file_name(camera: Option<&str>, frame: u64) -> String {
+    let camera = camera.map_or(String::new(), |name| format!("{name}-"));
+    format!("overlay-{camera}{frame:06}.png")
 }
 
 /// Where everything stands.

@@ -41,6 +41,8 @@ fn neighbour(spots: Vec<usize>, bearing: Vector3<f64>, distance_m: Distance) -> 
         distance_m,
         position_m: None,
         position_covariance_m2: None,
+        position_body_m: None,
+        position_body_covariance_m2: None,
         orientation_xyzw: None,
         orientation_covariance_rad2: None,
         modes: Vec::new(),
@@ -53,6 +55,7 @@ fn record() -> FrameRecord {
         |estimate, sigma, min, max| Distance { estimate, sigma, min, max, perpendicular: None, inline: None };
     FrameRecord {
         frame: Some(17),
+        camera: None,
         time_s: Some(0.283),
         latency_s: None,
         source: "images/000017.png".to_owned(),
@@ -115,8 +118,8 @@ fn picture(
     frame: Option<FrameView<'_>>,
     camera: Option<Camera>,
 ) -> GreyImage {
-    let overlay = Overlay::new(folder.0.clone(), camera).unwrap();
-    overlay.draw(record, frame, None, &[]).unwrap();
+    let overlay = Overlay::new(folder.0.clone(), camera.into_iter().collect()).unwrap();
+    overlay.draw(0, record, frame, None, &[]).unwrap();
     read_image(folder.0.join("overlay-000017.png")).unwrap().image
 }
 

@@ -44,7 +44,7 @@ pub(super) fn save(
     let camera = scene.cameras[0].camera.clone();
     let pictures = folder.join(PICTURES);
     std::fs::create_dir_all(&pictures).map_err(|error| broken(Error::io(&pictures, error)))?;
-    let overlay = Overlay::new(pictures, Some(camera.clone())).map_err(broken)?;
+    let overlay = Overlay::new(pictures, vec![camera.clone()]).map_err(broken)?;
     let mut locator = Locator::new(camera, airframe, None, Settings::default())
         .map_err(|error| Failure::Running(error.to_string()))?;
     let mut clock = Clock::new();
@@ -54,7 +54,7 @@ pub(super) fn save(
         let places_m: Vec<Vector3<f64>> =
             truth.neighbours.iter().map(|neighbour| Vector3::from(neighbour.position_m)).collect();
         let image = entry.image.as_ref().map(|image| image.view());
-        overlay.draw(&entry.record, image, entry.gravity.as_ref(), &places_m).map_err(broken)?;
+        overlay.draw(0, &entry.record, image, entry.gravity.as_ref(), &places_m).map_err(broken)?;
         terminal.frame_done();
     }
     page(numbers).write(folder).map_err(broken)
@@ -66,7 +66,10 @@ fn page(numbers: &[u64]) -> Page<'static> {
         told: "The outdoor flight of two robots, as one of them sees the other: each frame by itself, no radio, no track.",
         caption: "Left: the frame, brightened. Right: the same from above: the strict bounds as a bar, the estimate as a disc, \
                   truth as a square. Pictures stand 5 s apart, and 0.2 s apart while the neighbour spins.",
-        pictures: numbers.iter().map(|&frame| format!("{PICTURES}/{}", overlay::file_name(frame))).collect(),
+        pictures: numbers
+            .iter()
+            .map(|&frame| format!("{PICTURES}/{}", overlay::file_name(None, frame)))
+            .collect(),
         about_figures: ("All of the flight", "Where the neighbour was and where it was found."),
         figures: vec![("figure-17.svg".to_owned(), "The flight from above".to_owned())],
     }

@@ -49,12 +49,15 @@ fn result(frame: u64) -> FrameRecord {
         },
         position_m: Some([0.0, 0.0, estimate]),
         position_covariance_m2: Some([[0.01, 0.0, 0.0], [0.0, 0.01, 0.0], [0.0, 0.0, 0.25]]),
+        position_body_m: None,
+        position_body_covariance_m2: None,
         orientation_xyzw: None,
         orientation_covariance_rad2: None,
         modes: vec![],
     };
     FrameRecord {
         frame: Some(frame),
+        camera: None,
         time_s: Some(frame as f64 / 20.0),
         latency_s: Some(0.004),
         source: String::new(),

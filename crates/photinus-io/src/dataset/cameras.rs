@@ -14,6 +14,8 @@ pub struct DatasetCamera {
     pub name: Option<String>,
     /// Any camera file that Photinus reads.
     pub camera: PathBuf,
+    /// The file that says how it sits on the vehicle, where the dataset names one.
+    pub mounting_file: Option<PathBuf>,
     /// How it sits on the vehicle, where the dataset says so.
     pub mounting: Option<MountingFile>,
     /// Exposure of a frame, us.
@@ -33,6 +35,7 @@ impl DatasetCamera {
         Ok(Self {
             name: None,
             camera: info.camera,
+            mounting_file: None,
             mounting: None,
             exposure_us: info.exposure_us,
             mask: info.mask,
@@ -46,6 +49,7 @@ impl DatasetCamera {
         Ok(Self {
             name: Some(camera.name.clone()),
             camera: camera.camera.clone(),
+            mounting_file: Some(camera.mounting.clone()),
             mounting: Some(read_mounting(folder.join(&camera.mounting))?),
             exposure_us: camera.exposure_us.unwrap_or(exposure_us),
             mask: camera.mask.clone(),

@@ -29,6 +29,8 @@ pub struct VehicleInfo {
 pub struct Vehicle {
     /// Its id in truth and results.
     pub id: u32,
+    /// The file of its airframe, relative to the dataset's folder.
+    pub airframe_file: PathBuf,
     /// Its airframe.
     pub airframe: Airframe,
     /// What it blinks; without, it shines steadily.
@@ -114,7 +116,7 @@ impl VehicleInfo {
             Err(Error::format(path, reason).at(Place::Key(key)).advise(advice))
         };
         let Some(bit_rate_hz) = self.bit_rate_hz else {
-            return Ok(Vehicle { id: self.id, airframe, blink: None });
+            return Ok(Vehicle { id: self.id, airframe_file: self.airframe, airframe, blink: None });
         };
         let Some(codes) = codes else {
             return refuse("there is no book of words".to_owned(), "name it as codes in dataset.toml");
@@ -129,6 +131,6 @@ impl VehicleInfo {
             return refuse(reason, "say a word for each signal of the airframe, from 0");
         }
         let blink = Some(VehicleBlink { words: self.words, bit_rate_hz });
-        Ok(Vehicle { id: self.id, airframe, blink })
+        Ok(Vehicle { id: self.id, airframe_file: self.airframe, airframe, blink })
     }
 }

@@ -7,11 +7,11 @@ use super::{FrameRecord, NeighbourRecord};
 use crate::{Error, Result};
 
 #[rustfmt::skip]
-const COLUMNS: [&str; 30] = [
+const COLUMNS: [&str; 34] = [
     "frame", "time_s", "source", "track", "id", "airframe", "spots", "bearing_x", "bearing_y", "bearing_z",
     "distance_m", "distance_sigma_m", "distance_min_m", "distance_max_m", "perpendicular_m", "inline_m",
     "x_m", "y_m", "z_m", "var_xx_m2", "var_xy_m2", "var_xz_m2", "var_yy_m2", "var_yz_m2", "var_zz_m2",
-    "qx", "qy", "qz", "qw", "modes",
+    "qx", "qy", "qz", "qw", "modes", "camera", "x_body_m", "y_body_m", "z_body_m",
 ];
 
 /// Writes a row per neighbour under a header with units; a frame without neighbours gives none. What is not known, or
@@ -58,6 +58,7 @@ fn cells(record: &FrameRecord, neighbour: &NeighbourRecord) -> [String; COLUMNS.
     let [x, y, z] = n.position_m.unwrap_or([f64::NAN; 3]).map(number);
     let [[xx, xy, xz], [_, yy, yz], [_, _, zz]] =
         n.position_covariance_m2.unwrap_or([[f64::NAN; 3]; 3]).map(|row| row.map(number));
+    let [xb, yb, zb] = n.position_body_m.unwrap_or([f64::NAN; 3]).map(number);
     let [qx, qy, qz, qw] = n.orientation_xyzw.unwrap_or([f64::NAN; 4]).map(number);
     let d = &n.distance_m;
     [
@@ -65,6 +66,7 @@ fn cells(record: &FrameRecord, neighbour: &NeighbourRecord) -> [String; COLUMNS.
         n.airframe.clone(), n.spots.len().to_string(), bx, by, bz,
         known(d.estimate), known(d.sigma), number(d.min), known(d.max), known(d.perpendicular), known(d.inline),
         x, y, z, xx, xy, xz, yy, yz, zz, qx, qy, qz, qw, n.modes.len().to_string(),
+        text(record.camera.as_deref()), xb, yb, zb,
     ]
 }
 

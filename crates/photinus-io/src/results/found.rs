@@ -33,6 +33,8 @@ impl NeighbourRecord {
             distance_m: Distance::from(&neighbour.distance),
             position_m: neighbour.position.map(|position| position.mean_m.into()),
             position_covariance_m2: neighbour.position.map(|position| rows(&position.covariance_m2)),
+            position_body_m: None,
+            position_body_covariance_m2: None,
             orientation_xyzw: orientation.map(|turned| xyzw(&turned.camera_from_body)),
             orientation_covariance_rad2: orientation.map(|turned| rows(&turned.covariance_rad2)),
             modes: located.modes(neighbour).iter().map(ModeRecord::from).collect(),
@@ -154,7 +156,7 @@ fn xyzw(rotation: &Rotation3<f64>) -> [f64; 4] {
     if w < 0.0 { [-x, -y, -z, -w] } else { [x, y, z, w] }
 }
 
-fn rows(matrix: &Matrix3<f64>) -> [[f64; 3]; 3] {
+pub(super) fn rows(matrix: &Matrix3<f64>) -> [[f64; 3]; 3] {
     matrix.transpose().into()
 }
 

@@ -3,6 +3,7 @@
 //! The same reader takes results back and takes spots found by another program in place of frames: a spot needs only
 //! its place, see [`SpotRecord`].
 
+mod body;
 mod csv;
 mod found;
 mod json;

@@ -12,6 +12,9 @@ pub struct FrameRecord {
     /// Its number; where it is missing, the number of the line, from 0.
     #[serde(default)]
     pub frame: Option<u64>,
+    /// The camera's name, where there are several.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub camera: Option<String>,
     /// When it was taken, s.
     #[serde(default)]
     pub time_s: Option<f64>,
@@ -67,6 +70,12 @@ pub struct NeighbourRecord {
     /// Covariance of the position, m^2.
     #[serde(default)]
     pub position_covariance_m2: Option<[[f64; 3]; 3]>,
+    /// Its origin in the body frame of the vehicle that carries the camera, m, where the mounting is known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub position_body_m: Option<[f64; 3]>,
+    /// Covariance of that position, m^2, the mounting's own errors among it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub position_body_covariance_m2: Option<[[f64; 3]; 3]>,
     /// Its mean attitude, camera_from_body as x, y, z, w: one of those that the airframe's symmetry makes equal.
     #[serde(default)]
     pub orientation_xyzw: Option<[f64; 4]>,

@@ -40,6 +40,8 @@ fn neighbour() -> NeighbourRecord {
         },
         position_m: Some([0.0, 0.0, 7.25]),
         position_covariance_m2: Some([[0.25, 0.0, 0.125], [0.0, 0.5, 0.0], [0.125, 0.0, 1.0]]),
+        position_body_m: None,
+        position_body_covariance_m2: None,
         orientation_xyzw: None,
         orientation_covariance_rad2: None,
         modes: vec![],
@@ -50,6 +52,7 @@ fn record() -> FrameRecord {
     let rejected = RejectedRecord { u_px: 1.0, v_px: 2.0, area_px: 900, reason: "sun".to_owned() };
     FrameRecord {
         frame: Some(17),
+        camera: None,
         time_s: Some(0.283),
         latency_s: None,
         source: "images/000017.png".to_owned(),

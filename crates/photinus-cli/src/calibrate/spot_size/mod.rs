@@ -16,6 +16,7 @@ use photinus_calibrate::spot_size::{SpotSizeError, calibrate};
 use photinus_io::Error;
 
 use crate::failure::Failure;
+use crate::input::DatasetArgs;
 use crate::number;
 use crate::plots::FigureFolder;
 use crate::spot_options::SpotArgs;
@@ -56,9 +57,8 @@ pub(crate) struct Args {
     brighter: f64,
     #[command(flatten)]
     spots: SpotArgs,
-    /// Let a dataset name images outside of its folder
-    #[arg(long)]
-    allow_outside: bool,
+    #[command(flatten)]
+    dataset: DatasetArgs,
     #[command(flatten)]
     write: WriteArgs,
     /// Print errors only
@@ -90,7 +90,7 @@ pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> Result<(), Failure> {
     let mut targets = Targets::new(args.write, [args.input.clone()].into_iter().chain(args.spots.file()));
     let json = args.json.as_deref().map(|path| targets.file(path)).transpose()?;
     let plots = args.plots.as_deref().map(|path| targets.folder(path)).transpose()?;
-    let recordings = recordings::read(&args.input, args.allow_outside, &args.spots, terminal)?;
+    let recordings = recordings::read(&args.input, &args.dataset, &args.spots, terminal)?;
     let out = |recording| args.out(recording, recordings.len() > 1);
     let curves =
         recordings.iter().map(|recording| out(recording).map(|path| targets.file(&path)).transpose());

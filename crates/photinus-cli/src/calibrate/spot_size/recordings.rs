@@ -13,7 +13,7 @@ use photinus_io::{Error, Place};
 
 use crate::beforehand;
 use crate::failure::Failure;
-use crate::input::InputArgs;
+use crate::input::{DatasetArgs, InputArgs};
 use crate::spot_options::{SpotArgs, mask_of};
 use crate::terminal::Terminal;
 
@@ -39,12 +39,12 @@ pub(super) struct Recording {
 /// Reads a dataset folder or a table.
 pub(super) fn read(
     input: &Path,
-    allow_outside: bool,
+    choice: &DatasetArgs,
     spots: &SpotArgs,
     terminal: &mut Terminal,
 ) -> Result<Vec<Recording>, Failure> {
     match input.is_dir() {
-        true => Ok(vec![of_dataset(input, allow_outside, spots, terminal)?]),
+        true => Ok(vec![of_dataset(input, choice, spots, terminal)?]),
         false => Ok(of_table(read_spot_sizes(input).map_err(Failure::input)?)),
     }
 }
@@ -84,10 +84,12 @@ fn of_table(rows: Vec<SpotSizeRow>) -> Vec<Recording> {
 
 fn of_dataset(
     input: &Path,
-    allow_outside: bool,
+    choice: &DatasetArgs,
     spots: &SpotArgs,
     terminal: &mut Terminal,
 ) -> Result<Recording, Failure> {
+    let frames = InputArgs::of(&[input.to_owned()], choice).open()?;
+    let camera = frames.one_camera()?.cloned();
     let dataset = Dataset::read(input).map_err(Failure::input)?;
     let airframe_file = dataset.path(&dataset.info().airframe);
     let airframe = beforehand::airframe(&airframe_file, terminal).map_err(Failure::input)?;
@@ -95,16 +97,15 @@ fn of_dataset(
         let advice = "the distances must be known: add the truth, or give a table of distances and areas";
         Failure::input(Error::format(input, "the folder holds no truth.jsonl").advise(advice))
     })?;
-    let mask = spots.mask(Some(&dataset), terminal)?;
+    let mask = spots.masks(&frames, terminal)?.pop().flatten();
     let mut detector = Detector::new(spots.settings()).map_err(|error| Failure::Input(error.to_string()))?;
     let mut recording = Recording {
-        exposure_us: Some(dataset.info().exposure_us),
+        exposure_us: camera.as_ref().map(|camera| camera.exposure_us),
         brightness: Some(spots.settings().brightness),
         samples: Vec::new(),
         places: Some(Default::default()),
     };
     let mut without_one_led = 0;
-    let frames = InputArgs::of(&[input.to_owned()], allow_outside).open()?;
     terminal.start(frames.count);
     for entry in frames.entries {
         terminal.frame_done();
@@ -116,7 +117,8 @@ fn of_dataset(
             }
         };
         let (Some(number), Some(image)) = (entry.record.frame, &entry.image) else { continue };
-        let of_frame = truth.iter().find(|truth| truth.frame == number);
+        let of_frame =
+            truth.iter().find(|truth| truth.frame == number && truth.camera == entry.record.camera);
         let Some((distance_m, led)) = of_frame.and_then(|truth| only_led(truth, &airframe)) else {
             without_one_led += 1;
             continue;

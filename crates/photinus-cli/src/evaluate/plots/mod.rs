@@ -51,6 +51,6 @@ impl PlotFolder {
 
     fn write(&self, figure: Figure) -> Result<()> {
         let scene = kuva::render::render::render_multiple(figure.plots, figure.layout);
-        crate::plots::save(&self.0, &figure.name, &scene)
+        crate::plots::save(&self.0, &figure.name, &scene).map(drop)
     }
 }

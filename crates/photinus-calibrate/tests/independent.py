@@ -17,18 +17,18 @@ def by_scipy(given, board, photos):
     from scipy.spatial.transform import Rotation
 
     def predicted(x):
-        fx, fy, cx, cy, k1, k2 = x[:6]
+        fx, fy, cx, cy, k1, k2, shear = x[:7]
         pixels = []
-        for pose in x[6:].reshape(len(photos), 6):
+        for pose in x[7:].reshape(len(photos), 6):
             p = Rotation.from_rotvec(pose[:3]).apply(board) + pose[3:]
             flat = np.hypot(p[:, 0], p[:, 1])
             angle = np.arctan2(flat, p[:, 2])
             radius = angle + k1 * angle**3 + k2 * angle**5
             x_, y_ = radius * p[:, 0] / flat, radius * p[:, 1] / flat
-            pixels.append(np.stack([fx * x_ + cx, fy * y_ + cy], axis=1))
+            pixels.append(np.stack([fx * x_ + cx, fy * y_ + shear * x_ + cy], axis=1))
         return np.array(pixels)
 
-    start = np.concatenate([given["focal"], given["centre"], given["k"], np.ravel(given["poses"])])
+    start = np.concatenate([given["focal"], given["centre"], given["k"], [0.0], np.ravel(given["poses"])])
     start[:2] *= 1.01
     start[2:4] += 1.0
     found = least_squares(lambda x: (predicted(x) - photos).ravel(), start, x_scale="jac", xtol=1e-12, ftol=1e-12)
@@ -42,10 +42,10 @@ def by_opencv(given, board, photos):
     start = np.array([[given["focal"][0] * 1.01, 0, given["centre"][0] + 1.0],
                       [0, given["focal"][1] * 1.01, given["centre"][1] + 1.0],
                       [0, 0, 1.0]])
-    # Version 5 wants a row of points as OpenCV's own calibration does, version 4 a column of them or that row.
+    # A row of points: version 5 takes nothing else.
     objects = [board.reshape(1, -1, 3) for _ in photos]
     images = [photo.reshape(1, -1, 2) for photo in photos]
-    # Version 5 renamed the flags and moved them out of the module.
+    # Version 5 has the flags outside the module.
     flag = lambda name: getattr(cv2.fisheye, name, None) or getattr(cv2, name)
     names = ["CALIB_RECOMPUTE_EXTRINSIC", "CALIB_USE_INTRINSIC_GUESS", "CALIB_FIX_SKEW", "CALIB_FIX_K3", "CALIB_FIX_K4"]
     k = np.array([given["k"][0], given["k"][1], 0.0, 0.0])

@@ -94,8 +94,8 @@ struct Theirs {
     rms_px: f64,
 }
 
-/// Ours lets go of long residuals, so the optima differ by a share of their sigma.
-fn agree(ours: &Calibration, theirs: &Theirs) {
+/// Ours lets go of long residuals, so the optima differ: each parameter by so many sigmas at most, the residual by such a share.
+fn agree(ours: &Calibration, theirs: &Theirs, most_sigmas: f64, most_share: f64) {
     let ([fx, fy], [u, v], [k1, k2]) = (theirs.focal, theirs.centre, theirs.k);
     let covariance = ours.camera().parameter_covariance().expect("a covariance");
     let names = ["fx", "fy", "u", "v", "k1", "k2"];
@@ -103,24 +103,29 @@ fn agree(ours: &Calibration, theirs: &Theirs) {
         let place = PLACES[index];
         let off_sigmas = (ours - theirs) / covariance[(place, place)].sqrt();
         println!("{}: {ours} {theirs}, {off_sigmas:.3} sigmas apart", names[index]);
-        assert!(off_sigmas.abs() < 0.5, "{}: {ours} {theirs}, {off_sigmas} sigmas apart", names[index]);
+        assert!(
+            off_sigmas.abs() < most_sigmas,
+            "{}: {ours} {theirs}, {off_sigmas} sigmas apart",
+            names[index]
+        );
     }
     let squares: Vec<f64> = ours.residuals().iter().map(|residual| residual.off_px.norm_squared()).collect();
     let rms_px = (squares.iter().sum::<f64>() / squares.len() as f64).sqrt();
     println!("rms {rms_px} {}", theirs.rms_px);
-    assert!((theirs.rms_px / rms_px - 1.0).abs() < 0.005, "{rms_px} {}", theirs.rms_px);
+    assert!((theirs.rms_px / rms_px - 1.0).abs() < most_share, "{rms_px} {}", theirs.rms_px);
 }
 
 #[test]
 fn scipy_agrees() {
     let Some(python) = python_with(&["numpy", "scipy"]) else { return };
     let (ours, points) = calibrated();
-    agree(&ours, &by(python, "scipy", &points));
+    agree(&ours, &by(python, "scipy", &points), 0.15, 0.001);
 }
 
 #[test]
 fn opencv_agrees() {
     let Some(python) = python_with(&["numpy", "cv2"]) else { return };
     let (ours, points) = calibrated();
-    agree(&ours, &by(python, "opencv", &points));
+    // OpenCV's pixels have no shear as ours do, only right angles.
+    agree(&ours, &by(python, "opencv", &points), 0.7, 0.01);
 }

@@ -45,7 +45,7 @@ const MOUNTING: &str = "body_from_camera_xyzw = [0.0, 0.6, 0.0, 0.8]\nrotation_c
 const CORNERS: &str = "image,u,v,grid_i,grid_j\na.png,101.25,77.5,0,0\na.png,120,77,1,0\nb.png,3,4,0,1\n";
 const EQUIDISTANT: &str = "model = \"equidistant\"\nwidth_px = 96\nheight_px = 64\ncentre_px = [47.5, 31.5]\n\
     focal_px = [60.0, 60.0]\n";
-const KANNALA_BRANDT: &str = "model = \"kannala-brandt\"\nwidth_px = 96\nheight_px = 64\ncentre_px = [47.5, 31.5]\n\
+const KANNALA_BRANDT: &str = "model = \"kannala_brandt\"\nwidth_px = 96\nheight_px = 64\ncentre_px = [47.5, 31.5]\n\
     focal_px = [60.0, 60.0]\nk = [-0.02, 0.003, 0.0, 0.0]\n";
 const OCAM: &str = "5 -60 0 1.6e-3 0 0\n\n2 94 60\n\n31.5 47.5\n\n1 0 0\n\n64 96\n";
 const CAMERA_INFO: &str = "image_width: 96\nimage_height: 64\ncamera_name: c\ndistortion_model: equidistant\n\

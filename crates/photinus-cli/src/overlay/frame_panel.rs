@@ -155,13 +155,15 @@ impl FramePanel {
         };
         // The spot itself, and another in the very same place, leave no room to speak of.
         let others = record.spots.iter().map(squared).filter(|&squared| squared > 0.0);
-        let room = others.fold(f64::INFINITY, f64::min).sqrt() as f32 * self.zoom.factor() as f32 / 2.0 - self.unit;
+        let room =
+            others.fold(f64::INFINITY, f64::min).sqrt() as f32 * self.zoom.factor() as f32 / 2.0 - self.unit;
         self.radius(spot.area_px).min(room).max(self.radius(spot.area_px) - 3.0 * self.unit)
     }
 
     /// A circle a little larger than so many pixels.
     fn radius(&self, area_px: u32) -> f32 {
-        (f64::from(area_px) / std::f64::consts::PI).sqrt() as f32 * self.zoom.factor() as f32 + 5.0 * self.unit
+        (f64::from(area_px) / std::f64::consts::PI).sqrt() as f32 * self.zoom.factor() as f32
+            + 5.0 * self.unit
     }
 
     fn area(&self) -> Option<Rect> {

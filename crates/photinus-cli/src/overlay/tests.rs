@@ -167,7 +167,8 @@ fn narrow_frames_are_drawn_whole() {
         let mut pixels = vec![9; columns * rows];
         *pixels.last_mut().unwrap() = 255;
         let frame = GreyImage::new(pixels, columns, rows).unwrap();
-        let record = FrameRecord { spots: Vec::new(), rejected: Vec::new(), neighbours: Vec::new(), ..record() };
+        let record =
+            FrameRecord { spots: Vec::new(), rejected: Vec::new(), neighbours: Vec::new(), ..record() };
         let folder = Folder::new(&format!("narrow-{columns}-{rows}"));
         let picture = picture(&folder, &record, Some(frame.view()), Some(camera()));
         let layout = Layout::new((columns as u32, rows as u32), true);

@@ -1,6 +1,8 @@
 //! An independent implementation ends where this one does: SciPy's least squares and OpenCV's fisheye on the same points.
 //! Needs a Python with SciPy, and one with OpenCV 4 or 5: that of the environment variable PHOTINUS_PYTHON, else `python3`.
 
+#![allow(clippy::print_stdout, reason = "the measured numbers are worth reading")]
+
 mod simulation;
 
 use std::io::Write;

@@ -22,6 +22,18 @@ doc:
 bench:
     cargo bench -p photinus -p photinus-sim
 
+# Licences, duplicates and sources of dependencies; needs cargo-deny.
+deny:
+    cargo deny --locked check bans licenses sources
+
+# The same and known holes; fetches the advisory database.
+deny-advisories:
+    cargo deny --locked check
+
+# Whether the fuzz targets compile, without fuzzing.
+fuzz-check:
+    cargo check --manifest-path fuzz/Cargo.toml --locked
+
 # A minute of fuzzing for one target, e.g. `just fuzz spots`; needs cargo-fuzz and a nightly toolchain.
 fuzz target:
     cargo +nightly fuzz run {{target}} -- -max_total_time=60

@@ -96,7 +96,8 @@ pub fn read_blink_codes(path: impl AsRef<Path>) -> Result<BlinkCodes> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scratch::{files_in, real_data};
+    use crate::scratch::files_in;
+    use photinus_testing::real_data;
 
     fn message(text: &str) -> String {
         BlinkCodes::parse(text, "codes.txt").unwrap_err().to_string()
@@ -123,9 +124,9 @@ mod tests {
 
     #[test]
     fn every_real_code_book_is_read() {
-        let Some(data) = real_data() else { return };
+        let Some(folder) = real_data("blink-codes") else { return };
         let mut books = 0;
-        for path in files_in(&data.join("blink-codes")) {
+        for path in files_in(&folder) {
             let codes = read_blink_codes(&path).unwrap();
             println!("{}: {} words of {} bits", path.display(), codes.words().len(), codes.length());
             assert!(codes.words().len() >= 3 && (4..=18).contains(&codes.length()), "{path:?}");

@@ -65,7 +65,8 @@ fn oddities(frame: &FrameView<'_>, ignored: usize) -> Vec<String> {
 mod tests {
     use super::*;
     use crate::image::{GreyImage, write_png};
-    use crate::scratch::{Folder, files_in, real_data};
+    use crate::scratch::{Folder, files_in};
+    use photinus_testing::real_data;
 
     fn mask(pixels: [u8; 6]) -> Result<MaskFile> {
         let folder = Folder::new(&format!("mask-{pixels:?}"));
@@ -97,8 +98,8 @@ mod tests {
 
     #[test]
     fn real_masks_are_read() {
-        let Some(data) = real_data() else { return };
-        for path in files_in(&data.join("masks")) {
+        let Some(masks) = real_data("masks") else { return };
+        for path in files_in(&masks) {
             let file = read_mask(&path).unwrap();
             file.check_size(752, 480).unwrap();
             assert!(file.mask.ignored_px() > 1000 && file.notes.is_empty(), "{path:?} {:?}", file.notes);

@@ -29,19 +29,6 @@ impl Drop for Folder {
     }
 }
 
-/// The folder of real files, when this machine has it.
-pub(crate) fn real_data() -> Option<PathBuf> {
-    let folder = std::env::var_os("PHOTINUS_DATA").map_or_else(
-        || PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data")),
-        PathBuf::from,
-    );
-    if folder.is_dir() {
-        return Some(folder);
-    }
-    println!("skipped: no real data in {}", folder.display());
-    None
-}
-
 /// The files of a folder, sorted.
 pub(crate) fn files_in(folder: &Path) -> Vec<PathBuf> {
     let mut files: Vec<PathBuf> =

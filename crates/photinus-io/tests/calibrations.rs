@@ -1,7 +1,7 @@
 //! The calibrations of real cameras: all load, all come back from their own pixels, and project where the makers
 //! of the format say. Skipped, and said so, where the data is not there.
 
-#![allow(clippy::print_stdout, reason = "a skipped test says so, and the numbers are worth reading")]
+#![allow(clippy::print_stdout, reason = "the numbers are worth reading")]
 
 use std::path::{Path, PathBuf};
 
@@ -9,21 +9,10 @@ use nalgebra::Vector3;
 use photinus::camera::{Bearing, Camera, Pixel};
 use photinus_io::camera::{CameraFile, CameraFormat, parse_camera, write_camera_toml, write_ocam_text};
 use photinus_io::read_camera;
-
-/// The folder of calibrations, or `None` with a word on the console.
-fn folder() -> Option<PathBuf> {
-    let data = std::env::var_os("PHOTINUS_DATA")
-        .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data"), PathBuf::from);
-    let folder = data.join("ocamcalib");
-    if folder.is_dir() {
-        return Some(folder);
-    }
-    println!("skipped: no folder {}", folder.display());
-    None
-}
+use photinus_testing::real_data;
 
 fn calibrations() -> Vec<(String, CameraFile)> {
-    let Some(folder) = folder() else { return Vec::new() };
+    let Some(folder) = real_data("ocamcalib") else { return Vec::new() };
     let mut paths: Vec<PathBuf> =
         std::fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry").path()).collect();
     paths.sort();
@@ -128,7 +117,7 @@ fn seen_from(camera: &Camera, left_deg: f64, camera_m: Vector3<f64>, led_m: Vect
 /// (with the cameras at the body's origin the same directions are up to 6 px off).
 #[test]
 fn known_projections() {
-    let Some(folder) = folder() else { return };
+    let Some(folder) = real_data("ocamcalib") else { return };
     let camera = read_camera(&folder.join("calib_results_bf_uv_fe.txt")).expect("a calibration").camera;
     let (left_arm, right_arm) = (Vector3::new(4.788, 0.212, 0.0), Vector3::new(4.788, -0.212, 0.0));
     for (left_deg, led_m, expected) in [
@@ -151,7 +140,7 @@ fn known_projections() {
 /// th = arctan2(-z, hypot(x, y)); rho = numpy.polyval(inverse[::-1], th); A @ [y, x] / hypot(x, y) * rho + centre.
 #[test]
 fn projections_through_the_files_own_inverse() {
-    let Some(folder) = folder() else { return };
+    let Some(folder) = real_data("ocamcalib") else { return };
     let camera = read_camera(&folder.join("calib_results_bf_uv_fe.txt")).expect("a calibration").camera;
     let origin = Vector3::zeros();
     for (left_deg, led_m, expected) in [
@@ -167,7 +156,7 @@ fn projections_through_the_files_own_inverse() {
 
 #[test]
 fn the_files_beside_them_are_no_cameras() {
-    let Some(folder) = folder() else { return };
+    let Some(folder) = real_data("ocamcalib") else { return };
     for (file, what) in [
         ("../airframes/quadrotor.txt", "an LED layout"),
         ("../blink-codes/L8.txt", "blink sequences"),

@@ -1,13 +1,12 @@
 //! The photos of a board of 7 x 5 LEDs at a pitch of 50 mm, taken for an airframe: one neighbour per photo, as far away as
 //! an independent calibration study found it. Skipped, and said so, without the photos.
 
-use std::path::PathBuf;
-
 use nalgebra::{Unit, Vector3};
 use photinus::airframe::{Airframe, Led, Lobe};
 use photinus::camera::{Camera, KannalaBrandt, Model, Pixel};
 use photinus::locator::{Locator, Settings};
 use photinus_io::image::read_image;
+use photinus_testing::real_data;
 
 /// Photo, and metres to the board from a bundle adjustment over all photos with the board's true shape.
 const PHOTOS: [(&str, f64); 20] = [
@@ -33,12 +32,6 @@ const PHOTOS: [(&str, f64); 20] = [
     ("26", 0.42),
 ];
 
-fn data() -> Option<PathBuf> {
-    let beside = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data"));
-    let folder = std::env::var_os("PHOTINUS_DATA").map_or(beside, PathBuf::from);
-    folder.is_dir().then_some(folder)
-}
-
 /// LEDs on the plane x = 0, shining along x.
 fn board() -> Airframe {
     let led = |column: i32, row: i32| Led {
@@ -59,13 +52,10 @@ fn camera() -> Camera {
 
 #[test]
 fn a_board_of_leds_is_one_neighbour_at_its_distance() {
-    let Some(data) = data() else {
-        println!("skipped: no photos (set PHOTINUS_DATA)");
-        return;
-    };
+    let Some(photos) = real_data("grid-960x600") else { return };
     let mut locator = Locator::new(camera(), &board(), None, Settings::default()).expect("a locator");
     for (photo, distance_m) in PHOTOS {
-        let file = data.join(format!("grid-960x600/grid_{photo}.png"));
+        let file = photos.join(format!("grid_{photo}.png"));
         let image = read_image(&file).expect("a photo").image;
         let located = locator.locate(&image.view(), None, &mut |_| ()).expect("the camera's size");
         assert_eq!(located.neighbours.len(), 1, "photo {photo}");

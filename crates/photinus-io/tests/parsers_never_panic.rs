@@ -3,6 +3,7 @@
 //! The targets in `fuzz/` check the same without an end; these are the part that fits a test run.
 
 use std::io::Cursor;
+use std::path::Path;
 
 use photinus::ranging::{Envelope, SpotCurve};
 use photinus_io::airframe::{layout_text, parse_airframe, toml_text};
@@ -10,6 +11,8 @@ use photinus_io::blink::BlinkCodes;
 use photinus_io::calibration::{
     mounting_text, parse_known_sightings, parse_led_sightings, parse_mounting, parse_spot_sizes,
 };
+use photinus_io::camera::{parse_camera, write_camera_toml};
+use photinus_io::corners::parse_corners;
 use photinus_io::dataset::{
     DatasetInfo, DatasetToml, ImuRow, OdometryRow, parse_frames_csv, parse_imu, parse_odometry, parse_truth,
     parse_vehicles, vehicles_text,
@@ -17,9 +20,9 @@ use photinus_io::dataset::{
 use photinus_io::image::decode_image;
 use photinus_io::results::ResultsReader;
 use photinus_io::spot_curve::{self, SpotCurveFile, parse_spot_curve};
-use photinus_io::video::{Y4mFrames, Y4mWriter};
+use photinus_io::video::{RawFormat, RawFrames, Y4mFrames, Y4mWriter};
+use photinus_testing::damage;
 use proptest::prelude::*;
-use proptest::sample::Index;
 
 const DATASET: &str =
     "camera = \"c.txt\"\nairframe = \"a.toml\"\nexposure_us = 1000.0\nrate_hz = 60.0\nmask = \"m.png\"\n";
@@ -49,6 +52,20 @@ const KNOWN: &str = "u_px,v_px,x,y,z,x_m,y_m,z_m,sigma_px\n1,2,0,0,1,,,,\n3,4,,,
 const LEDS: &str = "photo,led,u_px,v_px\na.png,0,1.5,2\nb.png,0,3,4\na.png,1,5,6\n";
 const MOUNTING: &str = "body_from_camera_xyzw = [0.0, 0.6, 0.0, 0.8]\nrotation_covariance_rad2 = [[1e-6, 0.0, 0.0], \
     [0.0, 1e-6, 0.0], [0.0, 0.0, 1e-6]]\nposition_m = [0.1, 0.0, -0.2]\n";
+const CORNERS: &str = "image,u,v,grid_i,grid_j\na.png,101.25,77.5,0,0\na.png,120,77,1,0\nb.png,3,4,0,1\n";
+const EQUIDISTANT: &str = "model = \"equidistant\"\nwidth_px = 96\nheight_px = 64\ncentre_px = [47.5, 31.5]\n\
+    focal_px = [60.0, 60.0]\n";
+const KANNALA_BRANDT: &str = "model = \"kannala_brandt\"\nwidth_px = 96\nheight_px = 64\ncentre_px = [47.5, 31.5]\n\
+    focal_px = [60.0, 60.0]\nk = [-0.02, 0.003, 0.0, 0.0]\n";
+const OCAM: &str = "5 -60 0 1.6e-3 0 0\n\n2 94 60\n\n31.5 47.5\n\n1 0 0\n\n64 96\n";
+const CAMERA_INFO: &str = "image_width: 96\nimage_height: 64\ncamera_name: c\ndistortion_model: equidistant\n\
+    camera_matrix:\n  rows: 3\n  cols: 3\n  data: [60, 0, 47.5, 0, 60, 31.5, 0, 0, 1]\n\
+    distortion_coefficients:\n  rows: 1\n  cols: 4\n  data: [-0.02, 0.003, 0, 0]\n";
+const KALIBR: &str = "cam0:\n  camera_model: pinhole\n  distortion_model: equidistant\n\
+    \x20 distortion_coeffs: [-0.02, 0.003, 0.0, 0.0]\n  intrinsics: [60.0, 60.0, 47.5, 31.5]\n  resolution: [96, 64]\n";
+const CAMERAS: [&str; 5] = [EQUIDISTANT, KANNALA_BRANDT, OCAM, CAMERA_INFO, KALIBR];
+/// 16 x 9 pixels of grey, which no crate here writes.
+const JPEG: &[u8] = include_bytes!("grey.jpg");
 const RESULTS: &str = "{\"frame\":3,\"time_s\":null,\"source\":\"a\",\"spots\":[{\"u_px\":1.5,\"v_px\":2,\
     \"sigma_px\":[0.2,0.3],\"range_m\":[1,null]}],\"rejected\":[{\"u_px\":1,\"v_px\":1,\"area_px\":9,\
     \"reason\":\"sun\"}],\"neighbours\":[]}\n";
@@ -71,6 +88,15 @@ fn parse_all(bytes: &[u8]) {
     if let Ok(frames) = Y4mFrames::new(bytes, "t") {
         frames.take(8).for_each(drop);
     }
+    let format = RawFormat { width: 5, height: 3, rate_hz: Some(60.0) };
+    RawFrames::new(bytes, "t", format).expect("a size of frames").take(8).for_each(drop);
+    if let Ok(file) = parse_camera(bytes, Path::new("t")) {
+        let mut toml = Vec::new();
+        write_camera_toml(&file.camera, &mut toml, Path::new("t")).expect("a vector takes it");
+        let again = parse_camera(&toml, Path::new("t")).expect("what was written is read");
+        assert_eq!(again.camera, file.camera);
+    }
+    let _ = parse_corners(&text, Path::new("t"));
     let _ = DatasetInfo::parse(&text, "t");
     let _ = DatasetToml::parse(&text, "t");
     if let Ok(vehicles) = parse_vehicles(&text, "t") {
@@ -124,43 +150,14 @@ fn valid_files() -> Vec<Vec<u8>> {
         DATASET, RIG, VEHICLES, IMU, ODOMETRY, FRAMES, TRUTH, AIRFRAME, RING, LAYOUT, BLINK, SPOT_CURVE,
         RESULTS,
     ];
-    let calibrations = [SPOT_SIZES, KNOWN, LEDS, MOUNTING];
-    let texts = texts.into_iter().chain(calibrations).map(|text| text.as_bytes().to_vec());
+    let calibrations = [SPOT_SIZES, KNOWN, LEDS, MOUNTING, CORNERS];
+    let texts = texts.into_iter().chain(calibrations).chain(CAMERAS).map(|text| text.as_bytes().to_vec());
     let images = [Png, Bmp, Tiff, Pnm].into_iter().map(encoded);
-    texts.chain(images).chain([y4m((8, 6), &[7; 48], 3)]).collect()
+    texts.chain(images).chain([JPEG.to_vec(), y4m((8, 6), &[7; 48], 3)]).collect()
 }
 
-/// What goes wrong with files: cut, a byte changed, a line twice, a number replaced.
-fn damage(mut bytes: Vec<u8>, kind: u8, at: Index, value: u8) -> Vec<u8> {
-    const NUMBERS: [&str; 8] = ["nan", "-inf", "1e999", "-1", "99999999999999999999", "0", "", "\"\""];
-    if bytes.is_empty() {
-        return bytes;
-    }
-    let place = at.index(bytes.len());
-    match kind {
-        0 => bytes.truncate(place),
-        1 => bytes[place] ^= value.max(1),
-        2 => {
-            let start = bytes[..place].iter().rposition(|&b| b == b'\n').map_or(0, |end| end + 1);
-            let end =
-                bytes[place..].iter().position(|&b| b == b'\n').map_or(bytes.len(), |end| place + end + 1);
-            let line = bytes[start..end].to_vec();
-            bytes.splice(start..start, line);
-        }
-        _ => {
-            let is_number = |b: &u8| b.is_ascii_digit() || matches!(b, b'.' | b'-');
-            let start =
-                bytes[place..].iter().position(is_number).map_or(bytes.len(), |skipped| place + skipped);
-            let length = bytes[start..].iter().take_while(|b| is_number(b)).count();
-            let number = NUMBERS[usize::from(value) % NUMBERS.len()];
-            bytes.splice(start..start + length, number.bytes());
-        }
-    }
-    bytes
-}
-
-fn damages() -> impl Strategy<Value = Vec<(u8, Index, u8)>> {
-    proptest::collection::vec((0..4_u8, any::<Index>(), any::<u8>()), 1..4)
+fn damages() -> impl Strategy<Value = Vec<(u8, usize, u8)>> {
+    proptest::collection::vec((0..4_u8, any::<usize>(), any::<u8>()), 1..4)
 }
 
 proptest! {
@@ -249,6 +246,13 @@ fn the_files_to_damage_are_valid() {
     parse_known_sightings(KNOWN, "t").unwrap();
     parse_led_sightings(LEDS, "t").unwrap();
     parse_mounting(MOUNTING, "t").unwrap();
+    assert_eq!(parse_corners(CORNERS, Path::new("t")).unwrap().len(), 2);
+    for camera in CAMERAS {
+        let file = parse_camera(camera.as_bytes(), Path::new("t")).unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!((file.camera.width(), file.camera.height()), (96, 64));
+    }
+    let jpeg = decode_image(JPEG, "t").unwrap().image;
+    assert_eq!((jpeg.width(), jpeg.height()), (16, 9));
     assert!(ResultsReader::new(RESULTS.as_bytes(), "t").all(|record| record.is_ok()));
     for format in [image::ImageFormat::Png, image::ImageFormat::Bmp, image::ImageFormat::Tiff] {
         decode_image(&encoded(format), "t").unwrap();

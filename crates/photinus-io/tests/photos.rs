@@ -2,14 +2,15 @@
 //!
 //! Skipped, and said so, where the photos are not there.
 
-#![allow(clippy::print_stdout, reason = "a skipped test says so, and the numbers are worth reading")]
+#![allow(clippy::print_stdout, reason = "the numbers are worth reading")]
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use photinus::frame::FrameView;
 use photinus::spots::{Detections, Detector, Settings, Spot};
 use photinus_io::image::read_image;
+use photinus_testing::real_data;
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64;
 
@@ -70,17 +71,12 @@ impl Picture {
     }
 }
 
-/// The photos of both grids, none with a word on the console where they are absent.
+/// The photos of both grids, none where they are absent.
 fn photos() -> Vec<Photo> {
-    let data = std::env::var_os("PHOTINUS_DATA")
-        .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data"), PathBuf::from);
     let mut photos = Vec::new();
     for (folder, leds) in [("grid-960x600", 35), ("grid-752x480", 48)] {
-        let folder = data.join(folder);
-        let Ok(entries) = std::fs::read_dir(&folder) else {
-            println!("skipped: no folder {}", folder.display());
-            continue;
-        };
+        let Some(folder) = real_data(folder) else { continue };
+        let entries = std::fs::read_dir(folder).unwrap();
         let mut paths: Vec<PathBuf> = entries.map(|entry| entry.unwrap().path()).collect();
         paths.sort();
         for path in paths {

@@ -1,7 +1,8 @@
 //! Neighbours that the image's border cuts in two: what is out of sight is not held against a pose.
 //!
 //! Single neighbours in pure geometry with a tenth of a pixel, near and across the border of the image or of a mask. Checked:
-//! that the spots in view are taken for one neighbour, that truth is within its bounds, and that its covariance is honest.
+//! that the spots in view are taken for one neighbour, that truth is within its bounds, and that its covariance is as honest as
+//! it was measured to be, see [`REACHED`]: not everywhere as it should.
 
 mod paper;
 
@@ -136,21 +137,55 @@ fn spot(pixel: Pixel, flux: f64, distance_m: f64, rng: &mut Pcg64) -> Spot {
     }
 }
 
+/// What was measured: mean NEES, each at most 1000, and the share of truths within the ellipsoid of 95 %, by airframe, whether
+/// a mask hides what is out of sight, and the number of spots in sight. Fewer than 40 views say little and are left out.
+///
+/// An honest covariance has about 3 and 95 %. Two kinds fall short, both because poses are missing among the modes:
+/// - a lone spot at the border whose marker shines aside while brighter ones are out of the image (87 and 92 %);
+/// - a quadrotor of two spots of unlike light, the third behind the mask: in 11 of 282 views the mode with neighbouring markers
+///   is missing, and they are taken for a pair further apart at two to four times the distance, with 1000 each.
+const REACHED: [(&str, bool, usize, f64, f64); 9] = [
+    ("hexarotor", false, 1, 5.77, 0.870),
+    ("hexarotor", true, 1, 1.97, 0.994),
+    ("hexarotor", true, 2, 2.23, 0.971),
+    ("quadrotor", false, 1, 4.38, 0.920),
+    ("quadrotor", true, 1, 1.62, 0.984),
+    ("quadrotor", true, 2, 41.19, 0.933),
+    ("lanterns", false, 3, 1.86, 0.987),
+    ("lanterns", false, 4, 1.48, 1.0),
+    ("lanterns", true, 3, 3.10, 0.979),
+];
+
 #[test]
-fn what_is_out_of_sight_is_not_held_against_a_pose() {
+fn what_is_out_of_sight_is_held_against_a_pose_as_much_as_measured() {
+    let mut reached = 0;
     for airframe in [hexarotor(), quadrotor(), lanterns()] {
         for masked in [false, true] {
             let tallies = partly_seen(&airframe, 600, masked);
             for (spots, tally) in tallies.iter().enumerate().filter(|(_, tally)| tally.views > 0.0) {
+                let (nees, inside) = (tally.squared_errors / tally.whole, tally.inside / tally.whole);
+                let what = format!("{} masked {masked} {spots} spots", airframe.name());
                 println!(
-                    "{:10} masked {masked:5} {spots} spots: {:4} views, {:4} whole, NEES {:6.2}, {:5.1} % inside",
-                    airframe.name(),
+                    "{what}: {:4} views, {:4} whole, NEES {nees:6.2}, {:5.1} % inside",
                     tally.views,
                     tally.whole,
-                    tally.squared_errors / tally.whole,
-                    100.0 * tally.inside / tally.whole,
+                    100.0 * inside,
                 );
+                assert!(tally.whole >= 0.995 * tally.views, "{what}: {} of {}", tally.whole, tally.views);
+                let is_it = |row: &&(&str, bool, usize, f64, f64)| {
+                    (row.0, row.1, row.2) == (airframe.name(), masked, spots)
+                };
+                let Some((_, _, _, reached_nees, reached_inside)) = REACHED.iter().find(is_it) else {
+                    assert!(tally.views < 40.0, "{what}: nobody wrote down what is reached");
+                    continue;
+                };
+                // The scatter of the mean of heavy tails, and of a share.
+                assert!((nees / reached_nees - 1.0).abs() < 0.25, "{what}: NEES {nees}, not {reached_nees}");
+                let scatter = 0.01 + 2.0 * (0.05 * 0.95 / tally.whole).sqrt();
+                assert!((inside - reached_inside).abs() < scatter, "{what}: {inside}, not {reached_inside}");
+                reached += 1;
             }
         }
     }
+    assert_eq!(reached, REACHED.len());
 }

@@ -140,7 +140,7 @@ fn right_signals_tell_the_turn_of_a_symmetric_airframe() {
     for airframe in [hexarotor(|led| led), quadrotor(|led| led), asymmetric()] {
         let [sure, nees] = scores(&airframe, 2, |_| ());
         println!("{}: truth is sure in {sure:.3}, NEES {nees:.2}", airframe.name());
-        assert!(sure > 0.99 && nees < 4.0, "{sure} {nees}");
+        assert!(sure > 0.99 && (1.5..4.2).contains(&nees), "{sure} {nees}");
     }
 }
 
@@ -149,7 +149,8 @@ fn one_wrong_signal_of_three_is_outvoted() {
     for airframe in [hexarotor(|led| led), asymmetric()] {
         for wrong in [FOREIGN, 0] {
             let [sure, nees] = scores(&airframe, 3, |spots| spots[1].1 = Some(wrong));
-            assert!(sure > 0.95 && nees < 4.0, "{wrong}: {sure} {nees}");
+            println!("{} {wrong}: truth is sure in {sure:.3}, NEES {nees:.2}", airframe.name());
+            assert!(sure > 0.95 && (1.5..4.2).contains(&nees), "{wrong}: {sure} {nees}");
         }
     }
 }

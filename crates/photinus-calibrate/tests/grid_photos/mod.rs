@@ -1,6 +1,5 @@
 //! Real photos of LED grids with the grid found in each, for the tests that need them; without the data they skip.
 
-#![allow(clippy::print_stdout, reason = "a test that is skipped says so")]
 #![allow(dead_code, reason = "each test looks at a part")]
 
 use std::path::PathBuf;
@@ -10,6 +9,7 @@ use photinus_calibrate::adjust::View;
 use photinus_calibrate::grid::Grid;
 use photinus_calibrate::photo::{Photo, board_settings};
 use photinus_io::image::{GreyImage, read_image};
+use photinus_testing::real_data;
 
 /// Photos of one camera.
 pub(crate) struct Set {
@@ -31,14 +31,7 @@ pub(crate) fn eight_by_six() -> Option<Set> {
 
 /// The photos of a folder of the data, with the grid found in every one; `None` where there is no data.
 fn set(folder: &str, ending: &str, columns: usize, rows: usize) -> Option<Set> {
-    let data = std::env::var_os("PHOTINUS_DATA").map_or_else(
-        || PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data")),
-        PathBuf::from,
-    );
-    let Ok(entries) = std::fs::read_dir(data.join(folder)) else {
-        println!("skipped: no photos in {}", data.join(folder).display());
-        return None;
-    };
+    let entries = std::fs::read_dir(real_data(folder)?).expect("a folder");
     let mut paths: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
     paths.retain(|path| path.extension().is_some_and(|end| end == ending));
     paths.sort();

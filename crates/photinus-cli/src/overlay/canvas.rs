@@ -7,6 +7,7 @@ use tiny_skia::{
 };
 
 use super::text::Font;
+use super::zoom::Zoom;
 
 /// How a line is drawn.
 #[derive(Clone, Copy)]
@@ -70,24 +71,27 @@ impl<'f> Canvas<'f> {
         self.pixmap.encode_png().map_err(|error| error.to_string())
     }
 
-    /// A grey frame, every pixel `scale` x `scale` large, its levels replaced through `levels`.
+    /// A grey frame, its levels replaced through `levels`.
     pub(super) fn frame(
         &mut self,
         frame: &FrameView<'_>,
         (left, top): (u32, u32),
-        scale: u32,
+        zoom: Zoom,
         levels: &[u8; 256],
     ) {
         let (width, height) = (self.pixmap.width() as usize, self.pixmap.height() as usize);
-        let (left, top, scale) = (left as usize, top as usize, scale.max(1) as usize);
-        let rows = (frame.height() * scale).min(height.saturating_sub(top));
-        let columns = (frame.width() * scale).min(width.saturating_sub(left));
+        let (left, top) = (left as usize, top as usize);
+        let drawn = |px: usize| zoom.drawn_px(u32::try_from(px).unwrap_or(u32::MAX)) as usize;
+        let rows = drawn(frame.height()).min(height.saturating_sub(top));
+        let columns = drawn(frame.width()).min(width.saturating_sub(left));
         let pixels = self.pixmap.pixels_mut();
         for y in 0..rows {
-            let row = frame.row(y / scale);
             let begin = (top + y) * width + left;
             for (x, pixel) in pixels[begin..begin + columns].iter_mut().enumerate() {
-                let level = levels[usize::from(row[x / scale])];
+                // The brightest of what is shown, so that no spot is lost in a smaller picture.
+                let across = zoom.shown(x, frame.width());
+                let rows = zoom.shown(y, frame.height()).map(|row| &frame.row(row)[across.clone()]);
+                let level = levels[usize::from(rows.flatten().copied().max().unwrap_or_default())];
                 if let Some(grey) = PremultipliedColorU8::from_rgba(level, level, level, u8::MAX) {
                     *pixel = grey;
                 }

@@ -8,6 +8,7 @@ use tiny_skia::{ColorU8 as Colour, Point, Rect};
 use super::canvas::{Align, Canvas, Pen, Words};
 use super::colours;
 use super::labels::Labels;
+use super::zoom::Zoom;
 
 /// Grey level to which the middle level of a dark frame is lifted.
 const LIFTED_MIDDLE: f64 = 44.0;
@@ -21,8 +22,7 @@ pub(super) struct FramePanel {
     pub(super) top: u32,
     /// Of the frame, px.
     pub(super) size: (u32, u32),
-    /// Pixels of the picture per pixel of the frame.
-    pub(super) scale: u32,
+    pub(super) zoom: Zoom,
     /// What lines and words are measured in, px.
     pub(super) unit: f32,
 }
@@ -33,7 +33,7 @@ impl FramePanel {
         let Some(area) = self.area() else { return };
         canvas.rectangle(area, colours::SHADE);
         if let Some(frame) = frame {
-            canvas.frame(&frame, (self.left, self.top), self.scale, &lifted_levels(&frame));
+            canvas.frame(&frame, (self.left, self.top), self.zoom, &lifted_levels(&frame));
         }
         let mut labels = Labels::new(area);
         for spot in &record.spots {
@@ -141,7 +141,7 @@ impl FramePanel {
 
     /// A place of the frame in the picture; the centre of a pixel is at the integer.
     fn at(&self, u_px: f64, v_px: f64) -> Point {
-        let scale = f64::from(self.scale);
+        let scale = self.zoom.factor();
         let x = f64::from(self.left) + (u_px + 0.5) * scale;
         let y = f64::from(self.top) + (v_px + 0.5) * scale;
         Point::from_xy(x as f32, y as f32)
@@ -155,17 +155,19 @@ impl FramePanel {
         };
         // The spot itself, and another in the very same place, leave no room to speak of.
         let others = record.spots.iter().map(squared).filter(|&squared| squared > 0.0);
-        let room = others.fold(f64::INFINITY, f64::min).sqrt() as f32 * self.scale as f32 / 2.0 - self.unit;
+        let room =
+            others.fold(f64::INFINITY, f64::min).sqrt() as f32 * self.zoom.factor() as f32 / 2.0 - self.unit;
         self.radius(spot.area_px).min(room).max(self.radius(spot.area_px) - 3.0 * self.unit)
     }
 
     /// A circle a little larger than so many pixels.
     fn radius(&self, area_px: u32) -> f32 {
-        (f64::from(area_px) / std::f64::consts::PI).sqrt() as f32 * self.scale as f32 + 5.0 * self.unit
+        (f64::from(area_px) / std::f64::consts::PI).sqrt() as f32 * self.zoom.factor() as f32
+            + 5.0 * self.unit
     }
 
     fn area(&self) -> Option<Rect> {
-        let side = |px: u32| (px * self.scale) as f32;
+        let side = |px: u32| self.zoom.drawn_px(px) as f32;
         Rect::from_xywh(self.left as f32, self.top as f32, side(self.size.0), side(self.size.1))
     }
 }

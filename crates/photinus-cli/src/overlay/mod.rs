@@ -4,8 +4,11 @@
 //! frame_panel  the frame, its brightness lifted, with spots, rejections, neighbours
 //! map_panel    the same from above (the plane of ground.rs): what can be where
 //! legend       what the marks mean
+//! zoom         how large a pixel of the frame is drawn
 //! canvas, text, labels, colours: how to draw, how words are drawn and where they find room, in which colours
 //! ```
+//!
+//! A picture has 6800 x 4400 px at most, whatever the frame: 120 MB while it is drawn.
 
 mod canvas;
 mod colours;
@@ -15,6 +18,7 @@ mod labels;
 mod legend;
 mod map_panel;
 mod text;
+mod zoom;
 
 use std::path::PathBuf;
 
@@ -31,9 +35,10 @@ use frame_panel::FramePanel;
 use ground::Ground;
 use map_panel::MapPanel;
 use text::Font;
+use zoom::Zoom;
 
-/// The width that a frame is drawn at, px, as near as whole pixels come to it.
-const FRAME_WIDTH_PX: u32 = 1450;
+/// The map's largest side, px: there its words are as large as words get.
+const LARGEST_MAP_PX: u32 = 2480;
 /// The picture's smallest height without legend, px: the map needs room.
 const SMALLEST_HEIGHT_PX: u32 = 480;
 
@@ -125,13 +130,14 @@ struct Layout {
 
 impl Layout {
     fn new((columns, rows): (u32, u32), has_map: bool) -> Self {
-        let scale = ((FRAME_WIDTH_PX + columns / 2) / columns.max(1)).max(1);
-        let (frame_width, frame_height) = (columns * scale, rows * scale);
+        let zoom = Zoom::of(columns, rows);
+        let (frame_width, frame_height) = (zoom.drawn_px(columns), zoom.drawn_px(rows));
         let panel_height = frame_height.max(SMALLEST_HEIGHT_PX);
         let unit = (panel_height as f32 / 620.0).clamp(1.0, 4.0);
         let (margin, heading, foot) = ((10.0 * unit) as u32, (34.0 * unit) as u32, (40.0 * unit) as u32);
         // The legend needs as much when there is nothing beside a narrow frame.
-        let map_width = if has_map { panel_height.max((560.0 * unit) as u32) } else { 0 };
+        let map_height = panel_height.min(LARGEST_MAP_PX);
+        let map_width = if has_map { map_height.max((560.0 * unit) as u32) } else { 0 };
         let least = (360.0 * unit) as u32;
         let width = (2 * margin + frame_width + map_width).max(least);
         let top = heading + (panel_height - frame_height) / 2;
@@ -139,13 +145,13 @@ impl Layout {
             (margin + frame_width) as f32,
             heading as f32,
             map_width as f32,
-            panel_height as f32,
+            map_height as f32,
         );
         Self {
             width,
             height: heading + panel_height + foot,
             unit,
-            frame: FramePanel { left: margin, top, size: (columns, rows), scale, unit },
+            frame: FramePanel { left: margin, top, size: (columns, rows), zoom, unit },
             map: map.filter(|_| has_map),
             legend: Point::from_xy(margin as f32, (heading + panel_height) as f32 + foot as f32 / 2.0),
         }

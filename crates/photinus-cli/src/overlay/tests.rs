@@ -152,6 +152,43 @@ fn a_spot_stays_visible_inside_its_circle() {
 }
 
 #[test]
+fn a_picture_has_a_bound_whatever_the_frame() {
+    let sizes = [(1, 32_767), (32_767, 1), (64, 4096), (1, 1), (32_767, 32_767), (4096, 4096), (752, 480)];
+    for (columns, rows) in sizes {
+        for has_map in [false, true] {
+            let layout = Layout::new((columns, rows), has_map);
+            let area_px = u64::from(layout.width) * u64::from(layout.height);
+            assert!(layout.width <= 6800 && layout.height <= 4400, "{columns}x{rows}: {}", layout.width);
+            assert!(4 * area_px <= 120_000_000, "{columns}x{rows} takes {} bytes", 4 * area_px);
+        }
+    }
+}
+
+#[test]
+fn narrow_frames_are_drawn_whole() {
+    for (columns, rows) in [(1, 32_767), (32_767, 1), (64, 4096), (1, 1)] {
+        let mut pixels = vec![9; columns * rows];
+        *pixels.last_mut().unwrap() = 255;
+        let frame = GreyImage::new(pixels, columns, rows).unwrap();
+        let record =
+            FrameRecord { spots: Vec::new(), rejected: Vec::new(), neighbours: Vec::new(), ..record() };
+        let folder = Folder::new(&format!("narrow-{columns}-{rows}"));
+        let picture = picture(&folder, &record, Some(frame.view()), Some(camera()));
+        let layout = Layout::new((columns as u32, rows as u32), true);
+        assert_eq!((picture.width(), picture.height()), (layout.width as usize, layout.height as usize));
+        let panel = layout.frame;
+        let right = panel.left + panel.zoom.drawn_px(columns as u32) - 1;
+        let bottom = panel.top + panel.zoom.drawn_px(rows as u32) - 1;
+        // The last pixel of the frame is the brightest, in the last corner of its panel.
+        let level = |x: u32, y: u32| picture.pixels()[y as usize * picture.width() + x as usize];
+        assert_eq!(level(right, bottom), 255, "{columns}x{rows}");
+        if columns * rows > 1 {
+            assert!(level(panel.left, panel.top) < 200, "{columns}x{rows}");
+        }
+    }
+}
+
+#[test]
 fn numbers_that_are_none_do_no_harm() {
     let (folder, mut record) = (Folder::new("odd"), record());
     let odd = [f64::NAN, f64::INFINITY, -1e300, 1e300, 0.0];

@@ -1,17 +1,22 @@
 //! Words as outlines: DejaVu Sans, drawn by the same antialiasing as every line.
 
+use skrifa::instance::{LocationRef, Size};
+use skrifa::outline::{DrawSettings, OutlinePen};
+use skrifa::{FontRef, GlyphId, MetadataProvider};
 use tiny_skia::{Path, PathBuilder};
-use ttf_parser::{Face, GlyphId, OutlineBuilder};
 
 /// The font of all pictures.
 pub(super) struct Font {
-    face: Face<'static>,
+    face: FontRef<'static>,
+    units_per_em: f32,
 }
 
 impl Font {
     /// DejaVu Sans; `None` would mean that the font inside the program is damaged.
     pub(super) fn new() -> Option<Self> {
-        Face::parse(dejavu::sans::regular(), 0).ok().map(|face| Self { face })
+        let face = FontRef::new(dejavu::sans::regular()).ok()?;
+        let metrics = face.metrics(Size::unscaled(), LocationRef::default());
+        (metrics.units_per_em > 0).then(|| Self { face, units_per_em: f32::from(metrics.units_per_em) })
     }
 
     /// How wide a line of text is at a size (of an em), px.
@@ -22,10 +27,14 @@ impl Font {
     /// The outline of a line of text whose baseline begins at (`x`, `y`); `None` when nothing shows.
     pub(super) fn outline(&self, text: &str, mut x: f32, y: f32, size: f32) -> Option<Path> {
         let mut outline = Outline { path: PathBuilder::new(), x, y, scale: self.scale(size) };
+        let outlines = self.face.outline_glyphs();
         for glyph in text.chars().map(|c| self.glyph(c)) {
             outline.x = x;
-            // A glyph without an outline is a space.
-            let _ = self.face.outline_glyph(glyph, &mut outline);
+            if let Some(drawn) = outlines.get(glyph) {
+                let settings = DrawSettings::unhinted(Size::unscaled(), LocationRef::default());
+                // A glyph without an outline is a space; one that is damaged is not in the font inside the program.
+                let _ = drawn.draw(settings, &mut outline);
+            }
             x += self.advance(glyph, size);
         }
         outline.path.finish()
@@ -33,15 +42,16 @@ impl Font {
 
     /// The glyph of a character; the font's own empty box where it has none.
     fn glyph(&self, c: char) -> GlyphId {
-        self.face.glyph_index(c).unwrap_or_default()
+        self.face.charmap().map(c).unwrap_or(GlyphId::NOTDEF)
     }
 
     fn advance(&self, glyph: GlyphId, size: f32) -> f32 {
-        f32::from(self.face.glyph_hor_advance(glyph).unwrap_or_default()) * self.scale(size)
+        let metrics = self.face.glyph_metrics(Size::unscaled(), LocationRef::default());
+        metrics.advance_width(glyph).unwrap_or_default() * self.scale(size)
     }
 
     fn scale(&self, size: f32) -> f32 {
-        size / f32::from(self.face.units_per_em())
+        size / self.units_per_em
     }
 }
 
@@ -59,7 +69,7 @@ impl Outline {
     }
 }
 
-impl OutlineBuilder for Outline {
+impl OutlinePen for Outline {
     fn move_to(&mut self, x: f32, y: f32) {
         let (x, y) = self.at(x, y);
         self.path.move_to(x, y);

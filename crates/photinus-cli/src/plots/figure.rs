@@ -32,7 +32,6 @@ impl FigureFolder {
     /// [`Error`] when it cannot be drawn or written.
     pub(crate) fn write(&self, figure: Figure) -> Result<String> {
         let scene = kuva::render::render::render_multiple(figure.plots, figure.layout);
-        save(&self.0, &figure.name, &scene)?;
-        Ok(kuva::backend::svg::SvgBackend::new().render_scene(&scene))
+        save(&self.0, &figure.name, &scene)
     }
 }

@@ -27,7 +27,7 @@ pub(super) fn save(folder: &Path, report: &Report) -> Result<()> {
         .with_cell_size(SIZE.0, SIZE.1)
         .with_plots(plots)
         .with_layouts(layouts);
-    plots::save(folder, &format!("figure-{}", report.figure.name()), &figure.render())
+    plots::save(folder, &format!("figure-{}", report.figure.name()), &figure.render()).map(drop)
 }
 
 /// Dash and gap, px: apart also in print.

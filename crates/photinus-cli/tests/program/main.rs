@@ -17,6 +17,7 @@ mod demo;
 mod evaluate;
 mod files_survive;
 mod mutated;
+mod narrow_frames;
 mod odd_input;
 mod real_photos;
 mod reproduce;

@@ -1,6 +1,6 @@
 //! A folder for one test, with the files of a small scene in it, and the program run there.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::{Command, Stdio};
 
 use photinus_io::image::{GreyImage, write_png};
@@ -164,17 +164,4 @@ pub(crate) fn video(frames: usize) -> Vec<u8> {
         bytes.extend(frame().pixels());
     }
     bytes
-}
-
-/// The folder of real files, when this machine has it.
-pub(crate) fn real_data() -> Option<PathBuf> {
-    let folder = std::env::var_os("PHOTINUS_DATA").map_or_else(
-        || Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data")).to_owned(),
-        PathBuf::from,
-    );
-    if folder.is_dir() {
-        return Some(folder);
-    }
-    println!("skipped: no real data in {}", folder.display());
-    None
 }

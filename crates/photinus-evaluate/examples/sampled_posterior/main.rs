@@ -1,6 +1,6 @@
 //! The reported mixture of poses against samples of the posterior that it stands for, where two markers leave much open.
 //!
-//! `cargo run --release -p photinus-evaluate --example sampled_posterior [picture.png]`
+//! `cargo run --release -p photinus-evaluate --example sampled_posterior [picture.svg]`
 //!
 //! A plain Metropolis walk over a density that is written down anew from its description. For each view and direction: how
 //! far the mean is from that of the samples, in standard deviations of the posterior; the ratio of the standard deviations, and how sure that of the samples is (of the variance);

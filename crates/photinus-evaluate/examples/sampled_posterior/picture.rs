@@ -18,7 +18,7 @@ const DOTS: usize = 2500;
 /// Modes with less weight are not drawn.
 const LIGHT: f64 = 0.005;
 
-/// Writes a picture with a panel per experiment, two in a row.
+/// Writes a picture (SVG) with a panel per experiment, two in a row.
 pub(crate) fn draw(file: &Path, experiments: &[(String, Experiment)]) -> Result<()> {
     let panels = experiments.iter().map(|(title, experiment)| panel(title, experiment));
     let (plots, layouts): (Vec<_>, Vec<_>) = panels.unzip();
@@ -27,9 +27,8 @@ pub(crate) fn draw(file: &Path, experiments: &[(String, Experiment)]) -> Result<
         .with_plots(plots)
         .with_layouts(layouts)
         .render();
-    let png = kuva::RasterBackend::new().with_scale(1.5).render_scene(&figure);
-    let bytes = png.map_err(|reason| Error::format(file, reason))?;
-    std::fs::write(file, bytes).map_err(|error| Error::io(file, error))
+    let svg = kuva::backend::svg::SvgBackend::new().render_scene(&figure);
+    std::fs::write(file, svg).map_err(|error| Error::io(file, error))
 }
 
 fn panel(title: &str, experiment: &Experiment) -> (Vec<Plot>, Layout) {

@@ -1,7 +1,8 @@
 use photinus::airframe::Lobe;
 
 use super::*;
-use crate::scratch::{files_in, real_data};
+use crate::scratch::files_in;
+use photinus_testing::real_data;
 
 const LIST: &str = r#"
 name = "pair"
@@ -150,8 +151,8 @@ fn errors_of_a_layout_name_the_line() {
 
 #[test]
 fn every_real_layout_is_read() {
-    let Some(data) = real_data() else { return };
-    for path in files_in(&data.join("airframes")) {
+    let Some(folder) = real_data("airframes") else { return };
+    for path in files_in(&folder) {
         let AirframeFile { airframe, notes } = read_airframe(&path).unwrap();
         let has_beacon = path.to_string_lossy().contains("beacon");
         assert_eq!(airframe.markers().len(), if has_beacon { 5 } else { 4 }, "{path:?}");

@@ -1,9 +1,10 @@
 use std::io::Cursor;
 
 use image::{DynamicImage, ImageFormat};
+use photinus_testing::real_data;
 
 use super::*;
-use crate::scratch::{Folder, files_in, real_data};
+use crate::scratch::{Folder, files_in};
 
 fn ramp(width: u32, height: u32) -> image::GrayImage {
     image::GrayImage::from_fn(width, height, |u, v| image::Luma([(u * 7 + v * 13) as u8]))
@@ -114,7 +115,7 @@ fn a_png_written_is_read_back() {
 
 #[test]
 fn real_photographs_are_read_and_cut_ones_are_not() {
-    let Some(data) = real_data() else { return };
+    let Some(data) = real_data("") else { return };
     let mut read = 0;
     for folder in ["grid-960x600", "grid-752x480", "masks"] {
         for path in files_in(&data.join(folder)) {
@@ -140,8 +141,8 @@ fn real_photographs_are_read_and_cut_ones_are_not() {
 
 #[test]
 fn no_damaged_jpeg_panics() {
-    let Some(data) = real_data() else { return };
-    let jpeg = std::fs::read(data.join("grid-752x480/image_01.jpg")).unwrap();
+    let Some(photo) = real_data("grid-752x480/image_01.jpg") else { return };
+    let jpeg = std::fs::read(photo).unwrap();
     let mut state = 1_u64;
     let mut random = |below: usize| {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);

@@ -2,7 +2,7 @@
 //!
 //! `cargo run --release -p photinus-sim --example compare_photo -- PHOTO SCENE [DIR]` prints histograms of spot areas and of
 //! background levels of both. Into DIR, which is made, it writes side-by-side.png (photo left), simulated.png, and
-//! photo-and-simulated.png and .svg: sections through spots, their widths, the background.
+//! photo-and-simulated.svg: sections through spots, their widths, the background.
 
 #![allow(clippy::print_stdout, reason = "a program that reports")]
 

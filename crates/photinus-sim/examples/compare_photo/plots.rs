@@ -17,20 +17,15 @@ const CLASS_PX: f64 = 0.25;
 /// Grey levels that are shown: those past them are spots.
 const BACKGROUND: (usize, usize) = (15, 35);
 
-/// Writes `photo-and-simulated.png` and `.svg` into `folder`.
+/// Writes `photo-and-simulated.svg` into `folder`.
 pub(crate) fn save(folder: &Path, photo: &Measured, simulated: &Measured) -> Result<()> {
     let panels = [sections(photo, simulated), widths(photo, simulated), backgrounds(photo, simulated)];
     let (plots, layouts): (Vec<_>, Vec<_>) = panels.into_iter().unzip();
     let figure =
         Figure::new(3, 1).with_cell_size(SIZE.0, SIZE.1).with_plots(plots).with_layouts(layouts).render();
-    let write = |name: &str, bytes: &[u8]| {
-        let path = folder.join(name);
-        std::fs::write(&path, bytes).map_err(|error| Error::io(&path, error))
-    };
     let svg = kuva::backend::svg::SvgBackend::new().render_scene(&figure);
-    write("photo-and-simulated.svg", svg.as_bytes())?;
-    let png = kuva::RasterBackend::new().with_scale(1.5).render_scene(&figure);
-    write("photo-and-simulated.png", &png.map_err(|reason| Error::format(folder, reason))?)
+    let path = folder.join("photo-and-simulated.svg");
+    std::fs::write(&path, svg).map_err(|error| Error::io(&path, error))
 }
 
 fn line(data: Vec<(f64, f64)>, colour: &str, label: &str) -> LinePlot {

@@ -74,26 +74,26 @@ fn pairs(apart_px: f64, width_px: f64, heights: [f64; 2], noise: f64, rule: Brig
 /// Measured: all pairs up to a width of 0.7 px; wider ones, whose light overlaps more, are lost first when one is fainter.
 #[test]
 fn two_markers_three_pixels_apart_are_two_spots() {
-    for (width, heights, both, rms_px, beyond) in [
-        (0.5, [220.0, 220.0], 150, 0.08, 0.02),
-        (0.5, [180.0, 120.0], 150, 0.08, 0.05),
-        (0.7, [220.0, 220.0], 150, 0.07, 0.02),
-        (0.7, [180.0, 120.0], 150, 0.09, 0.02),
-        (0.85, [220.0, 220.0], 150, 0.14, 0.02),
-        (0.85, [180.0, 120.0], 140, 0.17, 0.02),
-        (1.0, [220.0, 220.0], 140, 0.24, 0.15),
-        (1.0, [180.0, 120.0], 95, 0.28, 0.15),
+    for (width, heights, both, rms_px) in [
+        (0.5, [220.0, 220.0], 150, 0.071),
+        (0.5, [180.0, 120.0], 150, 0.073),
+        (0.7, [220.0, 220.0], 150, 0.058),
+        (0.7, [180.0, 120.0], 150, 0.075),
+        (0.85, [220.0, 220.0], 150, 0.112),
+        (0.85, [180.0, 120.0], 144, 0.141),
+        (1.0, [220.0, 220.0], 144, 0.201),
+        (1.0, [180.0, 120.0], 106, 0.226),
     ] {
         let result = pairs(3.0, width, heights, 1.0, RULES[1]);
         let what = format!("width {width} {heights:?}");
         assert!(
-            result.both >= both && result.extra == 0,
+            result.both.abs_diff(both) <= 8 && result.extra == 0,
             "{what}: {} pairs, {} extra",
             result.both,
             result.extra
         );
-        assert!(result.rms_px() < rms_px, "{what}: {} px", result.rms_px());
-        assert!(result.beyond_three_sigma() < beyond, "{what}: {} beyond", result.beyond_three_sigma());
+        assert!((result.rms_px() / rms_px - 1.0).abs() < 0.2, "{what}: {} px", result.rms_px());
+        assert!(result.beyond_three_sigma() < 0.01, "{what}: {} beyond", result.beyond_three_sigma());
     }
 }
 

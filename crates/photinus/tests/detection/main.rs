@@ -10,6 +10,8 @@
 mod background;
 mod crowded;
 mod determinism;
+#[path = "../hash/mod.rs"]
+mod hash;
 mod large;
 mod properties;
 mod scene;

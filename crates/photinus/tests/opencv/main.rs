@@ -1,15 +1,16 @@
 //! P3P and PnP against OpenCV's, an implementation that shares nothing with ours, on views in front of the
 //! camera (OpenCV knows no others): ordinary ones, nearly flat, nearly on one line, far away.
 //!
-//! Needs a Python with cv2: that of the environment variable PHOTINUS_PYTHON, else `python3`.
+//! Needs a Python with cv2: that of the environment variable PHOTINUS_PYTHON, else `python3`. OpenCV 4 and 5 agree with it.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 use std::io::Write;
-use std::process::{Command, Stdio};
+use std::process::Stdio;
 
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 use photinus::pose::{p3p, pnp};
+use photinus_testing::python_with;
 use rand_distr::{Distribution, StandardNormal, Uniform};
 use rand_pcg::Pcg64;
 
@@ -65,17 +66,10 @@ fn views(count: usize, per_kind: usize, sigma_rad: f64, rng: &mut Pcg64) -> Vec<
 }
 
 /// The poses that OpenCV finds for each view; `None` where it is not installed.
-#[expect(clippy::print_stdout, reason = "a test that skips says so")]
 fn by_opencv(views: &[View]) -> Option<Vec<Vec<Isometry3<f64>>>> {
-    let python = std::env::var("PHOTINUS_PYTHON").unwrap_or_else(|_| "python3".to_owned());
     let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/opencv/pnp.py");
-    let importable = Command::new(&python).args(["-c", "import cv2"]).stderr(Stdio::null()).status();
-    if !importable.is_ok_and(|status| status.success()) {
-        println!("skipped: {python} cannot import cv2 (PHOTINUS_PYTHON names another)");
-        return None;
-    }
-    let mut child =
-        Command::new(&python).arg(script).stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().unwrap();
+    let mut python = python_with(&["cv2", "numpy"])?;
+    let mut child = python.arg(script).stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().unwrap();
     let mut input = String::new();
     for view in views {
         input += &view.points_m.len().to_string();

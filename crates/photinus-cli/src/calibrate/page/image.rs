@@ -1,4 +1,5 @@
-//! Figures over the image: columns to the right, rows downwards, one pixel as wide as high.
+//! Figures over the image: columns to the right, rows downwards, one pixel as wide as high, unless the image is so narrow
+//! that the figure would have no end.
 
 use std::sync::Arc;
 
@@ -6,6 +7,9 @@ use kuva::prelude::{Layout, Plot, QuiverPlot, TickFormat};
 
 use crate::calibrate::report::CameraReport;
 use crate::plots::style::axes;
+
+/// Height over width of the field of a figure, at least and at most.
+const SHAPES: [f64; 2] = [0.2, 3.0];
 
 /// Width of a figure, of which the axes and a colour bar take some.
 const WIDTH: f64 = 760.0;
@@ -16,13 +20,19 @@ pub(super) fn over_image(plots: &[Plot], report: &CameraReport) -> Layout {
     let row = |height: f64| format!("{:.0}", height.abs());
     axes(plots, "column (px)", "row (px)")
         .with_width(WIDTH)
-        .with_height(170.0 + WIDTH * 0.82 * height / width)
+        .with_height(170.0 + WIDTH * 0.82 * shape(width, height))
         .with_x_axis_min(-0.5)
         .with_x_axis_max(width - 0.5)
         .with_y_axis_min(0.5 - height)
         .with_y_axis_max(0.5)
         .with_y_tick_format(TickFormat::Custom(Arc::new(row)))
         .with_show_grid(false)
+}
+
+/// How high a figure's field is for one that is 1 wide, drawn over something of this width and height.
+pub(super) fn shape(width: f64, height: f64) -> f64 {
+    let [flattest, tallest] = SHAPES;
+    (height / width).clamp(flattest, tallest)
 }
 
 /// Arrows from (column, row) along (columns, rows), so long that one of `typical` length is a thirtieth of the image; and how many
@@ -48,6 +58,14 @@ pub(super) fn round_down(number: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_figure_has_a_bound_whatever_the_image() {
+        assert_eq!(shape(752.0, 480.0).to_bits(), (480.0_f64 / 752.0).to_bits());
+        for (width, height, most) in [(1.0, 32_767.0, 3.0), (32_767.0, 1.0, 0.2), (64.0, 4096.0, 3.0)] {
+            assert!((shape(width, height) - most).abs() < 1e-12, "{width}x{height}");
+        }
+    }
 
     #[test]
     fn factors_are_round() {

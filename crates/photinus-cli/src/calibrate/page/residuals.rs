@@ -4,7 +4,7 @@ use kuva::plot::scatter::MarkerShape;
 use kuva::prelude::{BarPlot, Heatmap, Histogram, Plot, QuiverPlot, TextAnnotation};
 
 use super::Shown;
-use super::image::{arrows, over_image, round_down};
+use super::image::{arrows, over_image, round_down, shape};
 use crate::calibrate::report::{CameraReport, ModelReport};
 use crate::plots::Figure;
 use crate::plots::style::{BOUNDS, ESTIMATE, INLINE, TRUTH, WRONG, axes, line, plain, points};
@@ -149,7 +149,7 @@ fn board(report: &CameraReport) -> Option<Shown> {
     let down = |height: f64| format!("{:.0}", -height + 0.0);
     let mut layout = axes(&plots, "along the columns (mm)", "along the rows (mm)")
         .with_width(720.0)
-        .with_height(160.0 + 620.0 * report.grid_rows as f64 / report.grid_columns as f64)
+        .with_height(160.0 + 620.0 * shape(report.grid_columns as f64, report.grid_rows as f64))
         .with_x_axis_min(-0.6 * pitch_mm)
         .with_x_axis_max(reach(report.grid_columns))
         .with_y_axis_min(-reach(report.grid_rows))

@@ -33,6 +33,6 @@ pub(crate) fn plot(folder: &Path, evaluation: &Evaluation<'_>, truth: &[TruthFra
     let over_time = neighbours.into_iter().filter_map(|id| over_time::distance(id, evaluation, truth));
     by_range::figures(evaluation).into_iter().chain(over_time).try_for_each(|figure| {
         let scene = kuva::render::render::render_multiple(figure.plots, figure.layout);
-        crate::plots::save(folder, &figure.name, &scene)
+        crate::plots::save(folder, &figure.name, &scene).map(drop)
     })
 }

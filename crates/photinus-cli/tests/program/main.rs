@@ -22,6 +22,7 @@ mod odd_input;
 mod real_photos;
 mod reproduce;
 mod resume;
+mod rig;
 mod simulate;
 mod soak;
 mod stage;

@@ -1,0 +1,116 @@
+//! A dataset of several cameras on one vehicle: each line says which camera, and where neighbours are in the body frame.
+
+use serde_json::Value;
+
+use crate::stage::Stage;
+
+/// The camera looks along the body's x axis.
+const FORWARD: &str = "body_from_camera_xyzw = [-0.5, 0.5, -0.5, 0.5]\nposition_m = [0.1, 0.0, 0.05]\n\
+                       rotation_covariance_rad2 = [[1e-4, 0, 0], [0, 1e-4, 0], [0, 0, 1e-4]]\n\
+                       position_covariance_m2 = [[1e-6, 0, 0], [0, 1e-6, 0], [0, 0, 1e-6]]\n";
+/// It looks along the negative x axis.
+const BACKWARD: &str = "body_from_camera_xyzw = [-0.5, -0.5, 0.5, 0.5]\nposition_m = [-0.1, 0.0, 0.05]\n\
+                        rotation_covariance_rad2 = [[0, 0, 0], [0, 0, 0], [0, 0, 0]]\n\
+                        position_covariance_m2 = [[0, 0, 0], [0, 0, 0], [0, 0, 0]]\n";
+
+/// A rig of two cameras that see the same, a third of a frame apart.
+fn stage(test: &str) -> Stage {
+    let stage = Stage::new(test);
+    stage.dataset("rig", 3);
+    stage.file("rig/front.toml", FORWARD);
+    stage.file("rig/back.toml", BACKWARD);
+    let frames = stage.read("rig/frames.csv");
+    stage.file("rig/back.csv", frames.replace(",0,images", ",0.01,images").replace(",0.05,", ",0.06,").replace(",0.1,", ",0.11,"));
+    let camera = |name: &str, frames: &str| {
+        format!("[[camera]]\nname = \"{name}\"\ncamera = \"camera.toml\"\nmounting = \"{name}.toml\"\nframes = \"{frames}\"\n")
+    };
+    let table = "airframe = \"hexa.toml\"\nexposure_us = 1000\nrate_hz = 20\n";
+    stage.file("rig/dataset.toml", format!("{table}{}{}", camera("front", "frames.csv"), camera("back", "back.csv")));
+    let truth = |camera: &str, frame: usize, time_s: f64| {
+        format!("{{\"frame\":{frame},\"camera\":\"{camera}\",\"time_s\":{time_s},\"neighbours\":[]}}\n")
+    };
+    let truth = (0..3).map(|n| truth("front", n, n as f64 / 20.0) + &truth("back", n, n as f64 / 20.0 + 0.01));
+    stage.file("rig/truth.jsonl", truth.collect::<String>());
+    stage
+}
+
+fn lines(text: &str) -> Vec<Value> {
+    text.lines().map(|line| serde_json::from_str(line).unwrap()).collect()
+}
+
+fn numbers(value: &Value) -> Vec<f64> {
+    value.as_array().unwrap().iter().map(|number| number.as_f64().unwrap()).collect()
+}
+
+#[test]
+fn every_line_says_its_camera_and_places_in_the_body_frame() {
+    let stage = stage("rig");
+    assert_eq!(stage.run("info rig").code, 0);
+    let done = stage.run("locate rig -q --out r.jsonl --csv t.csv --overlay seen");
+    assert_eq!(done.code, 0, "{}", done.err);
+    let records = lines(&stage.read("r.jsonl"));
+    let order: Vec<(&str, u64)> =
+        records.iter().map(|r| (r["camera"].as_str().unwrap(), r["frame"].as_u64().unwrap())).collect();
+    assert_eq!(order, [("front", 0), ("back", 0), ("front", 1), ("back", 1), ("front", 2), ("back", 2)]);
+    let place = |record: &Value, field: &str| numbers(&record["neighbours"][0][field]);
+    let (seen_m, front_m, back_m) = (
+        place(&records[0], "position_m"),
+        place(&records[0], "position_body_m"),
+        place(&records[1], "position_body_m"),
+    );
+    // Right of a camera that looks forward is the body's right, its negative y; of one that looks back, its left.
+    let expected_front = [seen_m[2] + 0.1, -seen_m[0], 0.05 - seen_m[1]];
+    let expected_back = [-seen_m[2] - 0.1, seen_m[0], 0.05 - seen_m[1]];
+    for axis in 0..3 {
+        assert!((front_m[axis] - expected_front[axis]).abs() < 1e-9, "{front_m:?} not {expected_front:?}");
+        assert!((back_m[axis] - expected_back[axis]).abs() < 1e-9, "{back_m:?} not {expected_back:?}");
+    }
+    // 10 mrad about the vertical at 2.7 m move it 27 mm sideways.
+    let variance = |record: &Value| {
+        record["neighbours"][0]["position_body_covariance_m2"][1][1].as_f64().unwrap()
+    };
+    let added_m2 = variance(&records[0]) - variance(&records[1]);
+    assert!((added_m2 / (1e-4 * seen_m[2] * seen_m[2] + 1e-6) - 1.0).abs() < 0.02, "{added_m2}");
+    assert_eq!(stage.names("seen"), ["back", "front"].iter().flat_map(|name| (0..3).map(move |n| format!("overlay-{name}-{n:06}.png"))).collect::<Vec<_>>());
+    assert!(stage.read("t.csv").lines().next().unwrap().ends_with(",camera,x_body_m,y_body_m,z_body_m"));
+    assert!(stage.read("t.csv").lines().nth(2).unwrap().contains(",back,-2."));
+}
+
+#[test]
+fn one_camera_of_several_can_be_chosen() {
+    let stage = stage("rig-only");
+    assert_eq!(stage.run("locate rig -q --out all.jsonl").code, 0);
+    assert_eq!(stage.run("locate rig -q --only back --out back.jsonl").code, 0);
+    let of_back: String =
+        stage.read("all.jsonl").lines().filter(|line| line.contains("\"camera\":\"back\"")).map(|line| format!("{line}\n")).collect();
+    assert_eq!(stage.read("back.jsonl"), of_back);
+    let names = "it has the cameras front, back; choose one with --only NAME";
+    for words in ["locate rig --camera camera.toml", "detect rig --mask rig/images/000000.png", "convert rig one", "evaluate rig all.jsonl"] {
+        stage.refuses(words, &[names]);
+    }
+    stage.refuses("locate rig --only left", &["--only left: the dataset has the cameras front, back"]);
+    assert_eq!(stage.run("convert rig one --only back").code, 0);
+    assert_eq!(stage.run("locate one -q --out one.jsonl").code, 0, "of one camera it is a plain dataset");
+    let done = stage.run("evaluate rig all.jsonl --only back");
+    assert!(done.code == 0 && !done.err.contains("missed"), "{}", done.err);
+    for victim in ["rig/back.toml", "rig/back.csv", "rig/imu.csv"] {
+        stage.file("rig/imu.csv", "time_s,wx_rad_s,wy_rad_s,wz_rad_s\n0,0,0,0\n");
+        stage.refuses(&format!("locate rig --out {victim} --force"), &["this file is an input"]);
+    }
+}
+
+#[test]
+fn a_mounting_of_its_own_and_a_run_that_goes_on() {
+    let stage = stage("rig-resume");
+    stage.file("front.toml", FORWARD);
+    let plain = stage.run("locate frame.png --camera camera.toml --airframe hexa.toml -q --out - --mounting front.toml");
+    assert!(plain.out.contains("\"position_body_m\":[2.8"), "{}", plain.out);
+    assert_eq!(stage.run("locate rig -q --out whole.jsonl").code, 0);
+    let whole = stage.read("whole.jsonl");
+    for cut in [1, 2, 3, 4] {
+        let at = whole.match_indices('\n').nth(cut).unwrap().0 + 7;
+        stage.file("r.jsonl", &whole[..at]);
+        assert_eq!(stage.run("locate rig -q --out r.jsonl --resume").code, 0);
+        assert_eq!(stage.read("r.jsonl"), whole, "after {cut} lines");
+    }
+}

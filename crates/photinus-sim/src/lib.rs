@@ -11,6 +11,7 @@
 
 pub mod background;
 pub mod dataset;
+pub mod faults;
 pub mod motion;
 pub mod occlusion;
 pub mod optics;

@@ -6,6 +6,7 @@ use nalgebra::{Matrix2, Vector2};
 use photinus_io::results::SpotRecord;
 use serde::Serialize;
 
+use super::classes::{ClassScore, SpotClass};
 use super::range::{ByRange, RangeBins};
 use super::spread::{Spread, mean, share};
 use crate::frames::ComparedFrame;
@@ -18,6 +19,8 @@ pub struct Spots {
     /// its neighbour is at; one of no neighbour counts over all alone.
     #[serde(flatten)]
     pub by_range: ByRange<SpotScore>,
+    /// Spots of one LED alone, by what they look like.
+    pub classes: BTreeMap<SpotClass, ClassScore>,
     /// LEDs missed because what is there was rejected, by the reason.
     pub rejected_leds: BTreeMap<String, usize>,
 }
@@ -61,9 +64,10 @@ enum Count<'a> {
 
 /// A spot of one LED alone, and how far off it is.
 #[derive(Clone, Copy)]
-struct Centroid<'a> {
+pub(crate) struct Centroid<'a> {
     spot: &'a SpotRecord,
-    error_px: Vector2<f64>,
+    class: SpotClass,
+    pub(crate) error_px: Vector2<f64>,
 }
 
 impl Spots {
@@ -77,7 +81,15 @@ impl Spots {
                 }
             }
         }
-        Self { by_range: ByRange::new(bins, &counts, |(range_m, _)| *range_m, SpotScore::new), rejected_leds }
+        let mut by_class: BTreeMap<SpotClass, Vec<Centroid<'_>>> = BTreeMap::new();
+        for centroid in counts.iter().filter_map(|(_, count)| count.centroid()) {
+            by_class.entry(centroid.class).or_default().push(centroid);
+        }
+        Self {
+            by_range: ByRange::new(bins, &counts, |(range_m, _)| *range_m, SpotScore::new),
+            classes: by_class.into_iter().map(|(class, all)| (class, ClassScore::new(&all))).collect(),
+            rejected_leds,
+        }
     }
 }
 
@@ -89,10 +101,10 @@ fn counts<'a>(frame: &ComparedFrame<'a>) -> Vec<(Option<f64>, Count<'a>)> {
     let mut counts = Vec::new();
     for (led, &fate) in pairing.leds.iter().zip(&pairing.led_fates) {
         let centroid = match fate {
-            LedFate::Found(spot) if !is_shared(spot) => {
-                let spot = &spots[spot];
+            LedFate::Found(index) if !is_shared(index) => {
+                let spot = &spots[index];
                 let error_px = Vector2::new(spot.u_px - led.led.u_px, spot.v_px - led.led.v_px);
-                Some(Centroid { spot, error_px })
+                Some(Centroid { spot, class: SpotClass::of(index, spots), error_px })
             }
             _ => None,
         };
@@ -116,13 +128,7 @@ fn reported_range_m(frame: &ComparedFrame<'_>, spot: usize) -> Option<f64> {
 impl SpotScore {
     fn new(counts: &[&(Option<f64>, Count<'_>)]) -> Self {
         let count = |of: fn(&Count<'_>) -> bool| counts.iter().filter(|(_, count)| of(count)).count();
-        let centroids: Vec<Centroid<'_>> = counts
-            .iter()
-            .filter_map(|(_, count)| match count {
-                Count::Led(_, centroid) => *centroid,
-                Count::Double | Count::False => None,
-            })
-            .collect();
+        let centroids: Vec<Centroid<'_>> = counts.iter().filter_map(|(_, count)| count.centroid()).collect();
         let found = count(|count| matches!(count, Count::Led(LedFate::Found(_), _)));
         let missed = count(|count| matches!(count, Count::Led(LedFate::Missed | LedFate::Rejected(_), _)));
         let double = count(|count| matches!(count, Count::Double));
@@ -144,8 +150,18 @@ impl SpotScore {
     }
 }
 
+impl<'a> Count<'a> {
+    fn centroid(&self) -> Option<Centroid<'a>> {
+        match self {
+            Self::Led(_, centroid) => *centroid,
+            Self::Double | Self::False => None,
+        }
+    }
+}
+
 impl Centroid<'_> {
-    fn nees(&self) -> Option<f64> {
+    /// The squared error over the covariance that the spot claims; `None` where that cannot be inverted.
+    pub(crate) fn nees(&self) -> Option<f64> {
         let [[uu, uv], [vu, vv]] = self.spot.covariance_px2;
         let inverse = Matrix2::new(uu, uv, vu, vv).try_inverse()?;
         Some(self.error_px.dot(&(inverse * self.error_px))).filter(|nees| nees.is_finite())
@@ -190,6 +206,10 @@ mod tests {
         assert!((all.centroid_bias_u_px.unwrap() - 0.15).abs() < 1e-12);
         assert!((all.centroid_bias_v_px.unwrap() - 0.2).abs() < 1e-12);
         assert!((all.centroid_nees.unwrap() - 0.25 * 12.0 / 2.0).abs() < 1e-9);
+        // The second spot is of two LEDs, the fourth a double: one is left alone, one is beside its double.
+        let classes: Vec<_> = scores.classes.iter().map(|(class, score)| (*class, score.count)).collect();
+        assert_eq!(classes, [(SpotClass::Small, 1), (SpotClass::Beside, 1)]);
+        assert!((scores.classes[&SpotClass::Small].nees.unwrap() - 0.25 * 12.0).abs() < 1e-9);
         let bins: Vec<_> = scores.by_range.bins.iter().map(|bin| (bin.from_m, bin.score.recall)).collect();
         assert_eq!(bins, [(2.0, Some(0.0)), (4.0, None), (8.0, Some(0.75))]);
         assert_eq!(

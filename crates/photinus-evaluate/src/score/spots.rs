@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use nalgebra::{Matrix2, Vector2};
+use photinus_io::dataset::TruthLed;
 use photinus_io::results::SpotRecord;
 use serde::Serialize;
 
@@ -11,6 +12,9 @@ use super::range::{ByRange, RangeBins};
 use super::spread::{Spread, mean, share};
 use crate::frames::ComparedFrame;
 use crate::pairing::leds::{LedFate, SpotFate};
+
+/// LEDs that are no further apart are seen in one place, px.
+const SAME_PLACE_PX: f64 = 0.05;
 
 /// Spots against the LEDs of truth.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -97,11 +101,18 @@ impl Spots {
 fn counts<'a>(frame: &ComparedFrame<'a>) -> Vec<(Option<f64>, Count<'a>)> {
     let pairing = &frame.leds;
     let spots = frame.record.map_or(&[][..], |record| &record.spots);
-    let is_shared = |spot: usize| pairing.led_fates.contains(&LedFate::Merged(spot));
+    // LEDs in one place are one light.
+    let is_shared = |spot: usize, own: &TruthLed| {
+        let others =
+            pairing.leds.iter().zip(&pairing.led_fates).filter(|(_, fate)| **fate == LedFate::Merged(spot));
+        others.into_iter().any(|(other, _)| {
+            libm::hypot(other.led.u_px - own.u_px, other.led.v_px - own.v_px) > SAME_PLACE_PX
+        })
+    };
     let mut counts = Vec::new();
     for (led, &fate) in pairing.leds.iter().zip(&pairing.led_fates) {
         let centroid = match fate {
-            LedFate::Found(index) if !is_shared(index) => {
+            LedFate::Found(index) if !is_shared(index, led.led) => {
                 let spot = &spots[index];
                 let error_px = Vector2::new(spot.u_px - led.led.u_px, spot.v_px - led.led.v_px);
                 Some(Centroid { spot, class: SpotClass::of(index, spots), error_px })
@@ -217,6 +228,18 @@ mod tests {
             Some(0.0),
             "binned where its neighbour was said to be"
         );
+    }
+
+    #[test]
+    fn leds_in_one_place_are_one_light() {
+        let count = |apart_px: f64| {
+            let leds = [[100.0, 100.0], [100.0 + apart_px, 100.0]];
+            let truth = [truth(0, vec![shining(1, [0.0, 0.0, 4.0], &leds)])];
+            let results = [record(0, vec![spot(100.0, 100.0, 4)], vec![])];
+            let scores = evaluate(&truth, &results, &Settings::default()).unwrap().scores.spots.unwrap();
+            scores.by_range.overall.centroid_error_px.count
+        };
+        assert_eq!((count(0.01), count(1.0)), (1, 0));
     }
 
     #[test]

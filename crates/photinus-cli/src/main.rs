@@ -4,6 +4,7 @@
 //! input -> run: detect or locate, frame by frame -> output (JSON lines, CSV, overlay, lines to read) -> summary
 //! info, convert: what a file holds, and the same in another format
 //! simulate: a scene -> frames with truth
+//! inject: a dataset -> the same with faults
 //! evaluate: results against the truth of a dataset
 //! calibrate: photos of a grid -> a camera whose errors are known
 //! demo: all of it on a flight that the program carries along
@@ -20,6 +21,7 @@ mod detect;
 mod evaluate;
 mod failure;
 mod info;
+mod inject;
 mod input;
 mod kind;
 mod locate;
@@ -71,6 +73,7 @@ enum Command {
     Info(info::Args),
     Convert(convert::Args),
     Simulate(simulate::Args),
+    Inject(inject::Args),
     Evaluate(evaluate::Args),
     Demo(demo::Args),
     Reproduce(reproduce::Args),
@@ -83,6 +86,7 @@ fn main() -> ExitCode {
         Command::Locate(args) => args.quiet(),
         Command::Detect(args) => args.quiet(),
         Command::Simulate(args) => args.quiet(),
+        Command::Inject(args) => args.quiet(),
         Command::Evaluate(args) => args.quiet(),
         Command::Reproduce(args) => args.quiet(),
         Command::Calibrate(args) => args.quiet(),
@@ -95,6 +99,7 @@ fn main() -> ExitCode {
         Command::Info(args) => info::run(&args, &terminal),
         Command::Convert(args) => convert::run(&args, &mut terminal),
         Command::Simulate(args) => simulate::run(&args, &mut terminal),
+        Command::Inject(args) => inject::run(&args, &mut terminal),
         Command::Evaluate(args) => evaluate::run(&args, &terminal),
         Command::Demo(args) => demo::run(&args, &mut terminal),
         Command::Reproduce(args) => reproduce::run(&args, &mut terminal),

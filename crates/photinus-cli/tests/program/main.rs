@@ -15,6 +15,7 @@ mod calibrate_spot_size;
 mod commands;
 mod demo;
 mod evaluate;
+mod inject;
 mod real_photos;
 mod reproduce;
 mod simulate;

@@ -9,7 +9,7 @@ pub(crate) fn rows(eye: &Eye, frames: u64) -> Vec<(Row, u64)> {
         for vehicles in [5_usize, 10, 20, 50] {
             let mut row = Row::plain(format!("{vehicles} vehicles"), eye, arms);
             row.vehicles = vehicles;
-            row.ranges_m = [3.0, 20.0];
+            row.ranges_m = [3.0, 15.0];
             rows.push((row, (frames / vehicles as u64).max(1)));
         }
     }

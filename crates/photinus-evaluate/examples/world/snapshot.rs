@@ -25,7 +25,7 @@ fn rows() -> Vec<(Row, u64)> {
     let crowd = |vehicles: usize, arms: usize| {
         let mut row = Row::plain(format!("{vehicles} vehicles"), &eye, arms);
         row.vehicles = vehicles;
-        row.ranges_m = [3.0, 20.0];
+        row.ranges_m = [3.0, 15.0];
         (row, FRAMES / vehicles as u64)
     };
     let gravity_rad = 5.0 * std::f64::consts::PI / 180.0;

@@ -10,6 +10,7 @@
 //! and place.
 
 pub mod background;
+pub mod cameras;
 pub mod dataset;
 pub mod motion;
 pub mod occlusion;

@@ -84,6 +84,7 @@ impl Simulator<'_> {
             let aureole_e = sun.as_ref().map_or(0.0, |sun| sun.aureole_e(&node.place));
             (even_e + electrons(radiance) * node.etendue_sr + aureole_e + corner_e) as f32
         });
+        self.readout.smear_background(&mut self.background, self.charge.height());
         if let Some(sun) = sun {
             self.fill_disc(&sun);
         }
@@ -112,6 +113,7 @@ impl Simulator<'_> {
                 electrons,
                 off_axis_rad: bearing.off_axis_rad(),
                 radius_px: 0.0,
+                outward: PointLight::outward([place.u, place.v], self.axis_px),
             };
             scene.preset.lens.spread.draw(&light, &mut self.charge);
             all_e += electrons;

@@ -37,6 +37,8 @@ pub struct Simulator<'a> {
     scene: &'a Scene,
     mounted: &'a MountedCamera,
     camera_index: usize,
+    /// Where the optical axis meets the image.
+    axis_px: [f64; 2],
     unit_factors: Vec<Vec<f64>>,
     hot_pixels: Vec<(usize, usize, f32)>,
     charge: Charge,
@@ -88,12 +90,13 @@ impl<'a> Simulator<'a> {
             scene,
             mounted,
             camera_index: camera,
+            axis_px: [mounted.camera.model().centre().u, mounted.camera.model().centre().v],
             unit_factors,
             hot_pixels: (0..count).map(hot).collect(),
             charge: Charge::new(width, height),
             background: Background::new(width, height),
             backdrop: Backdrop::new(&mounted.camera, &scene.preset.lens),
-            readout: Readout::new(sensor),
+            readout: Readout::of_unit(sensor, (width, height), hash(scene.seed ^ ((camera as u64) << 32))),
         })
     }
 
@@ -109,9 +112,7 @@ impl<'a> Simulator<'a> {
         for &(u, v, dark) in &self.hot_pixels {
             self.charge.add(u, v, dark);
         }
-        self.readout.shot(&mut self.charge, key);
-        let sensor = &self.scene.preset.sensor;
-        sensor.overflow.settle(&mut self.charge, sensor.full_well_e);
+        self.readout.expose(&mut self.charge, key);
         let world_from_camera = self.world_from_camera(middle_s);
         self.lay_background(&world_from_camera, electrons);
         let down = world_from_camera.rotation.inverse() * -Vector3::z();

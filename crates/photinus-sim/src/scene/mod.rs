@@ -3,6 +3,7 @@
 //! Paths in a scene are relative to the scene's folder. Unknown keys are refused; every refusal names file, key and
 //! reason. The keys are described in docs/scenes.md.
 
+mod camera_table;
 mod check;
 mod read;
 mod table;

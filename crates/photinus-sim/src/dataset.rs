@@ -58,7 +58,7 @@ mod tests {
     use photinus_io::{airframe::read_airframe, read_camera};
 
     use super::*;
-    use crate::render::Simulator;
+    use crate::Simulator;
 
     #[test]
     fn what_is_written_is_read_back() {

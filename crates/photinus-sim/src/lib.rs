@@ -3,8 +3,13 @@
 //! The physics is a chain, a module per stage, in the order in which light takes it:
 //!
 //! ```text
-//! scene (motion) -> source -> (inverse square) -> occlusion -> optics -> background -> sensor -> render: frame, truth
+//! scene (motion) -> simulator -> snapshot
+//!                                   |
+//!     source -> (inverse square) -> occlusion -> optics -> background -> sensor -> render: frame, truth
 //! ```
+//!
+//! A [`Snapshot`] is the world during one exposure; [`Renderer`] knows nothing else. [`Simulator`] drives it by a scene; whatever
+//! integrates its own vehicles drives it step by step.
 //!
 //! The same seed gives the same bytes, whatever the number of threads: every random number is a function of seed, frame
 //! and place.
@@ -20,7 +25,11 @@ pub mod receding;
 pub mod render;
 pub mod scene;
 pub mod sensor;
+pub mod simulator;
+pub mod snapshot;
 pub mod source;
 
-pub use render::{Rendered, Simulator};
+pub use render::{CameraView, Rendered, Renderer};
 pub use scene::Scene;
+pub use simulator::Simulator;
+pub use snapshot::Snapshot;

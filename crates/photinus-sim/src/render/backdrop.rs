@@ -5,10 +5,11 @@ use core::f64::consts::PI;
 use nalgebra::{Isometry3, Vector3};
 use photinus::camera::{Bearing, Camera, Pixel};
 
-use super::Simulator;
+use super::Renderer;
 use crate::background::{Daylight, Water};
 use crate::optics::{Lens, PointLight};
 use crate::sensor::{Background, hash};
+use crate::snapshot::Snapshot;
 
 /// For every node of the background: where it looks, and how much of a radiance it gathers.
 #[derive(Clone, Debug)]
@@ -56,29 +57,33 @@ struct SunDisc {
     radius_px: f64,
 }
 
-impl Simulator<'_> {
+impl Renderer {
     /// Share of the sun's light that scatters about its image, falling with the square of the distance from it.
     const AUREOLE: f64 = 0.02;
 
     /// Lays sky, ground, water, dark current and glare under the frame, and the sun's disc into it.
-    pub(super) fn lay_background(&mut self, world_from_camera: &Isometry3<f64>, marker_e: f64) {
-        let scene = self.scene;
-        let (preset, exposure_s) = (&scene.preset, scene.exposure_us * 1e-6);
-        let sun = self.sun_disc(world_from_camera);
+    pub(super) fn lay_background(
+        &mut self,
+        snapshot: &Snapshot,
+        world_from_camera: &Isometry3<f64>,
+        marker_e: f64,
+    ) {
+        let (lens, sensor) = (&self.view.lens, &self.view.sensor);
+        let exposure_s = snapshot.exposure.length_s;
+        let sun = self.sun_disc(snapshot, world_from_camera);
         let all_e = marker_e + sun.as_ref().map_or(0.0, |sun| sun.electrons);
         let pixels = (self.charge.width() * self.charge.height()) as f64;
-        let even_e =
-            preset.lens.veiling_glare * all_e / pixels + preset.sensor.dark_current_e_per_s * exposure_s;
-        let corner_e = preset.sensor.corner_offset_dn * preset.sensor.electrons_per_dn;
+        let even_e = lens.veiling_glare * all_e / pixels + sensor.dark_current_e_per_s * exposure_s;
+        let corner_e = sensor.corner_offset_dn * sensor.electrons_per_dn;
         let electrons = |radiance: f64| {
-            let power_w = radiance * preset.lens.pupil_m2 * preset.lens.transmission;
-            preset.sensor.photo_electrons(power_w, exposure_s, preset.emitter.photon_j())
+            let power_w = radiance * lens.pupil_m2 * lens.transmission;
+            sensor.photo_electrons(power_w, exposure_s, snapshot.emitter.photon_j())
         };
         let mut nodes = self.backdrop.nodes.iter();
         self.background.fill(|_, _| {
             let Some(node) = nodes.next() else { return 0.0 };
-            let radiance = scene.daylight.map_or(0.0, |daylight| {
-                seen_radiance(&daylight, scene.water, &(world_from_camera.rotation * node.direction))
+            let radiance = snapshot.daylight.map_or(0.0, |daylight| {
+                seen_radiance(&daylight, snapshot.water, &(world_from_camera.rotation * node.direction))
             });
             let corner_e = corner_e * node.corner;
             let aureole_e = sun.as_ref().map_or(0.0, |sun| sun.aureole_e(&node.place));
@@ -91,12 +96,14 @@ impl Simulator<'_> {
     }
 
     /// Draws the sun's glints on water; gives their photo-electrons.
-    pub(super) fn draw_glints(&mut self, middle_s: f64, key: u64) -> f64 {
-        let scene = self.scene;
-        let (Some(water), Some(daylight)) = (scene.water, scene.daylight) else { return 0.0 };
-        let (Some(sun), world_from_camera) = (daylight.sun(), self.world_from_camera(middle_s)) else {
-            return 0.0;
-        };
+    pub(super) fn draw_glints(
+        &mut self,
+        snapshot: &Snapshot,
+        world_from_camera: &Isometry3<f64>,
+        key: u64,
+    ) -> f64 {
+        let (Some(water), Some(daylight)) = (snapshot.water, snapshot.daylight) else { return 0.0 };
+        let Some(sun) = daylight.sun() else { return 0.0 };
         if world_from_camera.translation.z <= water.level_m {
             return 0.0;
         }
@@ -105,8 +112,8 @@ impl Simulator<'_> {
             let Some((direction, share)) = water.glint(sun, index, hash(key ^ 0x6117)) else { continue };
             let seen = world_from_camera.rotation.inverse() * direction;
             let Some(bearing) = Bearing::new(seen) else { continue };
-            let Some(place) = self.mounted.camera.pixel(&bearing) else { continue };
-            let electrons = share * self.sun_electrons(&daylight, bearing.off_axis_rad());
+            let Some(place) = self.view.camera.pixel(&bearing) else { continue };
+            let electrons = share * self.sun_electrons(snapshot, &daylight, bearing.off_axis_rad());
             let light = PointLight {
                 u_px: place.u,
                 v_px: place.v,
@@ -115,32 +122,32 @@ impl Simulator<'_> {
                 radius_px: 0.0,
                 outward: PointLight::outward([place.u, place.v], self.axis_px),
             };
-            scene.preset.lens.spread.draw(&light, &mut self.charge);
+            self.view.lens.spread.draw(&light, &mut self.charge);
             all_e += electrons;
         }
         all_e
     }
 
-    fn sun_electrons(&self, daylight: &Daylight, off_axis_rad: f64) -> f64 {
-        let preset = &self.scene.preset;
-        let power_w = preset.lens.gathered_w(daylight.sun_w_m2(), off_axis_rad);
-        preset.sensor.photo_electrons(power_w, self.scene.exposure_us * 1e-6, preset.emitter.photon_j())
+    fn sun_electrons(&self, snapshot: &Snapshot, daylight: &Daylight, off_axis_rad: f64) -> f64 {
+        let power_w = self.view.lens.gathered_w(daylight.sun_w_m2(), off_axis_rad);
+        let (exposure_s, photon_j) = (snapshot.exposure.length_s, snapshot.emitter.photon_j());
+        self.view.sensor.photo_electrons(power_w, exposure_s, photon_j)
     }
 
     /// The sun where it stands in the image. It overflows so far that its size is a matter of charge: the disc whose
     /// full wells hold all its photo-electrons (see `sensor/overflow.rs`), not less than the sun itself.
-    fn sun_disc(&self, world_from_camera: &Isometry3<f64>) -> Option<SunDisc> {
-        let daylight = self.scene.daylight?;
+    fn sun_disc(&self, snapshot: &Snapshot, world_from_camera: &Isometry3<f64>) -> Option<SunDisc> {
+        let daylight = snapshot.daylight?;
         let bearing = Bearing::new(world_from_camera.rotation.inverse() * daylight.sun()?.into_inner())?;
-        let centre = self.mounted.camera.pixel(&bearing)?;
-        let electrons = self.sun_electrons(&daylight, bearing.off_axis_rad());
-        let own_px = Daylight::SUN_RADIUS_RAD / self.mounted.camera.rad_per_px(centre)?;
-        let full_px = (electrons / (PI * self.scene.preset.sensor.full_well_e)).sqrt();
+        let centre = self.view.camera.pixel(&bearing)?;
+        let electrons = self.sun_electrons(snapshot, &daylight, bearing.off_axis_rad());
+        let own_px = Daylight::SUN_RADIUS_RAD / self.view.camera.rad_per_px(centre)?;
+        let full_px = (electrons / (PI * self.view.sensor.full_well_e)).sqrt();
         Some(SunDisc { centre, electrons, radius_px: full_px.max(own_px) })
     }
 
     fn fill_disc(&mut self, sun: &SunDisc) {
-        let well = self.scene.preset.sensor.full_well_e as f32;
+        let well = self.view.sensor.full_well_e as f32;
         let reach_px = sun.radius_px + 1.0;
         let (width, height) = (self.charge.width() as f64, self.charge.height() as f64);
         let rows =
@@ -163,7 +170,7 @@ impl SunDisc {
     fn aureole_e(&self, place: &Pixel) -> f64 {
         let (du, dv) = (place.u - self.centre.u, place.v - self.centre.v);
         let core_px = self.radius_px.max(Background::STEP_PX as f64);
-        Simulator::AUREOLE * self.electrons / (2.0 * PI * (du * du + dv * dv + core_px * core_px))
+        Renderer::AUREOLE * self.electrons / (2.0 * PI * (du * du + dv * dv + core_px * core_px))
     }
 }
 

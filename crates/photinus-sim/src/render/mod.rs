@@ -1,24 +1,23 @@
-//! Scene -> frames with truth.
+//! Snapshot -> frame with truth.
 //!
 //! A frame in the order of the light: every LED that shines towards the camera is drawn where it falls (`lights.rs`), hot
 //! pixels and shot noise are added, charge overflows, the sun's disc and the background are laid under it (`backdrop.rs`), and one
-//! pass over the rows reads it out. A frame depends on scene and number alone, so threads may share them out as they like.
+//! pass over the rows reads it out. A frame depends on camera, seed, snapshot and number alone.
 
 mod backdrop;
 mod lights;
-mod parallel;
-#[cfg(test)]
-mod tests;
+mod view;
 
-use nalgebra::{Isometry3, Unit, Vector3};
+use std::sync::Arc;
+
+use nalgebra::{Unit, Vector3};
 use photinus_io::dataset::TruthFrame;
 use photinus_io::image::GreyImage;
-use rand_distr::{Distribution, StandardNormal};
-use rand_pcg::Pcg64;
 
-use crate::scene::{MountedCamera, Scene};
-use crate::sensor::{Background, Charge, Readout, Shutter, hash};
+use crate::sensor::{Background, Charge, Readout, hash};
+use crate::snapshot::Snapshot;
 use backdrop::Backdrop;
+pub use view::CameraView;
 
 /// A frame and what was there.
 #[derive(Clone, Debug, PartialEq)]
@@ -31,113 +30,83 @@ pub struct Rendered {
     pub gravity: Unit<Vector3<f64>>,
 }
 
-/// Renders the frames of one camera of a scene.
+/// Renders what one camera sees. It keeps the camera's hot pixels and its own memory; the world is handed to it.
 #[derive(Clone, Debug)]
-pub struct Simulator<'a> {
-    scene: &'a Scene,
-    mounted: &'a MountedCamera,
-    camera_index: usize,
+pub struct Renderer {
+    view: Arc<CameraView>,
     /// Where the optical axis meets the image.
     axis_px: [f64; 2],
-    unit_factors: Vec<Vec<f64>>,
-    hot_pixels: Vec<(usize, usize, f32)>,
+    seed: u64,
+    hot_pixels: Vec<HotPixel>,
     charge: Charge,
     background: Background,
     backdrop: Backdrop,
     readout: Readout,
 }
 
-/// The three instants between which motion during an exposure is taken as quadratic, s.
 #[derive(Clone, Copy, Debug)]
-struct Exposure {
-    start_s: f64,
-    length_s: f64,
+struct HotPixel {
+    u: usize,
+    v: usize,
+    dark_e_per_s: f64,
 }
 
-impl Exposure {
-    fn instants_s(&self) -> [f64; 3] {
-        [self.start_s, self.start_s + 0.5 * self.length_s, self.start_s + self.length_s]
-    }
-
-    fn delayed(&self, delay_s: f64) -> Self {
-        Self { start_s: self.start_s + delay_s, ..*self }
-    }
-}
-
-impl<'a> Simulator<'a> {
-    /// A simulator of camera number `camera` of a scene; `None` when there is no such camera.
-    pub fn new(scene: &'a Scene, camera: usize) -> Option<Self> {
-        let mounted = scene.cameras.get(camera)?;
-        let (width, height) = (mounted.camera.width(), mounted.camera.height());
-        let sensor = &scene.preset.sensor;
-        let mut random = Pcg64::new(u128::from(scene.seed), 0x1ed);
-        let emitter = &scene.preset.emitter;
-        let mut factor = || emitter.unit_factor(StandardNormal.sample(&mut random));
-        let unit_factors = scene
-            .targets
-            .iter()
-            .map(|target| target.airframe.leds().iter().map(|_| factor()).collect())
-            .collect();
-        let count = (sensor.hot_pixel_share * (width * height) as f64).round() as u64;
+impl Renderer {
+    /// A renderer for a camera; `seed` is that of its hot pixels and its noise.
+    pub fn new(view: CameraView, seed: u64) -> Self {
+        let (width, height) = (view.camera.width(), view.camera.height());
+        let count = (view.sensor.hot_pixel_share * (width * height) as f64).round() as u64;
         let hot = |index: u64| {
-            let draw = hash(scene.seed ^ hash(index ^ ((camera as u64) << 32)));
-            let (u, v) = (draw as usize % width, (draw >> 20) as usize % height);
+            let draw = hash(seed ^ hash(index));
             let uniform = ((hash(draw) >> 11) as f64 + 1.0) / (1_u64 << 53) as f64;
-            let electrons = -libm::log(uniform) * sensor.hot_pixel_e_per_s * scene.exposure_us * 1e-6;
-            (u, v, electrons as f32)
+            let dark_e_per_s = -libm::log(uniform) * view.sensor.hot_pixel_e_per_s;
+            HotPixel { u: draw as usize % width, v: (draw >> 20) as usize % height, dark_e_per_s }
         };
-        Some(Self {
-            scene,
-            mounted,
-            camera_index: camera,
-            axis_px: [mounted.camera.model().centre().u, mounted.camera.model().centre().v],
-            unit_factors,
+        let axis = view.camera.model().centre();
+        Self {
+            seed,
+            axis_px: [axis.u, axis.v],
             hot_pixels: (0..count).map(hot).collect(),
             charge: Charge::new(width, height),
             background: Background::new(width, height),
-            backdrop: Backdrop::new(&mounted.camera, &scene.preset.lens),
-            readout: Readout::of_unit(sensor, (width, height), hash(scene.seed ^ ((camera as u64) << 32))),
-        })
+            backdrop: Backdrop::new(&view.camera, &view.lens),
+            readout: Readout::of_unit(&view.sensor, (width, height), seed),
+            view: Arc::new(view),
+        }
     }
 
-    /// Frame number `number`, counted from 0; any, in any order.
-    pub fn frame(&mut self, number: u64) -> Rendered {
-        let exposure =
-            Exposure { start_s: number as f64 / self.scene.rate_hz, length_s: self.scene.exposure_us * 1e-6 };
-        let middle_s = exposure.instants_s()[1];
-        let key = hash(self.scene.seed ^ hash(number) ^ ((self.camera_index as u64) << 56));
+    /// The camera.
+    pub fn view(&self) -> &CameraView {
+        &self.view
+    }
+
+    /// Renders a snapshot; `frame` is its number in the truth, and tells its noise from that of other frames.
+    pub fn render(&mut self, snapshot: &Snapshot, frame: u64) -> Rendered {
+        let key = hash(self.seed ^ hash(frame));
+        let exposure = snapshot.exposure;
+        let world_from_camera = snapshot.camera.pose(exposure.share(0.5 * exposure.length_s));
         self.charge.clear();
-        let (neighbours, mut electrons) = self.draw_markers(exposure);
-        electrons += self.draw_glints(middle_s, key);
-        for &(u, v, dark) in &self.hot_pixels {
-            self.charge.add(u, v, dark);
+        let (neighbours, mut electrons) = self.draw_markers(snapshot);
+        electrons += self.draw_glints(snapshot, &world_from_camera, key);
+        for hot in &self.hot_pixels {
+            self.charge.add(hot.u, hot.v, (hot.dark_e_per_s * exposure.length_s) as f32);
         }
         self.readout.expose(&mut self.charge, key);
-        let world_from_camera = self.world_from_camera(middle_s);
-        self.lay_background(&world_from_camera, electrons);
+        self.lay_background(snapshot, &world_from_camera, electrons);
         let down = world_from_camera.rotation.inverse() * -Vector3::z();
         Rendered {
             image: self.read(key),
-            truth: TruthFrame { frame: number, time_s: middle_s, neighbours },
+            truth: TruthFrame { frame, time_s: exposure.middle_s(), neighbours },
             gravity: Unit::new_normalize(down),
         }
     }
 
-    /// All frames of the scene, one after the other.
-    pub fn frames(&mut self) -> impl Iterator<Item = Rendered> + '_ {
-        (0..self.scene.frames).map(|number| self.frame(number))
-    }
-
-    fn world_from_camera(&self, time_s: f64) -> Isometry3<f64> {
-        self.scene.observer.pose(time_s) * self.mounted.body_from_camera
-    }
-
-    /// How much later than the first row a row is exposed, s.
-    fn delay_s(&self, row: f64) -> f64 {
-        match self.scene.preset.sensor.shutter {
-            Shutter::Global => 0.0,
-            Shutter::Rolling { line_s } => line_s * row,
-        }
+    /// The markers' light alone, without noise, before anything overflows.
+    #[cfg(test)]
+    pub(crate) fn markers(&mut self, snapshot: &Snapshot) -> Charge {
+        self.charge.clear();
+        self.draw_markers(snapshot);
+        self.charge.clone()
     }
 
     fn read(&mut self, key: u64) -> GreyImage {

@@ -7,6 +7,8 @@ use photinus::camera::{Bearing, Pixel};
 
 use super::*;
 use crate::background::Water;
+use crate::sensor::{Charge, Shutter};
+use crate::snapshot::Kinematics;
 
 /// A camera at the origin that looks east, and whatever `rest` says.
 fn scene(exposure_us: f64, rest: &str) -> Scene {
@@ -31,6 +33,12 @@ fn led(motion: &str, more: &str) -> String {
 
 fn first(scene: &Scene) -> Rendered {
     Simulator::new(scene, 0).unwrap().frame(0)
+}
+
+/// The markers' light alone, without noise, in an exposure of its own.
+fn exposed(simulator: &mut Simulator, start_s: f64, length_s: f64) -> Charge {
+    simulator.expose(simulator.renderer.view().exposure(start_s, length_s));
+    simulator.renderer.markers(&simulator.snapshot)
 }
 
 /// Sum of grey levels above dark in a window of 25 px around a place.
@@ -68,11 +76,10 @@ fn a_moving_led_leaves_a_streak_of_its_way() {
     let expected_px = 265.442 * libm::atan(speed * 0.04 / 8.0);
     let mut simulator = Simulator::new(&scene, 0).unwrap();
     simulator.frame(20); // from 1.00 s on, just past the middle
-    simulator.charge.clear();
-    simulator.draw_markers(Exposure { start_s: 0.98, length_s: 0.04 });
+    let charge = exposed(&mut simulator, 0.98, 0.04);
     let (mut sum, mut mean, mut square) = (0.0, 0.0, 0.0);
     for v in 0..480 {
-        for (u, &e) in simulator.charge.row(v).iter().enumerate() {
+        for (u, &e) in charge.row(v).iter().enumerate() {
             let (u, e) = (u as f64, f64::from(e));
             sum += e;
             mean += e * u;
@@ -93,8 +100,8 @@ fn rows_of_a_rolling_shutter_see_a_mover_later() {
     let mut scene = scene(1000.0, &led(motion, ""));
     let mean_u = |scene: &Scene| {
         let mut simulator = Simulator::new(scene, 0).unwrap();
-        simulator.draw_markers(Exposure { start_s: 1.0, length_s: 1e-3 });
-        let row = (238..242).flat_map(|v| simulator.charge.row(v).iter().enumerate());
+        let charge = exposed(&mut simulator, 1.0, 1e-3);
+        let row = (238..242).flat_map(|v| charge.row(v).iter().enumerate());
         let (sum, mean) =
             row.fold((0.0, 0.0), |(s, m), (u, &e)| (s + f64::from(e), m + f64::from(e) * u as f64));
         mean / sum
@@ -166,10 +173,10 @@ fn water_shows_each_marker_upside_down_and_dimmer() {
     let water = "[water]\nlevel_m = 0.0\nwind_m_s = 0.0\n";
     let scene = scene(1000.0, &led("{ hover = { position_m = [6.0, 0.0, 3.0] } }", water));
     let mut simulator = Simulator::new(&scene, 0).unwrap();
-    simulator.draw_markers(Exposure { start_s: 0.0, length_s: 1e-3 });
+    let charge = exposed(&mut simulator, 0.0, 1e-3);
     let (mut direct_e, mut mirrored_e, mut row) = (0.0, 0.0, 0.0);
     for v in 0..480 {
-        let sum: f64 = simulator.charge.row(v).iter().map(|&e| f64::from(e)).sum();
+        let sum: f64 = charge.row(v).iter().map(|&e| f64::from(e)).sum();
         if v < 350 {
             direct_e += sum;
         } else {
@@ -196,8 +203,7 @@ fn the_sun_is_a_saturated_disc_where_it_stands() {
         led("{ hover = { position_m = [6.0, 0.0, 3.0] } }", "")
     );
     let scene = scene(1000.0, &rest);
-    let simulator = Simulator::new(&scene, 0).unwrap();
-    let world_from_camera = simulator.world_from_camera(0.0);
+    let world_from_camera = scene.observer.pose(0.0) * scene.cameras[0].body_from_camera;
     let towards = scene.daylight.unwrap().sun().unwrap().into_inner();
     let place = scene.cameras[0]
         .camera
@@ -250,4 +256,51 @@ fn a_frame_is_the_same_whoever_renders_it_and_when() {
     assert_ne!(Simulator::new(&other, 0).unwrap().frame(0).image, in_order[0].image);
     let leds: usize = in_order[0].truth.neighbours.iter().map(|neighbour| neighbour.leds.len()).sum();
     assert!(leds >= 24, "{leds} LEDs of twelve hexarotors are in view");
+}
+
+/// What a swarm does: its own states, its own snapshot, no scene.
+#[test]
+fn a_snapshot_made_by_hand_gives_the_frame_of_the_scene() {
+    let motion = "{ line = { from_m = [8.0, 1.9099, 3.0], to_m = [8.0, -1.9099, 3.0], duration_s = 2.0 } }";
+    let scene = scene(20_000.0, &led(motion, ""));
+    let mut simulator = Simulator::new(&scene, 0).unwrap();
+    let by_scene = simulator.frame(19);
+    let view = CameraView {
+        camera: scene.cameras[0].camera.clone(),
+        lens: scene.preset.lens.clone(),
+        sensor: scene.preset.sensor.clone(),
+    };
+    let mut renderer = Renderer::new(view, scene.seed);
+    let exposure = renderer.view().exposure(0.95, 0.02);
+    // the line is an arc of a cosine: at 0.96 s its place, speed and acceleration by hand
+    let (omega, half_m) = (core::f64::consts::FRAC_PI_2, 1.9099);
+    let (sin, cos) = libm::sincos(omega * 0.96);
+    let state = Kinematics {
+        pose: scene.targets[0].motion.pose(0.96),
+        velocity_m_s: Vector3::y() * (-half_m * omega * sin),
+        acceleration_m_s2: Vector3::y() * (-half_m * omega * omega * cos),
+        turn_rad_s: Vector3::zeros(),
+    };
+    let snapshot = Snapshot {
+        exposure,
+        camera: Moving::still(scene.observer.pose(0.0) * scene.cameras[0].body_from_camera),
+        vehicles: vec![Vehicle {
+            id: 1,
+            airframe: Arc::new(scene.targets[0].airframe.clone()),
+            solids: Arc::new([]),
+            motion: state.during(-0.01, 0.02),
+            leds: vec![LedLight::steady()],
+        }],
+        emitter: scene.preset.emitter,
+        daylight: None,
+        water: None,
+    };
+    // a driver may well live in a thread of its own
+    let by_hand = std::thread::scope(|scope| scope.spawn(|| renderer.render(&snapshot, 19)).join()).unwrap();
+    let (hand, scene) = (&by_hand.truth.neighbours[0], &by_scene.truth.neighbours[0]);
+    assert!((Vector3::from(hand.position_m) - Vector3::from(scene.position_m)).norm() < 1e-9);
+    assert!((hand.leds[0].u_px - scene.leds[0].u_px).abs() < 1e-6);
+    let pixels = |rendered: &Rendered| rendered.image.pixels().to_vec();
+    let differ = pixels(&by_hand).iter().zip(pixels(&by_scene)).filter(|(a, b)| a.abs_diff(*b) > 1).count();
+    assert_eq!(differ, 0, "pixels of a streak that differ by more than a level");
 }

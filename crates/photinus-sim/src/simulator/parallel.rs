@@ -3,12 +3,13 @@
 use std::ops::Range;
 use std::sync::mpsc::{Receiver, sync_channel};
 
-use super::{Rendered, Simulator};
+use super::Simulator;
+use crate::render::Rendered;
 
 /// Frames that a thread may be ahead of the one that takes them.
 const AHEAD: usize = 4;
 
-impl Simulator<'_> {
+impl Simulator {
     /// Renders `frames` on `threads` threads, at least one, and hands them to `take` in order; they are the same whatever
     /// the number of threads. Stops at the first error of `take`.
     ///

@@ -1,0 +1,126 @@
+//! Scene -> frames with truth: drives the renderer by what a scene says.
+//!
+//! A frame depends on scene and number alone: frames may be asked for in any order, and threads may share them out as they
+//! like (`parallel.rs`).
+
+mod parallel;
+#[cfg(test)]
+mod tests;
+
+use std::sync::Arc;
+
+use nalgebra::Isometry3;
+use photinus::airframe::Led;
+use rand_distr::{Distribution, StandardNormal};
+use rand_pcg::Pcg64;
+
+use crate::render::{CameraView, Rendered, Renderer};
+use crate::scene::{BlinkPlan, Scene, Target};
+use crate::snapshot::{Exposure, LedLight, Lit, Moving, Snapshot, Vehicle};
+use crate::source::Blink;
+
+/// Renders the frames of one camera of a scene.
+#[derive(Clone, Debug)]
+pub struct Simulator {
+    scene: Arc<Scene>,
+    body_from_camera: Isometry3<f64>,
+    blinks: Arc<[Vec<Option<Blink>>]>,
+    snapshot: Snapshot,
+    renderer: Renderer,
+}
+
+impl Simulator {
+    /// A simulator of camera number `camera` of a scene; `None` when there is no such camera. The scene is shared by its clones
+    /// (an `Arc` is taken as it is).
+    pub fn new(scene: impl Into<Arc<Scene>>, camera: usize) -> Option<Self> {
+        let scene: Arc<Scene> = scene.into();
+        let mounted = scene.cameras.get(camera)?;
+        let preset = &scene.preset;
+        let view = CameraView {
+            camera: mounted.camera.clone(),
+            lens: preset.lens.clone(),
+            sensor: preset.sensor.clone(),
+        };
+        // the cameras of a scene differ in their noise; the first one has the scene's seed itself
+        let renderer = Renderer::new(view, scene.seed ^ ((camera as u64) << 56));
+        let mut random = Pcg64::new(u128::from(scene.seed), 0x1ed);
+        let mut power = || preset.emitter.unit_factor(StandardNormal.sample(&mut random));
+        let vehicles = scene.targets.iter().map(|target| vehicle(target, &mut power)).collect();
+        let exposure = renderer.view().exposure(0.0, scene.exposure_us * 1e-6);
+        let snapshot = Snapshot {
+            exposure,
+            camera: Moving::still(mounted.body_from_camera),
+            vehicles,
+            emitter: preset.emitter,
+            daylight: scene.daylight,
+            water: scene.water,
+        };
+        let blinks = scene.targets.iter().map(blinks).collect();
+        Some(Self { body_from_camera: mounted.body_from_camera, blinks, snapshot, renderer, scene })
+    }
+
+    /// Frame number `number`, counted from 0; any, in any order.
+    pub fn frame(&mut self, number: u64) -> Rendered {
+        self.expose(self.exposure(number));
+        self.renderer.render(&self.snapshot, number)
+    }
+
+    /// All frames of the scene, one after the other.
+    pub fn frames(&mut self) -> impl Iterator<Item = Rendered> + '_ {
+        (0..self.scene.frames).map(|number| self.frame(number))
+    }
+
+    /// When frame number `number` is exposed.
+    pub fn exposure(&self, number: u64) -> Exposure {
+        let start_s = number as f64 / self.scene.rate_hz;
+        self.renderer.view().exposure(start_s, self.scene.exposure_us * 1e-6)
+    }
+
+    /// Brings the snapshot to an exposure.
+    fn expose(&mut self, exposure: Exposure) {
+        let instants_s = exposure.instants_s();
+        self.snapshot.exposure = exposure;
+        let observer = Moving::through(instants_s.map(|time_s| self.scene.observer.pose(time_s)));
+        self.snapshot.camera = observer.carrying(&self.body_from_camera);
+        let targets = self.scene.targets.iter().zip(self.blinks.iter());
+        for (vehicle, (target, blinks)) in self.snapshot.vehicles.iter_mut().zip(targets) {
+            vehicle.motion = Moving::through(instants_s.map(|time_s| target.motion.pose(time_s)));
+            for (led, blink) in vehicle.leds.iter_mut().zip(blinks) {
+                if let Some(blink) = blink {
+                    blink.light(exposure.start_s, exposure.span_s(), &mut led.lit);
+                }
+            }
+        }
+    }
+}
+
+impl From<&Scene> for Arc<Scene> {
+    fn from(scene: &Scene) -> Self {
+        Self::new(scene.clone())
+    }
+}
+
+fn vehicle(target: &Target, power: &mut impl FnMut() -> f64) -> Vehicle {
+    let light = |_: &Led| LedLight { power: power(), lit: Lit::always() };
+    Vehicle {
+        id: target.id,
+        airframe: Arc::new(target.airframe.clone()),
+        solids: target.solids.clone().into(),
+        motion: Moving::still(Isometry3::identity()),
+        leds: target.airframe.leds().iter().map(light).collect(),
+    }
+}
+
+/// The signal of each LED of a target; `None` where it shines all the time.
+fn blinks(target: &Target) -> Vec<Option<Blink>> {
+    let of = |led: &Led| target.blink.as_ref().and_then(|plan| plan.of(led));
+    target.airframe.leds().iter().map(of).collect()
+}
+
+impl BlinkPlan {
+    /// The signal of an LED.
+    fn of(&self, led: &Led) -> Option<Blink> {
+        let word = self.codes.words().get(self.first_word + led.signal.unwrap_or(0) as usize)?;
+        Blink::new(word.clone(), self.rate_hz, self.shift_s)
+    }
+}

@@ -4,11 +4,13 @@
 //! 1.5 px), in what a full pixel reads (230 to 255, with and without noise of its own) and does with the excess (0 to 1 of it
 //! spilled), in vignetting, and in noise (0.3 to 3 times). What one camera does not say is that of [`plain`].
 
+use std::path::Path;
+
 use photinus::camera::{Camera, Ideal, IdealLaw, Model, Pixel};
 
 use crate::optics::{Aberrations, Gaussian, PointSpread, Vignette};
 use crate::preset::{BLUEFOX_FIT, Preset, bluefox};
-use crate::scene::Scene;
+use crate::scene::{Scene, parse_sampled};
 use crate::sensor::{ColumnSmear, Converter, Overflow, Pattern};
 
 /// A camera to try things on.
@@ -88,6 +90,11 @@ fn core_and_halo(core_px: f64, halo_px: f64, halo_share: f64) -> PointSpread {
     let core = Gaussian { share: 1.0 - halo_share, sigma_px: core_px };
     PointSpread::new(vec![core, Gaussian { share: halo_share, sigma_px: halo_px }], 0.0)
         .expect("two Gaussians")
+}
+
+/// The point spread of a real lens, from a table of the scenes.
+fn measured(text: &str) -> PointSpread {
+    PointSpread::sampled(parse_sampled(text, Path::new("a measured point spread")).expect("a table of ours"))
 }
 
 /// The cameras, in a fixed order; each with a name of its own.
@@ -205,6 +212,18 @@ pub fn worlds() -> Vec<World> {
                     Pattern { offset_dn: 1.0, column_offset_dn: 0.5, gain: 0.015, ..sensor.pattern };
                 (sensor.hot_pixel_share, sensor.hot_pixel_e_per_s) = (1e-4, 1e6);
             },
+        ),
+        world(
+            "measured-752",
+            "752x480, the point spread of the real photos of that size: a pixel and its neighbours",
+            W752,
+            &spread(measured(include_str!("../../../scenes/optics/measured-752x480.toml"))),
+        ),
+        world(
+            "measured-960",
+            "960x600, the point spread of the real photos of that size: a disc 4 px wide, uneven",
+            W960,
+            &spread(measured(include_str!("../../../scenes/optics/measured-960x600.toml"))),
         ),
         world("twelve-bits", "1280x1024 at 190 deg, 0.9 px, 12 bits, unequal gains", W1280, &|preset| {
             preset.lens.spread = gaussian(0.9);

@@ -28,6 +28,7 @@ pub mod sensor;
 pub mod simulator;
 pub mod snapshot;
 pub mod source;
+pub mod stacking;
 
 pub use render::{CameraView, Rendered, Renderer};
 pub use scene::Scene;

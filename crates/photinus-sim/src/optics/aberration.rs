@@ -31,7 +31,7 @@ pub(super) struct Part {
 const WHOLE: Part = Part { du_px: 0.0, dv_px: 0.0, share: 1.0 };
 
 /// Parts of the light are not farther apart than this many sigmas of what is drawn at each: their sum has no ripples.
-const APART: f64 = 1.2;
+const APART: f64 = 1.15;
 
 impl Aberrations {
     /// Largest elongation, coma over sigma and so on are limited by what is physical; the angle ends at 180 deg.
@@ -82,7 +82,7 @@ fn line(longer_px: f64, sigma_px: f64) -> Vec<(f64, f64)> {
         return vec![(0.0, 1.0)];
     }
     let step_px = (APART * sigma_px).min(0.8 * longer_px);
-    let reach = (3.5 * longer_px / step_px).ceil() as i32;
+    let reach = (3.6 * longer_px / step_px).ceil() as i32;
     let place = |index: i32| f64::from(index) * step_px;
     let weight = |index: i32| libm::exp(-0.5 * (place(index) / longer_px).powi(2));
     let sum: f64 = (-reach..=reach).map(weight).sum();

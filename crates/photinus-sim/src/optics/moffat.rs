@@ -16,9 +16,9 @@ fn width_px(fwhm_px: f64, beta: f64) -> f64 {
     0.5 * fwhm_px / (libm::exp2(1.0 / beta) - 1.0).sqrt()
 }
 
-/// The Gaussians of a profile; `None` unless the width is positive and `beta` from 1.2 to 20.
+/// The Gaussians of a profile; `None` unless the width is positive and `beta` from 1.25 to 20.
 pub(super) fn gaussians(fwhm_px: f64, beta: f64) -> Option<Vec<Gaussian>> {
-    if !(fwhm_px > 0.0 && fwhm_px.is_finite() && (1.2..=20.0).contains(&beta)) {
+    if !(fwhm_px > 0.0 && fwhm_px.is_finite() && (1.25..=20.0).contains(&beta)) {
         return None;
     }
     let (a_px, shape) = (width_px(fwhm_px, beta), beta - 1.0);

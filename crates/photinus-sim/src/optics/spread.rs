@@ -62,7 +62,7 @@ impl PointSpread {
     }
 
     /// Moffat's profile with its full width at half the summit, px, and its exponent: `None` unless the width is positive and
-    /// `beta` from 1.2 (wide wings) to 20 (nearly a Gaussian).
+    /// `beta` from 1.25 (wide wings) to 20 (nearly a Gaussian).
     pub fn moffat(fwhm_px: f64, beta: f64) -> Option<Self> {
         Self::new(moffat::gaussians(fwhm_px, beta)?, 0.0)
     }

@@ -177,7 +177,7 @@ impl SpreadTable {
             Self::Moffat { fwhm_px, beta } => {
                 let fwhm_px = width("moffat.fwhm_px", *fwhm_px)?;
                 let key = format!("{owner}.moffat.beta");
-                let beta = check.within(&key, *beta, (1.2, 20.0))?;
+                let beta = check.within(&key, *beta, (1.25, 20.0))?;
                 return PointSpread::moffat(fwhm_px, beta)
                     .ok_or_else(|| check.refuse(&key, "no such profile"));
             }
@@ -194,7 +194,13 @@ impl SpreadTable {
 
 /// Reads a measured point spread: `samples_per_px` and `rows`, see docs/scenes.md.
 fn read_sampled(path: &Path) -> Result<SampledSpread> {
-    let SampledTable { samples_per_px, rows } = read(path)?;
+    let text = std::fs::read_to_string(path).map_err(|error| Error::io(path, error))?;
+    parse_sampled(&text, path)
+}
+
+/// The same from its text; `path` is for messages.
+pub(crate) fn parse_sampled(text: &str, path: &Path) -> Result<SampledSpread> {
+    let SampledTable { samples_per_px, rows } = toml_table::parse(text, path)?;
     SampledSpread::new(samples_per_px, &rows).ok_or_else(|| {
         Error::format(path, "the rows make no point spread").advise(
             "give a square of numbers, none negative, with an odd side of more than 2 pixels and 1 to 16 samples per pixel",

@@ -10,6 +10,7 @@ mod table;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use camera_table::parse_sampled;
 use nalgebra::Isometry3;
 use photinus::airframe::Airframe;
 use photinus::camera::Camera;

@@ -15,6 +15,7 @@
 //! and place.
 
 pub mod background;
+pub mod cameras;
 pub mod dataset;
 pub mod faults;
 pub mod motion;
@@ -28,6 +29,7 @@ pub mod sensor;
 pub mod simulator;
 pub mod snapshot;
 pub mod source;
+pub mod stacking;
 
 pub use render::{CameraView, Rendered, Renderer};
 pub use scene::Scene;

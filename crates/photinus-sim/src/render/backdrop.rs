@@ -89,6 +89,7 @@ impl Renderer {
             let aureole_e = sun.as_ref().map_or(0.0, |sun| sun.aureole_e(&node.place));
             (even_e + electrons(radiance) * node.etendue_sr + aureole_e + corner_e) as f32
         });
+        self.readout.smear_background(&mut self.background, self.charge.height());
         if let Some(sun) = sun {
             self.fill_disc(&sun);
         }
@@ -119,6 +120,7 @@ impl Renderer {
                 electrons,
                 off_axis_rad: bearing.off_axis_rad(),
                 radius_px: 0.0,
+                outward: PointLight::outward([place.u, place.v], self.axis_px),
             };
             self.view.lens.spread.draw(&light, &mut self.charge);
             all_e += electrons;

@@ -139,7 +139,9 @@ impl Renderer {
             let (from, to) = (sample as f64 / samples, (sample as f64 + 1.0) / samples);
             let electrons = all_e * lit(from, to) / samples;
             let place = along(&path, 0.5 * (from + to));
-            let light = PointLight { u_px: place.u, v_px: place.v, electrons, off_axis_rad, radius_px };
+            let outward = PointLight::outward([place.u, place.v], self.axis_px);
+            let light =
+                PointLight { u_px: place.u, v_px: place.v, electrons, off_axis_rad, radius_px, outward };
             lens.spread.draw(&light, &mut self.charge);
             drawn_e += electrons;
         }

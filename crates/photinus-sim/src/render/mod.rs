@@ -34,6 +34,8 @@ pub struct Rendered {
 #[derive(Clone, Debug)]
 pub struct Renderer {
     view: Arc<CameraView>,
+    /// Where the optical axis meets the image.
+    axis_px: [f64; 2],
     seed: u64,
     hot_pixels: Vec<HotPixel>,
     charge: Charge,
@@ -60,13 +62,15 @@ impl Renderer {
             let dark_e_per_s = -libm::log(uniform) * view.sensor.hot_pixel_e_per_s;
             HotPixel { u: draw as usize % width, v: (draw >> 20) as usize % height, dark_e_per_s }
         };
+        let axis = view.camera.model().centre();
         Self {
             seed,
+            axis_px: [axis.u, axis.v],
             hot_pixels: (0..count).map(hot).collect(),
             charge: Charge::new(width, height),
             background: Background::new(width, height),
             backdrop: Backdrop::new(&view.camera, &view.lens),
-            readout: Readout::new(&view.sensor),
+            readout: Readout::of_unit(&view.sensor, (width, height), seed),
             view: Arc::new(view),
         }
     }
@@ -87,9 +91,7 @@ impl Renderer {
         for hot in &self.hot_pixels {
             self.charge.add(hot.u, hot.v, (hot.dark_e_per_s * exposure.length_s) as f32);
         }
-        self.readout.shot(&mut self.charge, key);
-        let sensor = &self.view.sensor;
-        sensor.overflow.settle(&mut self.charge, sensor.full_well_e);
+        self.readout.expose(&mut self.charge, key);
         self.lay_background(snapshot, &world_from_camera, electrons);
         let down = world_from_camera.rotation.inverse() * -Vector3::z();
         Rendered {

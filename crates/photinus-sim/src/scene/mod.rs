@@ -3,12 +3,14 @@
 //! Paths in a scene are relative to the scene's folder. Unknown keys are refused; every refusal names file, key and
 //! reason. The keys are described in docs/scenes.md.
 
+mod camera_table;
 mod check;
 mod read;
 mod table;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use camera_table::parse_sampled;
 use nalgebra::Isometry3;
 use photinus::airframe::Airframe;
 use photinus::camera::Camera;

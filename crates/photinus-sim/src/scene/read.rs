@@ -8,6 +8,7 @@ use photinus_io::blink::read_blink_codes;
 use photinus_io::{Result, read_camera, table as toml_table};
 use toml::value::{Datetime, Offset};
 
+use super::camera_table::{OpticsTable, SensorTable};
 use super::check::Check;
 use super::table::{
     BlinkTable, CameraTable, DaylightTable, MotionTable, PresetName, SceneTable, SkyName, SolidTable,
@@ -17,7 +18,7 @@ use super::{BlinkPlan, MountedCamera, Scene, Target};
 use crate::background::{Daylight, Place, Sky, Water, sun_direction};
 use crate::motion::{Flight, Motion, Path as FlightPath, Recorded, Spin, Wander};
 use crate::occlusion::Solid;
-use crate::preset::{BLUEFOX_FIT, SMALL_FISHEYE_FIT, bluefox, small_fisheye};
+use crate::preset::{BLUEFOX_FIT, Preset, SMALL_FISHEYE_FIT, bluefox, small_fisheye};
 use crate::sensor::hash;
 
 /// Longest scene, s, and most frames of one.
@@ -106,10 +107,7 @@ impl Reader<'_> {
             rate_hz,
             frames: (duration_s * rate_hz).round().max(1.0) as u64,
             exposure_us,
-            preset: match table.preset {
-                PresetName::Bluefox => bluefox(&BLUEFOX_FIT),
-                PresetName::SmallFisheye => small_fisheye(&SMALL_FISHEYE_FIT),
-            },
+            preset: self.preset(table.preset, &table.optics, &table.sensor)?,
             daylight: table.daylight.map(|daylight| self.daylight(&daylight)).transpose()?,
             water: table
                 .water
@@ -123,6 +121,17 @@ impl Reader<'_> {
             cameras: cameras.collect::<Result<_>>()?,
             targets: targets.collect::<Result<_>>()?,
         })
+    }
+
+    /// A preset with what the scene changes of it.
+    fn preset(&self, name: PresetName, optics: &OpticsTable, sensor: &SensorTable) -> Result<Preset> {
+        let mut preset = match name {
+            PresetName::Bluefox => bluefox(&BLUEFOX_FIT),
+            PresetName::SmallFisheye => small_fisheye(&SMALL_FISHEYE_FIT),
+        };
+        optics.apply(&self.check, &mut preset.lens)?;
+        sensor.apply(&self.check, &mut preset.sensor)?;
+        Ok(preset)
     }
 
     /// A file that the scene names.

@@ -5,6 +5,8 @@ use std::path::PathBuf;
 use serde::Deserialize;
 use toml::value::Datetime;
 
+use super::camera_table::{OpticsTable, SensorTable};
+
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct SceneTable {
@@ -12,6 +14,10 @@ pub(super) struct SceneTable {
     #[serde(default)]
     pub(super) seed: u64,
     pub(super) preset: PresetName,
+    #[serde(default)]
+    pub(super) optics: OpticsTable,
+    #[serde(default)]
+    pub(super) sensor: SensorTable,
     pub(super) rate_hz: f64,
     pub(super) duration_s: f64,
     pub(super) exposure_us: f64,

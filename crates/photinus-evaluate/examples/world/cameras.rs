@@ -1,58 +1,42 @@
-//! The camera table: lenses and sensors that differ from the paper's in one thing or in many.
+//! The camera table: the paper's camera, and those of `photinus_sim::cameras`, which nothing was tuned to.
 
 use std::path::Path;
 
-use photinus_sim::optics::{Gaussian, PointSpread};
-use photinus_sim::preset::{BLUEFOX_FIT, Preset, SMALL_FISHEYE_FIT, bluefox, small_fisheye};
+use photinus_sim::cameras::{World, worlds};
+use photinus_sim::preset::{BLUEFOX_FIT, bluefox};
 
 use crate::row::{Eye, Row};
 
+/// Exposure of all of them, us.
+const EXPOSURE_US: f64 = 1000.0;
+/// Wide point spreads are faint far away, m.
+const RANGES_M: [f64; 2] = [2.0, 10.0];
+
 /// The paper's camera.
 pub(crate) fn paper() -> Eye {
-    Eye { camera: camera("bluefox-dsl215"), preset: bluefox(&BLUEFOX_FIT), exposure_us: 1000.0 }
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/cameras/bluefox-dsl215.toml");
+    let camera = photinus_io::read_camera(Path::new(file)).expect("a camera of the library").camera;
+    Eye { camera, preset: bluefox(&BLUEFOX_FIT), exposure_us: EXPOSURE_US }
 }
 
-fn camera(name: &str) -> photinus::camera::Camera {
-    let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/cameras"));
-    photinus_io::read_camera(&folder.join(format!("{name}.toml"))).expect("a camera of the library").camera
+/// A camera of the list by its name.
+pub(crate) fn named(name: &str) -> Eye {
+    eye(worlds().into_iter().find(|world| world.name == name).expect("a camera of the list"))
+}
+
+fn eye(world: World) -> Eye {
+    Eye { camera: world.camera, preset: world.preset, exposure_us: EXPOSURE_US }
 }
 
 /// The rows.
 pub(crate) fn rows() -> Vec<Row> {
-    let of_paper = |name: &'static str, exposure_us: f64, change: fn(&mut Preset)| {
-        let mut eye = Eye { exposure_us, ..paper() };
-        change(&mut eye.preset);
-        (name, eye)
-    };
-    let fisheye = Eye {
-        camera: camera("small-fisheye-960x600"),
-        preset: small_fisheye(&SMALL_FISHEYE_FIT),
-        exposure_us: 5000.0,
-    };
-    let eyes = [
-        of_paper("the paper's", 1000.0, |_| ()),
-        of_paper("three times the exposure", 3000.0, |_| ()),
-        of_paper("core of 0.5 px", 1000.0, |preset| {
-            preset.lens.spread = spread([(0.5085, 0.5), (0.4915, 2.239)])
-        }),
-        of_paper("a fifth in a skirt of 3 px", 1000.0, |preset| {
-            preset.lens.spread = spread([(0.8, 0.35), (0.2, 3.0)])
-        }),
-        of_paper("well that reads 240", 1000.0, |preset| {
-            preset.sensor.full_well_e = 240.0 * preset.sensor.electrons_per_dn;
-        }),
-        of_paper("five times the gain", 200.0, |preset| {
-            preset.sensor.electrons_per_dn /= 5.0;
-            preset.sensor.full_well_e /= 5.0;
-        }),
-        of_paper("read noise of 2 levels", 1000.0, |preset| preset.sensor.read_noise_e *= 4.0),
-        ("small fisheye", fisheye),
-    ];
-    let rows = eyes.iter().flat_map(|(name, eye)| [6, 4].map(|arms| Row::plain(*name, eye, arms)));
-    rows.collect()
+    let others = worlds().into_iter().map(|world| (world.name, eye(world)));
+    let eyes = std::iter::once(("the paper's", paper())).chain(others);
+    let row = |name: &str, eye: &Eye, arms| Row { ranges_m: RANGES_M, ..Row::plain(name, eye, arms) };
+    eyes.flat_map(|(name, eye)| [6, 4].map(|arms| row(name, &eye, arms))).collect()
 }
 
-fn spread(parts: [(f64, f64); 2]) -> PointSpread {
-    let part = |(share, sigma_px)| Gaussian { share, sigma_px };
-    PointSpread::new(parts.map(part).to_vec(), 0.1).expect("shares that sum to 1")
+/// What is particular about each.
+pub(crate) fn about() -> String {
+    worlds().iter().map(|world| format!("- `{}`: {}\n", world.name, world.about)).collect()
 }

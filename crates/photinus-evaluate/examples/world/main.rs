@@ -45,7 +45,8 @@ fn main() -> ExitCode {
     let outcomes: Vec<Outcome> = rows.iter().map(|(row, frames)| told(row.run(*frames))).collect();
     let tables = [Table::of_neighbours(&outcomes), Table::of_spots(&outcomes)];
     println!("{}\nspots\n{}", tables[0].aligned(), tables[1].aligned());
-    let written = if update { document::update(what, frames, &tables) } else { Ok(()) };
+    let notes = if what == "cameras" { cameras::about() + "\n" } else { String::new() };
+    let written = if update { document::update(what, frames, &tables, &notes) } else { Ok(()) };
     written.map_or_else(failed, |()| ExitCode::SUCCESS)
 }
 

@@ -42,9 +42,8 @@ fn rows() -> Vec<(Row, u64)> {
         with("gravity 5 deg wrong", 6, &|row| row.faults = vec![Fault::Gravity(gravity_rad)]),
         with("smear of 3 px", 4, &|row| row.smear_px = 3.0),
         with("airframe told 2 % too large", 6, &|row| row.faults = vec![Fault::Airframe(1.02)]),
-        with("well that reads 240", 4, &|row| {
-            row.eye.preset.sensor.full_well_e = 240.0 * row.eye.preset.sensor.electrons_per_dn;
-        }),
+        with("camera full-240", 4, &|row| row.eye = cameras::named("full-240")),
+        with("camera coma", 6, &|row| row.eye = cameras::named("coma")),
         crowd(5, 6),
         crowd(10, 4),
     ]

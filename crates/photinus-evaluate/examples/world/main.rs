@@ -10,6 +10,7 @@
 
 #![expect(clippy::print_stdout, clippy::print_stderr, reason = "an example prints its table")]
 
+mod calibrated;
 mod cameras;
 mod crowds;
 mod document;

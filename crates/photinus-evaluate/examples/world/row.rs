@@ -14,6 +14,7 @@ use photinus_sim::snapshot::{Moving, Snapshot};
 use photinus_sim::{CameraView, Renderer};
 use rand_pcg::Pcg64;
 
+use crate::calibrated::{calibrated, to_centroids};
 use crate::light::{Fallen, Lights, fallen};
 use crate::priors::{Build, Drawing, known_gravity, world_from_camera};
 
@@ -84,7 +85,8 @@ impl Row {
         let mut studio = Studio::new(self);
         let wrong = |seed| Faults { list: self.faults.clone(), seed };
         let told = wrong(0).airframe(&self.airframe).expect("an airframe");
-        let camera = wrong(0).camera(&self.eye.camera).expect("a camera");
+        let camera = calibrated(&self.eye.camera, &self.eye.preset.lens);
+        let camera = wrong(0).camera(&camera).expect("a camera");
         let mut locator = Locator::new(camera, &told, None, Settings::default()).expect("default settings");
         let (mut truth, mut records, mut lights) = (Vec::new(), Vec::new(), Lights::default());
         for first in (0..frames).step_by(SPELL as usize) {
@@ -146,8 +148,10 @@ impl<'a> Studio<'a> {
         let mut rng = Pcg64::new(u128::from(number), 0xfa17);
         let gravity = known_gravity(&mut rng);
         let snapshot = self.snapshot(number, &gravity, &mut rng);
-        let rendered = self.renderer.render(&snapshot, number);
-        let fallen = fallen(&snapshot, &rendered.truth, &row.eye.preset.lens);
+        let mut rendered = self.renderer.render(&snapshot, number);
+        let lens = &row.eye.preset.lens;
+        to_centroids(&mut rendered.truth, &row.eye.camera, lens);
+        let fallen = fallen(&snapshot, &rendered.truth, lens);
         let TruthFrame { frame: index, time_s, .. } = rendered.truth;
         let frame = Frame {
             image: rendered.image,

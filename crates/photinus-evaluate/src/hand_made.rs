@@ -72,7 +72,7 @@ pub(crate) fn rejected(u_px: f64, v_px: f64, reason: &str) -> RejectedRecord {
 
 /// Truth of a frame at 10 frames/s.
 pub(crate) fn truth(frame: u64, neighbours: Vec<TruthNeighbour>) -> TruthFrame {
-    TruthFrame { frame, time_s: frame as f64 / 10.0, neighbours }
+    TruthFrame { frame, time_s: frame as f64 / 10.0, neighbours, ..TruthFrame::default() }
 }
 
 /// A record of a frame at 10 frames/s.

@@ -57,7 +57,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let pixels = expose(&light, &mut rng);
         let frame = FrameView::packed(&pixels, WIDTH, HEIGHT)?;
         let number = writer.frame(&frame, time_s, Some(Vector3::y_axis()))?;
-        writer.truth(&TruthFrame { frame: number, time_s, neighbours })?;
+        writer.truth(&TruthFrame { frame: number, time_s, neighbours, ..TruthFrame::default() })?;
     }
     Ok(())
 }

@@ -37,7 +37,7 @@ type Stream = Box<dyn Read + Send>;
 
 enum Kind {
     Images { paths: Vec<PathBuf>, next: usize },
-    Dataset { dataset: Dataset, next: usize },
+    Dataset { dataset: Dataset, camera: usize, next: usize },
     Y4m { frames: Y4mFrames<Stream>, name: String },
     Raw { frames: RawFrames<Stream>, name: String },
 }
@@ -48,9 +48,14 @@ impl FrameSource {
         Self(Kind::Images { paths, next: 0 })
     }
 
-    /// The images of a dataset, with its numbers, times and gravity.
+    /// The images of a dataset, with its numbers, times and gravity; of several cameras, those of the first one.
     pub fn dataset(dataset: Dataset) -> Self {
-        Self(Kind::Dataset { dataset, next: 0 })
+        Self::dataset_camera(dataset, 0)
+    }
+
+    /// The images of camera number `camera` of a dataset; none when it has no such camera.
+    pub fn dataset_camera(dataset: Dataset, camera: usize) -> Self {
+        Self(Kind::Dataset { dataset, camera, next: 0 })
     }
 
     /// A Y4M stream: an open file, standard input. `name` is for the messages and for [`Frame::source`].
@@ -86,9 +91,9 @@ impl Iterator for FrameSource {
                 *next += 1;
                 Some(from_image(path, *next as u64 - 1))
             }
-            Kind::Dataset { dataset, next } => {
+            Kind::Dataset { dataset, camera, next } => {
                 *next += 1;
-                from_dataset(dataset, *next - 1)
+                from_dataset(dataset, *camera, *next - 1)
             }
             Kind::Y4m { frames, name } => {
                 let conversions = frames.conversions();
@@ -107,10 +112,12 @@ fn from_image(path: &Path, index: u64) -> Result<Frame> {
     Ok(Frame { image: file.image, index, time_s: None, source, gravity: None, conversions: file.conversions })
 }
 
-fn from_dataset(dataset: &Dataset, number: usize) -> Option<Result<Frame>> {
-    let row = dataset.frames().get(number)?;
+fn from_dataset(dataset: &Dataset, camera: usize, number: usize) -> Option<Result<Frame>> {
+    let camera = dataset.cameras().get(camera)?;
+    let row = camera.frames.get(number)?;
     let file = read_image(dataset.path(&row.image)).map_err(|error| {
-        let advice = format!("line {} of frames.csv names it: restore it or remove that line", row.line);
+        let table = camera.frames_file.display();
+        let advice = format!("line {} of {table} names it: restore it or remove that line", row.line);
         error.at(Place::Frame(row.frame)).advise(advice)
     });
     Some(file.map(|file| Frame {
@@ -165,6 +172,8 @@ mod tests {
             rate_hz: 60.0,
             spot_curve: None,
             mask: None,
+            codes: None,
+            vehicles: None,
         };
         let mut writer = DatasetWriter::create(folder.path(), &info).unwrap();
         let down = Some(Vector3::y_axis());

@@ -20,6 +20,7 @@ pub mod frames;
 pub mod image;
 mod lines;
 pub mod mask;
+pub mod physics;
 pub mod results;
 #[cfg(test)]
 mod scratch;

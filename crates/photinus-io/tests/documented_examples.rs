@@ -3,7 +3,9 @@
 use photinus_io::airframe::parse_airframe;
 use photinus_io::blink::BlinkCodes;
 use photinus_io::camera::parse_camera_toml;
-use photinus_io::dataset::{DatasetInfo, parse_frames_csv, parse_truth};
+use photinus_io::dataset::{
+    DatasetInfo, DatasetToml, parse_frames_csv, parse_imu, parse_odometry, parse_truth, parse_vehicles,
+};
 use photinus_io::results::{CsvWriter, ResultsReader};
 use photinus_io::spot_curve::parse_spot_curve;
 
@@ -24,6 +26,15 @@ fn datasets() {
     assert!(DatasetInfo::parse(&example("camera ="), "example").unwrap().mask.is_some());
     assert_eq!(parse_frames_csv(&example("frame,time_s,image"), "example").unwrap().len(), 2);
     assert_eq!(parse_truth(&example("{\"frame\":0"), "example").unwrap().len(), 1);
+}
+
+#[test]
+fn rigs() {
+    let rig = DatasetToml::parse(&example("airframe ="), "example").unwrap();
+    assert!(matches!(rig, DatasetToml::Rig(rig) if rig.cameras[0].exposure_us.is_some()));
+    assert_eq!(parse_vehicles(&example("[[vehicle]]"), "example").unwrap()[0].words, [1, 4]);
+    assert_eq!(parse_imu(&example("time_s,wx_rad_s"), "example").unwrap().len(), 2);
+    assert_eq!(parse_odometry(&example("time_s,x_m"), "example").unwrap().len(), 2);
 }
 
 #[test]

@@ -10,7 +10,10 @@ use photinus_io::blink::BlinkCodes;
 use photinus_io::calibration::{
     mounting_text, parse_known_sightings, parse_led_sightings, parse_mounting, parse_spot_sizes,
 };
-use photinus_io::dataset::{DatasetInfo, parse_frames_csv, parse_truth};
+use photinus_io::dataset::{
+    DatasetInfo, DatasetToml, ImuRow, OdometryRow, parse_frames_csv, parse_imu, parse_odometry, parse_truth,
+    parse_vehicles, vehicles_text,
+};
 use photinus_io::image::decode_image;
 use photinus_io::results::ResultsReader;
 use photinus_io::spot_curve::{self, SpotCurveFile, parse_spot_curve};
@@ -20,6 +23,13 @@ use proptest::sample::Index;
 
 const DATASET: &str =
     "camera = \"c.txt\"\nairframe = \"a.toml\"\nexposure_us = 1000.0\nrate_hz = 60.0\nmask = \"m.png\"\n";
+const RIG: &str = "airframe = \"a.toml\"\nexposure_us = 1000.0\nrate_hz = 60.0\ncodes = \"b.txt\"\n\
+    vehicles = \"v.toml\"\n[[camera]]\nname = \"front\"\ncamera = \"c.txt\"\nmounting = \"front/m.toml\"\n\
+    frames = \"front/frames.csv\"\nexposure_us = 500.0\n";
+const VEHICLES: &str = "[[vehicle]]\nid = 7\nairframe = \"a.toml\"\nwords = [1, 0]\nbit_rate_hz = 60.0\n[[vehicle]]\nid = 9\nairframe = \"b.toml\"\n";
+const IMU: &str = "time_s,wx_rad_s,wy_rad_s,wz_rad_s\n0.0,0.1,-0.25,3e-5\n0.005,0,0,1\n";
+const ODOMETRY: &str =
+    "time_s,x_m,y_m,z_m,qx,qy,qz,qw,vx_m_s,vy_m_s,vz_m_s\n0.5,1,-2,3,0,0.6,0,0.8,0,0,1.5\n";
 const FRAMES: &str = "frame,time_s,image,gx,gy,gz\n0,0.0,images/0.png,,,\n1,0.016,images/1.png,0.0,1.0,0.0\n";
 const TRUTH: &str = "{\"frame\":0,\"time_s\":0.5,\"neighbours\":[{\"id\":1,\"position_m\":[1,2,3],\
     \"orientation_xyzw\":[0,0,0,1],\"distance_m\":3.7,\"leds\":[{\"u_px\":1.5,\"v_px\":2}]}]}\n";
@@ -43,6 +53,17 @@ const RESULTS: &str = "{\"frame\":3,\"time_s\":null,\"source\":\"a\",\"spots\":[
     \"sigma_px\":[0.2,0.3],\"range_m\":[1,null]}],\"rejected\":[{\"u_px\":1,\"v_px\":1,\"area_px\":9,\
     \"reason\":\"sun\"}],\"neighbours\":[]}\n";
 
+fn imu_text(rows: &[ImuRow]) -> String {
+    let lines = rows.iter().map(|row| row.line() + "\n");
+    lines.fold("time_s,wx_rad_s,wy_rad_s,wz_rad_s\n".to_owned(), |text, line| text + &line)
+}
+
+fn odometry_text(rows: &[OdometryRow]) -> String {
+    let lines = rows.iter().map(|row| row.line() + "\n");
+    let header = "time_s,x_m,y_m,z_m,qx,qy,qz,qw,vx_m_s,vy_m_s,vz_m_s\n";
+    lines.fold(header.to_owned(), |text, line| text + &line)
+}
+
 /// Every parser on the same bytes. What is read must also stand being written.
 fn parse_all(bytes: &[u8]) {
     let text = String::from_utf8_lossy(bytes);
@@ -51,6 +72,17 @@ fn parse_all(bytes: &[u8]) {
         frames.take(8).for_each(drop);
     }
     let _ = DatasetInfo::parse(&text, "t");
+    let _ = DatasetToml::parse(&text, "t");
+    if let Ok(vehicles) = parse_vehicles(&text, "t") {
+        let again = parse_vehicles(&vehicles_text(&vehicles), "t").expect("what was written is read");
+        assert_eq!(again, vehicles);
+    }
+    if let Ok(rows) = parse_imu(&text, "t") {
+        assert_eq!(parse_imu(&imu_text(&rows), "t").expect("what was written is read"), rows);
+    }
+    if let Ok(rows) = parse_odometry(&text, "t") {
+        assert_eq!(parse_odometry(&odometry_text(&rows), "t").expect("what was written is read"), rows);
+    }
     let _ = parse_frames_csv(&text, "t");
     let _ = parse_truth(&text, "t");
     if let Ok(file) = parse_airframe(&text, "t") {
@@ -88,7 +120,10 @@ fn y4m((width, height): (usize, usize), pixels: &[u8], frames: usize) -> Vec<u8>
 
 fn valid_files() -> Vec<Vec<u8>> {
     use image::ImageFormat::{Bmp, Png, Pnm, Tiff};
-    let texts = [DATASET, FRAMES, TRUTH, AIRFRAME, RING, LAYOUT, BLINK, SPOT_CURVE, RESULTS];
+    let texts = [
+        DATASET, RIG, VEHICLES, IMU, ODOMETRY, FRAMES, TRUTH, AIRFRAME, RING, LAYOUT, BLINK, SPOT_CURVE,
+        RESULTS,
+    ];
     let calibrations = [SPOT_SIZES, KNOWN, LEDS, MOUNTING];
     let texts = texts.into_iter().chain(calibrations).map(|text| text.as_bytes().to_vec());
     let images = [Png, Bmp, Tiff, Pnm].into_iter().map(encoded);
@@ -199,6 +234,10 @@ proptest! {
 #[test]
 fn the_files_to_damage_are_valid() {
     DatasetInfo::parse(DATASET, "t").unwrap();
+    assert!(matches!(DatasetToml::parse(RIG, "t").unwrap(), DatasetToml::Rig(_)));
+    parse_vehicles(VEHICLES, "t").unwrap();
+    parse_imu(IMU, "t").unwrap();
+    parse_odometry(ODOMETRY, "t").unwrap();
     parse_frames_csv(FRAMES, "t").unwrap();
     parse_truth(TRUTH, "t").unwrap();
     for text in [AIRFRAME, RING, LAYOUT] {

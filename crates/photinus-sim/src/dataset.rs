@@ -29,6 +29,8 @@ pub fn create(folder: impl AsRef<Path>, scene: &Scene, camera: usize) -> Result<
         rate_hz: scene.rate_hz,
         spot_curve: None,
         mask: None,
+        codes: None,
+        vehicles: None,
     };
     let writer = DatasetWriter::create(folder, &info)?;
     let mut text = Vec::new();

@@ -95,6 +95,8 @@ impl Parts {
             rate_hz,
             spot_curve: self.spot_curve.as_ref().map(|path| inside(path, "spot_curve")),
             mask: self.mask.as_ref().map(|path| inside(path, "mask")),
+            codes: None,
+            vehicles: None,
         }
     }
 

@@ -26,7 +26,7 @@ fn truth(frame: u64) -> TruthFrame {
         distance_m: distance_m(frame),
         leds: leds.to_vec(),
     };
-    TruthFrame { frame, time_s: frame as f64 / 20.0, neighbours: vec![neighbour] }
+    TruthFrame { frame, time_s: frame as f64 / 20.0, neighbours: vec![neighbour], ..TruthFrame::default() }
 }
 
 /// Half a metre too far, and out of the bounds in frame 7.
@@ -141,7 +141,7 @@ fn spinning(frame: u64, camera: &Camera, airframe: &Airframe) -> (TruthFrame, St
         leds,
     };
     let time_s = frame as f64 / 20.0;
-    let truth = TruthFrame { frame, time_s, neighbours: vec![neighbour] };
+    let truth = TruthFrame { frame, time_s, neighbours: vec![neighbour], ..TruthFrame::default() };
     (truth, format!("{{\"frame\":{frame},\"time_s\":{time_s},\"spots\":[{}]}}", spots.join(",")))
 }
 

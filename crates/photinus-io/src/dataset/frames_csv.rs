@@ -5,12 +5,9 @@ use std::str::FromStr;
 
 use nalgebra::{Unit, Vector3};
 
-use crate::{Error, Place, Result};
+use crate::{Error, Place, Result, physics};
 
 pub(super) const COLUMNS: [&str; 6] = ["frame", "time_s", "image", "gx", "gy", "gz"];
-
-/// How far the length of a gravity vector may be from 1: what rounding to a few digits does.
-const UNIT_TOLERANCE: f64 = 0.01;
 
 /// A line of frames.csv.
 #[derive(Clone, Debug, PartialEq)]
@@ -78,13 +75,7 @@ fn parse_row(text: &str, line: usize) -> std::result::Result<FrameRow, Wrong> {
         true => None,
         false => Some(unit([finite(&record, 3)?, finite(&record, 4)?, finite(&record, 5)?])?),
     };
-    Ok(FrameRow {
-        frame: number(&record, 0)?,
-        time_s: finite(&record, 1)?,
-        image: image.into(),
-        gravity,
-        line,
-    })
+    Ok(FrameRow { frame: number(&record, 0)?, time_s: time(&record, 1)?, image: image.into(), gravity, line })
 }
 
 fn wrong_count(record: &[&str]) -> Wrong {
@@ -95,13 +86,21 @@ fn wrong_count(record: &[&str]) -> Wrong {
 fn unit(values: [f64; 3]) -> std::result::Result<Unit<Vector3<f64>>, Wrong> {
     let vector = Vector3::from(values);
     let length = vector.norm();
-    if (length - 1.0).abs() > UNIT_TOLERANCE {
+    if !physics::is_unit(length) {
         let advice = "divide an accelerometer's reading by its length; gravity points down";
         return Err((format!("the gravity vector has length {length}, not 1"), advice));
     }
     // What is a unit vector to the last digits stays as it is written.
     let is_unit = (length - 1.0).abs() < 1e-12;
     Ok(if is_unit { Unit::new_unchecked(vector) } else { Unit::new_unchecked(vector / length) })
+}
+
+fn time(record: &[&str], column: usize) -> std::result::Result<f64, Wrong> {
+    let time_s = finite(record, column)?;
+    match physics::TIME_S.contains(&time_s) {
+        true => Ok(time_s),
+        false => Err((format!("time_s {time_s} is out of range"), "give seconds")),
+    }
 }
 
 fn finite(record: &[&str], column: usize) -> std::result::Result<f64, Wrong> {

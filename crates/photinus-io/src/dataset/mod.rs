@@ -1,130 +1,114 @@
 //! A dataset folder: a recording or a simulation with all that is needed to run it.
 //!
 //! ```text
-//! dataset.toml   what the camera, the airframe and the exposure are      -> DatasetInfo
+//! dataset.toml   what the cameras, the airframe and the exposure are     -> DatasetToml
 //! frames.csv     which image was taken when, and where down was          -> FrameRow
 //! images/        the frames
 //! truth.jsonl    optional: where everything was, a line per frame        -> TruthFrame
+//! vehicles.toml  optional: who there may be and what they blink          -> Vehicle
+//! imu.csv        optional: how fast what carries the camera turns        -> ImuRow
+//! odometry.csv   optional: where it believes to be                       -> OdometryRow
 //! ```
+//! Several cameras on one vehicle each have a frames.csv and a mounting of their own.
 
+mod camera_key;
+mod cameras;
 mod frames_csv;
+mod imu;
+mod info;
+mod odometry;
+mod timed;
 mod truth;
+mod vehicles;
 mod writer;
 
 use std::path::{Path, PathBuf};
 
-use serde::{Deserialize, Serialize};
-
-use crate::{Error, Place, Result, table, whole};
+use crate::blink::{BlinkCodes, read_blink_codes};
+use crate::{Error, Result, airframe, whole};
+pub use cameras::DatasetCamera;
 pub use frames_csv::{FrameRow, parse_frames_csv};
+pub use imu::{ImuRow, parse_imu, read_imu};
+pub use info::{DatasetInfo, DatasetToml, RigCamera, RigInfo};
+pub use odometry::{OdometryRow, parse_odometry, read_odometry};
 pub use truth::{TruthFrame, TruthLed, TruthNeighbour, parse_truth, read_truth};
+pub use vehicles::{Vehicle, VehicleBlink, VehicleInfo, parse_vehicles, vehicles_text};
 pub use writer::DatasetWriter;
 
 /// The file that makes a folder a dataset.
 pub const DATASET_FILE: &str = "dataset.toml";
-const FRAMES_FILE: &str = "frames.csv";
-const TRUTH_FILE: &str = "truth.jsonl";
+/// The frames of a dataset with one camera.
+pub const FRAMES_FILE: &str = "frames.csv";
+/// Where everything was.
+pub const TRUTH_FILE: &str = "truth.jsonl";
+/// How fast what carries the camera turns.
+pub const IMU_FILE: &str = "imu.csv";
+/// Where what carries the camera believes to be.
+pub const ODOMETRY_FILE: &str = "odometry.csv";
 
-/// What dataset.toml says. Paths are relative to the folder.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct DatasetInfo {
-    /// Any camera file that Photinus reads.
-    pub camera: PathBuf,
-    /// Any airframe file that Photinus reads.
-    pub airframe: PathBuf,
-    /// Exposure of a frame, us.
-    pub exposure_us: f64,
-    /// Frames per second.
-    pub rate_hz: f64,
-    /// The spot-size curve of this camera, if it was measured.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub spot_curve: Option<PathBuf>,
-    /// Where not to look, if something is in the way.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub mask: Option<PathBuf>,
-}
-
-impl DatasetInfo {
-    /// Reads the text of a dataset.toml; `path` is for the messages.
-    ///
-    /// # Errors
-    /// [`Error`] for unknown or missing keys and for values that are none.
-    pub fn parse(text: &str, path: impl AsRef<Path>) -> Result<Self> {
-        let path = path.as_ref();
-        let info: Self = table::parse(text, path)?;
-        info.check(path)?;
-        Ok(info)
-    }
-
-    fn check(&self, path: &Path) -> Result<()> {
-        for (key, value) in [("exposure_us", self.exposure_us), ("rate_hz", self.rate_hz)] {
-            if !(value.is_finite() && value > 0.0) {
-                return Err(Error::format(path, format!("{value} is not a positive number"))
-                    .at(Place::Key(key.to_owned()))
-                    .advise("give the value that the camera ran with"));
-            }
-        }
-        let paths = [
-            ("camera", Some(&self.camera)),
-            ("airframe", Some(&self.airframe)),
-            ("spot_curve", self.spot_curve.as_ref()),
-            ("mask", self.mask.as_ref()),
-        ];
-        for (key, named) in paths {
-            if named.is_some_and(|named| named.as_os_str().is_empty()) {
-                return Err(Error::format(path, "the path is empty")
-                    .at(Place::Key(key.to_owned()))
-                    .advise("name a file in the dataset's folder"));
-            }
-        }
-        Ok(())
-    }
-}
-
-/// A dataset folder whose dataset.toml and frames.csv are in order. Images are opened when their turn comes.
+/// A dataset folder whose tables are in order. Images, truth and the tables over time are opened when their turn comes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dataset {
     folder: PathBuf,
     info: DatasetInfo,
-    frames: Vec<FrameRow>,
+    cameras: Vec<DatasetCamera>,
+    codes: Option<BlinkCodes>,
+    vehicles: Vec<Vehicle>,
 }
 
 impl Dataset {
     /// Reads a dataset folder.
     ///
     /// # Errors
-    /// [`Error`] when dataset.toml or frames.csv is missing or not in order.
+    /// [`Error`] when dataset.toml or a frames.csv is missing or not in order, or a mounting, the book of words, the list of
+    /// vehicles or an airframe that it lists is named and not in order.
     pub fn read(folder: impl AsRef<Path>) -> Result<Self> {
         let folder = folder.as_ref().to_owned();
-        let in_folder = |name: &str| {
-            let path = folder.join(name);
-            match path.is_file() {
-                true => whole::read_text(&path).map(|text| (text, path)),
-                false => Err(Error::format(&folder, format!("the folder holds no {name}"))
-                    .advise("name the folder of a dataset, or list the image files themselves")),
+        let (text, path) = in_folder(&folder, Path::new(DATASET_FILE))?;
+        let (info, cameras) = match DatasetToml::parse(&text, path)? {
+            DatasetToml::One(info) => (info.clone(), vec![DatasetCamera::only(&folder, info)?]),
+            DatasetToml::Rig(rig) => {
+                let camera = |camera: &RigCamera| DatasetCamera::of_rig(&folder, camera, rig.exposure_us);
+                let cameras = rig.cameras.iter().map(camera).collect::<Result<Vec<_>>>()?;
+                (rig.first(), cameras)
             }
         };
-        let (text, path) = in_folder(DATASET_FILE)?;
-        let info = DatasetInfo::parse(&text, path)?;
-        let (text, path) = in_folder(FRAMES_FILE)?;
-        let frames = parse_frames_csv(&text, path)?;
-        Ok(Self { folder, info, frames })
+        let codes = info.codes.as_ref().map(|named| read_blink_codes(folder.join(named))).transpose()?;
+        let vehicles = match &info.vehicles {
+            Some(named) => read_vehicles(&folder, named, codes.as_ref())?,
+            None => Vec::new(),
+        };
+        Ok(Self { folder, info, cameras, codes, vehicles })
     }
 
-    /// What dataset.toml says.
+    /// What dataset.toml says; of several cameras, what it says of the first one. See [`Dataset::cameras`] for all of them.
     pub fn info(&self) -> &DatasetInfo {
         &self.info
     }
 
-    /// What frames.csv lists, in its order.
-    pub fn frames(&self) -> &[FrameRow] {
-        &self.frames
+    /// The cameras, at least one; a dataset with one camera file at its top has exactly one, without name and mounting.
+    pub fn cameras(&self) -> &[DatasetCamera] {
+        &self.cameras
     }
 
-    /// A path that dataset.toml or frames.csv names, as it can be opened.
+    /// What the frames.csv of the first camera lists, in its order.
+    pub fn frames(&self) -> &[FrameRow] {
+        &self.cameras[0].frames
+    }
+
+    /// A path that a file of the dataset names, as it can be opened.
     pub fn path(&self, named: impl AsRef<Path>) -> PathBuf {
         self.folder.join(named)
+    }
+
+    /// The book of code words, where one is named.
+    pub fn codes(&self) -> Option<&BlinkCodes> {
+        self.codes.as_ref()
+    }
+
+    /// The vehicles that there may be; empty when the dataset does not list them.
+    pub fn vehicles(&self) -> &[Vehicle] {
+        &self.vehicles
     }
 
     /// The truth of every frame that has one; `None` when the folder holds none.
@@ -132,10 +116,70 @@ impl Dataset {
     /// # Errors
     /// As [`read_truth`].
     pub fn truth(&self) -> Result<Option<Vec<TruthFrame>>> {
-        let path = self.path(TRUTH_FILE);
-        path.is_file().then(|| read_truth(path)).transpose()
+        self.optional(TRUTH_FILE, |path| read_truth(path))
+    }
+
+    /// How fast the camera (of several: the vehicle's body) turned; `None` when the folder does not say.
+    ///
+    /// # Errors
+    /// As [`read_imu`].
+    pub fn imu(&self) -> Result<Option<Vec<ImuRow>>> {
+        self.optional(IMU_FILE, |path| read_imu(path))
+    }
+
+    /// Where the vehicle with the cameras believed to be; `None` when the folder does not say.
+    ///
+    /// # Errors
+    /// As [`read_odometry`].
+    pub fn odometry(&self) -> Result<Option<Vec<OdometryRow>>> {
+        self.optional(ODOMETRY_FILE, |path| read_odometry(path))
+    }
+
+    fn optional<T>(&self, name: &str, read: impl FnOnce(PathBuf) -> Result<T>) -> Result<Option<T>> {
+        let path = self.path(name);
+        path.is_file().then(|| read(path)).transpose()
     }
 }
 
+impl RigInfo {
+    /// What it says of the first camera.
+    fn first(&self) -> DatasetInfo {
+        let first = &self.cameras[0];
+        DatasetInfo {
+            camera: first.camera.clone(),
+            airframe: self.airframe.clone(),
+            exposure_us: first.exposure_us.unwrap_or(self.exposure_us),
+            rate_hz: self.rate_hz,
+            spot_curve: first.spot_curve.clone(),
+            mask: first.mask.clone(),
+            codes: self.codes.clone(),
+            vehicles: self.vehicles.clone(),
+        }
+    }
+}
+
+/// The text and the path of a file that the folder must hold.
+fn in_folder(folder: &Path, name: &Path) -> Result<(String, PathBuf)> {
+    let path = folder.join(name);
+    match path.is_file() {
+        true => whole::read_text(&path).map(|text| (text, path)),
+        false => Err(Error::format(folder, format!("the folder holds no {}", name.display()))
+            .advise("name the folder of a dataset, or list the image files themselves")),
+    }
+}
+
+fn read_vehicles(folder: &Path, named: &Path, codes: Option<&BlinkCodes>) -> Result<Vec<Vehicle>> {
+    let (text, path) = in_folder(folder, named)?;
+    let vehicles = parse_vehicles(&text, &path)?.into_iter().enumerate();
+    vehicles
+        .map(|(index, vehicle)| {
+            let airframe = airframe::read_airframe(folder.join(&vehicle.airframe))?.airframe;
+            vehicle.with(airframe, codes, (index, path.as_path()))
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod rig_tests;
 #[cfg(test)]
 mod tests;

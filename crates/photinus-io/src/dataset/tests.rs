@@ -30,6 +30,8 @@ fn a_folder_written_is_read_back() {
     let truth = TruthFrame {
         frame: 1,
         time_s: 1.0 / 60.0,
+        camera: None,
+        true_time_s: None,
         neighbours: vec![TruthNeighbour {
             id: 3,
             position_m: [0.1, -0.2, 7.3],
@@ -96,7 +98,7 @@ fn unknown_and_missing_keys_are_named() {
     assert_eq!(
         message,
         "d/dataset.toml, line 5: unknown key `exposure`, expected one of `camera`, `airframe`, `exposure_us`, \
-         `rate_hz`, `spot_curve`, `mask`; correct its name or remove it"
+         `rate_hz`, `spot_curve`, `mask`, `codes`, `vehicles`; correct its name or remove it"
     );
     assert!(info_message(&INFO.replace("rate_hz = 60\n", "")).contains("missing key `rate_hz`; add it"));
     assert!(info_message("").contains("missing key `camera`"));

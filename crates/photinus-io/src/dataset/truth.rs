@@ -7,12 +7,19 @@ use serde::{Deserialize, Serialize};
 use crate::{Result, lines, whole};
 
 /// Where the neighbours were in one frame.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct TruthFrame {
     /// Number of the frame, as in frames.csv.
     pub frame: u64,
-    /// When it was taken, s.
+    /// The camera's name, where the dataset has several.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub camera: Option<String>,
+    /// When it was taken, s, as frames.csv has it.
+    #[serde(deserialize_with = "limits::time")]
     pub time_s: f64,
+    /// When it was taken indeed, s, on the clock of imu.csv and odometry.csv, where that is another time.
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "limits::maybe_time")]
+    pub true_time_s: Option<f64>,
     /// Those that were there, seen or not.
     pub neighbours: Vec<TruthNeighbour>,
 }
@@ -23,6 +30,7 @@ pub struct TruthNeighbour {
     /// Which one.
     pub id: u32,
     /// Its origin in the camera frame, m.
+    #[serde(deserialize_with = "limits::place")]
     pub position_m: [f64; 3],
     /// Its attitude: the rotation camera_from_body as x, y, z, w.
     pub orientation_xyzw: [f64; 4],
@@ -56,7 +64,38 @@ impl TruthFrame {
                 .chain([&n.distance_m])
                 .all(|x| x.is_finite())
         };
-        self.time_s.is_finite() && self.neighbours.iter().all(numbers)
+        self.time_s.is_finite()
+            && self.true_time_s.is_none_or(f64::is_finite)
+            && self.neighbours.iter().all(numbers)
+    }
+}
+
+/// Numbers of this world, or an error at their place in the line.
+mod limits {
+    use std::ops::RangeInclusive;
+
+    use serde::de::{Deserialize, Deserializer, Error};
+
+    use crate::physics;
+
+    fn check<E: Error>(value: f64, range: &RangeInclusive<f64>) -> Result<f64, E> {
+        let refuse = || E::custom(format!("{value} is out of range; {}", physics::advice(range)));
+        range.contains(&value).then_some(value).ok_or_else(refuse)
+    }
+
+    pub(super) fn time<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
+        check(f64::deserialize(deserializer)?, &physics::TIME_S)
+    }
+
+    pub(super) fn maybe_time<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<f64>, D::Error> {
+        let time_s = Option::<f64>::deserialize(deserializer)?;
+        time_s.map(|time_s| check(time_s, &physics::TIME_S)).transpose()
+    }
+
+    pub(super) fn place<'de, D: Deserializer<'de>>(deserializer: D) -> Result<[f64; 3], D::Error> {
+        let place_m = <[f64; 3]>::deserialize(deserializer)?;
+        place_m.iter().try_for_each(|x| check(*x, &physics::PLACE_M).map(|_| ()))?;
+        Ok(place_m)
     }
 }
 

@@ -96,7 +96,7 @@ impl Renderer {
         let down = world_from_camera.rotation.inverse() * -Vector3::z();
         Rendered {
             image: self.read(key),
-            truth: TruthFrame { frame, time_s: exposure.middle_s(), neighbours },
+            truth: TruthFrame { frame, time_s: exposure.middle_s(), neighbours, ..TruthFrame::default() },
             gravity: Unit::new_normalize(down),
         }
     }

@@ -1,0 +1,81 @@
+//! odometry.csv: where the vehicle that carries the cameras believes to be.
+
+use std::path::Path;
+
+use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion, Vector3};
+
+use super::timed::{self, Column};
+use crate::{Error, Place, Result, physics, whole};
+
+const COMPONENT: std::ops::RangeInclusive<f64> = -1.01..=1.01;
+const COLUMNS: [Column; 11] = [
+    ("time_s", physics::TIME_S),
+    ("x_m", physics::PLACE_M),
+    ("y_m", physics::PLACE_M),
+    ("z_m", physics::PLACE_M),
+    ("qx", COMPONENT),
+    ("qy", COMPONENT),
+    ("qz", COMPONENT),
+    ("qw", COMPONENT),
+    ("vx_m_s", physics::SPEED_M_S),
+    ("vy_m_s", physics::SPEED_M_S),
+    ("vz_m_s", physics::SPEED_M_S),
+];
+
+/// A line of odometry.csv. The odometry frame has z up; its origin and its heading are the odometry's own, and drift.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OdometryRow {
+    /// When it was measured, s.
+    pub time_s: f64,
+    /// The pose odometry_from_body.
+    pub pose: Isometry3<f64>,
+    /// Velocity in the odometry frame, m/s.
+    pub velocity_m_s: Vector3<f64>,
+}
+
+/// Reads an odometry.csv.
+///
+/// # Errors
+/// As [`parse_odometry`], and when the file cannot be read.
+pub fn read_odometry(path: impl AsRef<Path>) -> Result<Vec<OdometryRow>> {
+    parse_odometry(&whole::read_text(path.as_ref())?, path)
+}
+
+/// Reads the text of an odometry.csv; `path` is for the messages.
+///
+/// # Errors
+/// [`Error`] with the line for other columns, what is no number, places and speeds that nothing has, a quaternion whose length
+/// is more than 1 % from 1, and times that do not grow.
+pub fn parse_odometry(text: &str, path: impl AsRef<Path>) -> Result<Vec<OdometryRow>> {
+    let path = path.as_ref();
+    let row = |(line, row): (usize, [f64; 11])| {
+        let [time_s, x, y, z, qx, qy, qz, qw, vx, vy, vz] = row;
+        let quaternion = Quaternion::new(qw, qx, qy, qz);
+        if !physics::is_unit(quaternion.norm()) {
+            let reason = format!("the quaternion has length {}, not 1", quaternion.norm());
+            return Err(Error::format(path, reason).at(Place::Line(line)).advise("give qx, qy, qz, qw"));
+        }
+        // What is a unit quaternion to the last digits stays as it is written.
+        let rotation = match (quaternion.norm() - 1.0).abs() < 1e-12 {
+            true => UnitQuaternion::new_unchecked(quaternion),
+            false => UnitQuaternion::new_normalize(quaternion),
+        };
+        let pose = Isometry3::from_parts(Translation3::new(x, y, z), rotation);
+        Ok(OdometryRow { time_s, pose, velocity_m_s: Vector3::new(vx, vy, vz) })
+    };
+    timed::rows(text, path, &COLUMNS)?.into_iter().map(row).collect()
+}
+
+/// The first line of an odometry.csv.
+pub(super) fn header() -> String {
+    timed::header(&COLUMNS)
+}
+
+impl OdometryRow {
+    /// As a line of the file, without its end; it is read back bit for bit.
+    pub fn line(&self) -> String {
+        let (p, q, v) = (&self.pose.translation, &self.pose.rotation, &self.velocity_m_s);
+        let values = [p.x, p.y, p.z, q.i, q.j, q.k, q.w, v.x, v.y, v.z];
+        values.iter().fold(self.time_s.to_string(), |line, value| format!("{line},{value}"))
+    }
+}

@@ -97,5 +97,5 @@ fn truth_of(place: Pixel) -> TruthFrame {
         distance_m: 5.0,
         leds: vec![led],
     };
-    TruthFrame { frame: 0, time_s: 0.0, neighbours: vec![neighbour] }
+    TruthFrame { neighbours: vec![neighbour], ..TruthFrame::default() }
 }

@@ -29,7 +29,7 @@ pub(super) fn truth(frame: u64, leds_px: &[[f64; 2]]) -> TruthFrame {
         distance_m: 5.0,
         leds: (0..).zip(leds_px).map(led).collect(),
     };
-    TruthFrame { frame, time_s: frame as f64 / 60.0, neighbours: vec![neighbour] }
+    TruthFrame { frame, time_s: frame as f64 / 60.0, neighbours: vec![neighbour], ..TruthFrame::default() }
 }
 
 /// Shots after one fault.

@@ -29,19 +29,18 @@ fn rows() -> Vec<(Row, u64)> {
         (row, FRAMES / vehicles as u64)
     };
     let gravity_rad = 5.0 * std::f64::consts::PI / 180.0;
+    let faulty = |name: &str, arms: usize, fault: Fault| with(name, arms, &|row| row.faults = vec![fault]);
     vec![
         with("none", 6, &|_| ()),
         with("none", 4, &|_| ()),
         with("none", 8, &|_| ()),
         with("dead LED", 6, &|row| row.build.dead_led = true),
-        with("foreign lamp 25 px beside", 4, &|row| {
-            row.faults = vec![Fault::Lamp(Lamp::Beside { gap_px: 25.0 })]
-        }),
-        with("30 hot pixels", 6, &|row| row.faults = vec![Fault::Hot(30)]),
-        with("noise of 8 levels", 4, &|row| row.faults = vec![Fault::Noise(8.0)]),
-        with("gravity 5 deg wrong", 6, &|row| row.faults = vec![Fault::Gravity(gravity_rad)]),
         with("smear of 3 px", 4, &|row| row.smear_px = 3.0),
-        with("airframe told 2 % too large", 6, &|row| row.faults = vec![Fault::Airframe(1.02)]),
+        faulty("foreign lamp 25 px beside", 4, Fault::Lamp(Lamp::Beside { gap_px: 25.0 })),
+        faulty("30 hot pixels", 6, Fault::Hot(30)),
+        faulty("noise of 8 levels", 4, Fault::Noise(8.0)),
+        faulty("gravity 5 deg wrong", 6, Fault::Gravity(gravity_rad)),
+        faulty("airframe told 2 % too large", 6, Fault::Airframe(1.02)),
         with("camera full-240", 4, &|row| row.eye = cameras::named("full-240")),
         with("camera coma", 6, &|row| row.eye = cameras::named("coma")),
         crowd(5, 6),

@@ -60,7 +60,8 @@ mod tests {
 
     #[test]
     fn a_line_has_its_length_and_direction() {
-        for (length_px, direction_rad) in [(3.0, 0.0), (6.0, 0.0), (6.0, 0.5), (10.0, 2.2), (4.0, 1.570_796)]
+        for (length_px, direction_rad) in
+            [(3.0, 0.0), (6.0, 0.0), (6.0, 0.5), (10.0, 2.2), (4.0, core::f64::consts::FRAC_PI_2)]
         {
             let Kernel(steps) = Kernel::new(length_px, direction_rad);
             let (sin, cos) = libm::sincos(direction_rad);

@@ -1,11 +1,13 @@
 //! Snapshot -> frame with truth.
 //!
-//! A frame in the order of the light: every LED that shines towards the camera is drawn where it falls (`lights.rs`), hot
-//! pixels and shot noise are added, charge overflows, the sun's disc and the background are laid under it (`backdrop.rs`), and one
+//! A frame in the order of the light: every LED that shines towards the camera is drawn where it falls (`lights.rs`), by way of
+//! mirrors too (`mirrors.rs`), what the observer's own airframe leaves of it (`own.rs`), hot pixels and shot noise are added, charge overflows, the sun's disc and the background are laid under it (`backdrop.rs`), and one
 //! pass over the rows reads it out. A frame depends on camera, seed, snapshot and number alone.
 
 mod backdrop;
 mod lights;
+mod mirrors;
+mod own;
 mod view;
 
 use std::sync::Arc;
@@ -17,6 +19,7 @@ use photinus_io::image::GreyImage;
 use crate::sensor::{Background, Charge, Readout, hash};
 use crate::snapshot::Snapshot;
 use backdrop::Backdrop;
+use own::Own;
 pub use view::CameraView;
 
 /// A frame and what was there.
@@ -42,6 +45,7 @@ pub struct Renderer {
     background: Background,
     backdrop: Backdrop,
     readout: Readout,
+    own: Own,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -71,6 +75,7 @@ impl Renderer {
             background: Background::new(width, height),
             backdrop: Backdrop::new(&view.camera, &view.lens),
             readout: Readout::of_unit(&view.sensor, (width, height), seed),
+            own: Own::default(),
             view: Arc::new(view),
         }
     }
@@ -88,6 +93,8 @@ impl Renderer {
         self.charge.clear();
         let (neighbours, mut electrons) = self.draw_markers(snapshot);
         electrons += self.draw_glints(snapshot, &world_from_camera, key);
+        electrons += self.draw_lamps(snapshot);
+        electrons += self.draw_own_edges(&snapshot.emitter, exposure.length_s);
         for hot in &self.hot_pixels {
             self.charge.add(hot.u, hot.v, (hot.dark_e_per_s * exposure.length_s) as f32);
         }

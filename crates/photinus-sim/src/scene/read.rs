@@ -101,6 +101,9 @@ impl Reader<'_> {
         )?;
         let cameras = table.camera.into_iter().enumerate().map(|(i, camera)| self.camera(i, camera));
         let targets = table.target.into_iter().enumerate().map(|(i, target)| self.target(i, target));
+        let targets: Vec<Target> = targets.collect::<Result<_>>()?;
+        let lamps = table.lamp.into_iter().enumerate();
+        let lamps = lamps.map(|(i, lamp)| lamp.read(check, &format!("lamp[{i}]"), &targets));
         Ok(Scene {
             name: table.name,
             seed: table.seed,
@@ -119,7 +122,9 @@ impl Reader<'_> {
                 .transpose()?,
             observer,
             cameras: cameras.collect::<Result<_>>()?,
-            targets: targets.collect::<Result<_>>()?,
+            lamps: lamps.collect::<Result<_>>()?,
+            own_airframe: table.own_airframe.read(check, |key, solid| self.solid(key, solid))?,
+            targets,
         })
     }
 
@@ -201,7 +206,21 @@ impl Reader<'_> {
         let solids = table.solid.into_iter().enumerate();
         let solids = solids.map(|(i, solid)| self.solid(&format!("target[{index}].solid[{i}]"), solid));
         let blink = table.blink.map(|blink| self.blink(&key("blink"), blink, &airframe)).transpose()?;
-        Ok(Target { id: table.id, solids: solids.collect::<Result<_>>()?, motion, blink, airframe })
+        let lobe = table.lobe.map(|lobe| lobe.read(&self.check, &key("lobe"))).transpose()?;
+        let faults = table.leds.read(&self.check, &key("leds"), &airframe, (self.seed, table.id))?;
+        let mirrors = table.mirror.into_iter().enumerate();
+        let mirrors =
+            mirrors.map(|(i, mirror)| mirror.read(&self.check, &format!("target[{index}].mirror[{i}]")));
+        Ok(Target {
+            id: table.id,
+            solids: solids.collect::<Result<_>>()?,
+            lobe,
+            faults,
+            mirrors: mirrors.collect::<Result<_>>()?,
+            motion,
+            blink,
+            airframe,
+        })
     }
 
     fn blink(

@@ -28,6 +28,29 @@ impl Overflow {
     /// Excess below this share of the full well stays: it changes no grey level.
     const TOLERANCE: f32 = 1e-3;
 
+    /// Radius of the disc of full pixels that `wells` full wells of charge in one place make, px.
+    ///
+    /// Where s is spilled and the rest drained, the charge u that leaves a pixel obeys s/4 lap u - (1 - s) u = well: Bessel
+    /// functions of r / d with d^2 = s / 4(1 - s). That u and its slope vanish at the border R gives
+    /// x I1(x) = 2 wells (1 - s) / (pi s), x = R / d; without a drain the disc holds it all. A spill past 0.99 counts as none
+    /// drained.
+    pub fn full_radius_px(&self, wells: f64) -> f64 {
+        const UNDRAINED: f64 = 0.99;
+        if self.spill <= 0.0 || wells <= 0.0 {
+            return 0.0;
+        }
+        if self.spill > UNDRAINED {
+            return (wells / core::f64::consts::PI).sqrt();
+        }
+        let goal = 2.0 * wells * (1.0 - self.spill) / (core::f64::consts::PI * self.spill);
+        let (mut low, mut high) = (0.0, 100.0);
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if middle * bessel_i1(middle) < goal { low = middle } else { high = middle }
+        }
+        low * (self.spill / (4.0 * (1.0 - self.spill))).sqrt()
+    }
+
     /// Lets charge overflow until no pixel holds more than `full_well_e`.
     pub fn settle(&self, charge: &mut Charge, full_well_e: f64) -> Overflown {
         self.settle_each(charge, |_, _| full_well_e as f32)
@@ -88,6 +111,19 @@ impl Overflow {
     }
 }
 
+/// The modified Bessel function of order 1, by its series: terms (x/2)^(2k+1) / (k! (k+1)!).
+fn bessel_i1(x: f64) -> f64 {
+    let (mut term, mut sum) = (0.5 * x, 0.0);
+    for k in 1..300_u32 {
+        sum += term;
+        term *= 0.25 * x * x / (f64::from(k) * f64::from(k + 1));
+        if term < 1e-12 * sum {
+            break;
+        }
+    }
+    sum
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -133,6 +169,24 @@ mod tests {
             }
             assert_eq!(gone.drained_e < 1.0, spill >= 1.0, "nothing is drained where all is spilled");
         }
+    }
+
+    #[test]
+    fn the_disc_of_a_bright_light_is_as_wide_as_its_charge_makes_it() {
+        for (spill, wells) in [(1.0, 1500.0), (0.98, 3000.0), (0.95, 10_000.0), (0.9, 1e5), (0.5, 1e4)] {
+            let mut charge = Charge::new(101, 101);
+            charge.add(50, 50, wells as f32 * 1000.0);
+            Overflow { spill }.settle(&mut charge, 1000.0);
+            let full = (0..101).map(|v| charge.row(v).iter().filter(|e| **e > 500.0).count()).sum::<usize>();
+            let radius_px = (full as f64 / core::f64::consts::PI).sqrt();
+            let expected_px = Overflow { spill }.full_radius_px(wells);
+            // pixels of half a pixel of border count or not
+            assert!(
+                (radius_px - expected_px).abs() < 0.6 + 0.05 * expected_px,
+                "{radius_px} {expected_px} at {spill}"
+            );
+        }
+        assert!(Overflow { spill: 0.0 }.full_radius_px(1e6) <= 0.0);
     }
 
     #[test]

@@ -48,6 +48,8 @@ pub(super) struct PixelPattern {
     pub(super) offset_dn: f32,
     pub(super) gain: f32,
     pub(super) well: f32,
+    /// What is seen of the background: its gain, and less of it where something stands before the pixel.
+    pub(super) background: f32,
 }
 
 impl Map {
@@ -59,10 +61,14 @@ impl Map {
         };
         let (mut column, mut offset, mut gain, mut well) = (numbers(1), numbers(2), numbers(3), numbers(4));
         let columns: Vec<f64> = (0..width).map(|_| pattern.column_offset_dn * column()).collect();
-        let pixels = (0..width * height).map(|index| PixelPattern {
-            offset_dn: (columns[index % width] + pattern.offset_dn * offset()) as f32,
-            gain: (1.0 + pattern.gain * gain()).max(0.0) as f32,
-            well: (1.0 + pattern.well * well()).max(0.1) as f32,
+        let pixels = (0..width * height).map(|index| {
+            let gain = (1.0 + pattern.gain * gain()).max(0.0) as f32;
+            PixelPattern {
+                offset_dn: (columns[index % width] + pattern.offset_dn * offset()) as f32,
+                gain,
+                well: (1.0 + pattern.well * well()).max(0.1) as f32,
+                background: gain,
+            }
         });
         Self { width, has_wells: pattern.well > 0.0, pixels: pixels.collect() }
     }
@@ -80,6 +86,15 @@ impl Map {
     /// The pixels of row `v` from column `first` on.
     pub(super) fn row(&self, first: usize, v: usize) -> &[PixelPattern] {
         &self.pixels[v * self.width + first..(v + 1) * self.width]
+    }
+
+    /// Lets hidden pixels see the background `brightness` times as bright.
+    pub(super) fn hide(&mut self, hidden: &[bool], brightness: f32) {
+        let mut pixels = self.pixels.to_vec();
+        for (pixel, _) in pixels.iter_mut().zip(hidden).filter(|(_, hidden)| **hidden) {
+            pixel.background = pixel.gain * brightness;
+        }
+        self.pixels = pixels.into();
     }
 
     /// Multiplies the light of every pixel by its gain.

@@ -32,11 +32,20 @@ impl Pixels {
         let is_plain = sensor.pattern.is_none()
             && sensor.well_noise_e <= 0.0
             && sensor.converter == Converter::EIGHT_BITS;
-        (!is_plain).then(|| Self {
-            map: map(),
+        (!is_plain).then(|| Self::unequal(sensor, map()))
+    }
+
+    /// Pixels that are read one by one.
+    pub(super) fn unequal(sensor: &Sensor, map: Map) -> Self {
+        Self {
+            map,
             well_noise_e2: (sensor.well_noise_e * sensor.well_noise_e) as f32,
             converter: sensor.converter,
-        })
+        }
+    }
+
+    pub(super) fn map_mut(&mut self) -> &mut Map {
+        &mut self.map
     }
 
     pub(super) fn map(&self) -> &Map {
@@ -55,7 +64,7 @@ impl Pixels {
         let pattern = self.map.row(first, v);
         let step_e = (common.background_e[1] - common.background_e[0]) / LANE as f32;
         for (i, (grey, pixel)) in onto.iter_mut().zip(pattern).enumerate() {
-            let background_e = (common.background_e[0] + step_e * i as f32).max(0.0) * pixel.gain;
+            let background_e = (common.background_e[0] + step_e * i as f32).max(0.0) * pixel.background;
             let well_dn = common.well_dn * pixel.well;
             let level_dn = background_e * common.dn_per_electron + lit_dn[i];
             let read_dn = common.dn_per_electron * normal[i];

@@ -61,6 +61,16 @@ impl Readout {
         }
     }
 
+    /// Lets the background be seen `brightness` times as bright in the pixels that are `hidden`, row by row.
+    pub fn hide(&mut self, sensor: &Sensor, width: usize, hidden: &[bool], brightness: f64) {
+        if hidden.is_empty() {
+            return;
+        }
+        let plain = || Map::new(&sensor.pattern, (width, hidden.len() / width), 0);
+        let pixels = self.pixels.get_or_insert_with(|| Pixels::unequal(sensor, plain()));
+        pixels.map_mut().hide(hidden, brightness as f32);
+    }
+
     /// Makes of the light of an exposure the charge that is read: smear along columns, the pattern of gains, shot noise, and
     /// what flows over. Says where charge went that is not read.
     pub fn expose(&self, charge: &mut Charge, key: u64) -> Overflown {
@@ -77,6 +87,11 @@ impl Readout {
             }
             None => self.overflow.settle(charge, self.full_well_e),
         }
+    }
+
+    /// Adds to every pixel of a column, from column `first` on, what it picks up of so many electrons of light.
+    pub fn smear_columns(&self, charge: &mut Charge, first: usize, light_e: &[f32]) {
+        self.smear.of_columns(charge, first, light_e);
     }
 
     /// Adds to a background what its rows pick up on their way through the columns.

@@ -159,6 +159,7 @@ impl Drawing<'_> {
             id,
             airframe: Arc::new(airframe),
             solids: Arc::new([middle]),
+            looks: Arc::default(),
             motion: Moving::through(poses),
             leds: powers.into_iter().zip(lit).map(light).collect(),
         }

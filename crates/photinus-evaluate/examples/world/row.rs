@@ -183,6 +183,7 @@ impl<'a> Studio<'a> {
             emitter: row.eye.preset.emitter,
             daylight: None,
             water: None,
+            lamps: Vec::new(),
         }
     }
 }

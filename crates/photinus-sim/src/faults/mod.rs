@@ -7,7 +7,7 @@
 //! told       gravity, scaled (airframe, focal)      what the method is told beside the pixels
 //! ```
 //!
-//! A [`Fault`] is named by a word ([`Fault::from_str`]); [`Faults`] are some of them in an order, with a seed. Every fault
+//! A [`Fault`] is named by a word ([`Fault::WORDS`]); [`Faults`] are some of them in an order, with a seed. Every fault
 //! takes 8-bit frames and gives 8-bit frames, so that it works on recordings as on simulations, and every one rounds. A
 //! simulator can do better where light is concerned: it knows what a saturated pixel hides, and what an LED that is dead left
 //! dark. Truth stays what it was, save that a painted-out LED no longer shines into the image; that of a dropped frame goes with it.
@@ -51,7 +51,7 @@ pub struct Shot {
 /// Shots on their way through faults; one that could not be read is an error in its place.
 pub type Shots<'a> = Box<dyn Iterator<Item = Result<Shot>> + 'a>;
 
-/// Something that goes wrong. The words in brackets are those of [`Fault::from_str`].
+/// Something that goes wrong. The words in brackets are those of [`Fault::WORDS`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Fault {
     /// Grey levels times this (`gain=0.5`).

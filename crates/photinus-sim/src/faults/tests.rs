@@ -41,7 +41,7 @@ pub(super) fn faulty(fault: Fault, seed: u64, shots: Vec<Shot>) -> Vec<Shot> {
 fn grey(count: u64) -> Vec<Shot> {
     let textured = |frame: u64| (0..64 * 48).map(|i| ((i * 37 + frame * 11) % 200) as u8).collect();
     let with_truth = |frame| Shot {
-        truth: Some(truth(frame, &[[20.0, 20.0], [30.0, 21.0], [40.0, 20.0]])),
+        truth: Some(truth(frame, &[[10.0, 20.0], [20.0, 21.0], [30.0, 20.0]])),
         ..shot(frame, textured(frame), 64, 48)
     };
     (0..count).map(with_truth).collect()

@@ -130,6 +130,7 @@ mod tests {
             electrons: 1.0,
             off_axis_rad,
             radius_px: 0.0,
+            among: 1.0,
             outward: [0.6, -0.8],
         }
     }

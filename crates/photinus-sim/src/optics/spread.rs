@@ -34,6 +34,9 @@ pub struct PointLight {
     pub off_axis_rad: f64,
     /// Radius of the source's image, px: a disc of this radius has the variance r^2 / 4 along each axis.
     pub radius_px: f64,
+    /// How many such points share the light of one place (a streak, an edge), 0 and 1 alike for one that is alone: what is too
+    /// faint to be drawn is fainter by that.
+    pub among: f64,
     /// Unit vector of the image that points away from the axis; nothing on the axis.
     pub outward: [f64; 2],
 }
@@ -94,9 +97,10 @@ impl PointSpread {
     /// Adds the light of a point to the charge of the pixels around it.
     pub fn draw(&self, light: &PointLight, onto: &mut Charge) {
         let wider = self.aberrations.widening(light.off_axis_rad);
+        let among = light.among.max(1.0);
         match &self.shape {
             Shape::Gaussians(parts) => {
-                let faintest_e = Self::FAINTEST_E / parts.len() as f64;
+                let faintest_e = Self::FAINTEST_E / parts.len() as f64 / among;
                 for part in parts {
                     let sigma_px = libm::hypot(part.sigma_px * wider, 0.5 * light.radius_px);
                     let whole = PointLight { electrons: part.share * light.electrons, ..*light };
@@ -154,6 +158,7 @@ mod tests {
         electrons: 1e6,
         off_axis_rad: 0.0,
         radius_px: 0.0,
+        among: 1.0,
         outward: [1.0, 0.0],
     };
 

@@ -126,6 +126,7 @@ impl Renderer {
                 electrons,
                 off_axis_rad: bearing.off_axis_rad(),
                 radius_px: 0.0,
+                among: 1.0,
                 outward: PointLight::outward([place.u, place.v], self.axis_px),
             };
             self.view.lens.spread.draw(&light, &mut self.charge);

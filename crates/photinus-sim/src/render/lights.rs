@@ -64,6 +64,8 @@ impl Source<'_> {
 impl Renderer {
     /// Samples along a streak are not farther apart than this, px.
     const STREAK_STEP_PX: f64 = 0.25;
+    /// Samples of a streak that is hardly one.
+    const SHORT_STREAK: f64 = 16.0;
     /// Most samples of a streak: a thousand pixels of it.
     const MOST_SAMPLES: f64 = 4000.0;
 
@@ -179,6 +181,8 @@ impl Renderer {
         let radius_px = streak.radius_m / distance_m / rad_per_px;
         let length_px = distance_px(&path[0], &path[1]) + distance_px(&path[1], &path[2]);
         let samples = (length_px / Self::STREAK_STEP_PX).ceil().clamp(1.0, Self::MOST_SAMPLES);
+        // a short streak's samples are bright ones; those of a long one overlap in every pixel
+        let among = samples / Self::SHORT_STREAK;
         let mut drawn_e = 0.0;
         for sample in 0..samples as usize {
             let (from, to) = (sample as f64 / samples, (sample as f64 + 1.0) / samples);
@@ -188,8 +192,8 @@ impl Renderer {
                 continue;
             }
             let outward = PointLight::outward([place.u, place.v], self.axis_px);
-            let light =
-                PointLight { u_px: place.u, v_px: place.v, electrons, off_axis_rad, radius_px, outward };
+            let (u_px, v_px) = (place.u, place.v);
+            let light = PointLight { u_px, v_px, electrons, off_axis_rad, radius_px, among, outward };
             lens.spread.draw(&light, &mut self.charge);
             drawn_e += electrons;
         }

@@ -68,7 +68,7 @@ impl Renderer {
             let electrons = image.per_m2 * self.sun_electrons(snapshot, &daylight, off_axis_rad);
             let (u_px, v_px) = (place.u, place.v);
             let outward = PointLight::outward([u_px, v_px], self.axis_px);
-            let light = PointLight { u_px, v_px, electrons, off_axis_rad, radius_px: 0.0, outward };
+            let light = PointLight { u_px, v_px, electrons, off_axis_rad, outward, ..PointLight::default() };
             self.view.lens.spread.draw(&light, &mut self.charge);
             drawn_e += electrons;
         }

@@ -8,6 +8,8 @@ mod backdrop;
 mod lights;
 mod mirrors;
 mod own;
+#[cfg(test)]
+mod tests;
 mod view;
 
 use std::sync::Arc;
@@ -106,6 +108,16 @@ impl Renderer {
             truth: TruthFrame { frame, time_s: exposure.middle_s(), neighbours, ..TruthFrame::default() },
             gravity: Unit::new_normalize(down),
         }
+    }
+
+    /// All light that falls into the frame from points, without noise, before anything overflows.
+    #[cfg(test)]
+    pub(crate) fn points(&mut self, snapshot: &Snapshot) -> Charge {
+        self.charge.clear();
+        self.draw_markers(snapshot);
+        self.draw_lamps(snapshot);
+        self.draw_own_edges(&snapshot.emitter, snapshot.exposure.length_s);
+        self.charge.clone()
     }
 
     /// The markers' light alone, without noise, before anything overflows.

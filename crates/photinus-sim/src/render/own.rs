@@ -31,6 +31,8 @@ struct EdgeLight {
 
 /// Places of an edge are not farther apart than this, px.
 const STEP_PX: f64 = 0.3;
+/// Places of an edge whose light one pixel gets.
+const AMONG: f64 = 16.0;
 
 impl Own {
     fn new(camera: &Camera, airframe: &OwnAirframe, body_from_camera: &Isometry3<f64>) -> Self {
@@ -96,7 +98,8 @@ impl Renderer {
             let (u_px, v_px) = (edge.place.u, edge.place.v);
             let outward = PointLight::outward([u_px, v_px], self.axis_px);
             let off_axis_rad = edge.off_axis_rad;
-            let light = PointLight { u_px, v_px, electrons, off_axis_rad, radius_px: 0.0, outward };
+            let light =
+                PointLight { u_px, v_px, electrons, off_axis_rad, radius_px: 0.0, among: AMONG, outward };
             self.view.lens.spread.draw(&light, &mut self.charge);
             drawn_e += electrons;
         }

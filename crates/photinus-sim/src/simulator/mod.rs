@@ -67,6 +67,13 @@ impl Simulator {
         self.renderer.render(&self.snapshot, number)
     }
 
+    /// The light of points in a frame, without noise.
+    #[cfg(test)]
+    pub(crate) fn light_of(&mut self, number: u64) -> crate::sensor::Charge {
+        self.expose(self.exposure(number));
+        self.renderer.points(&self.snapshot)
+    }
+
     /// All frames of the scene, one after the other.
     pub fn frames(&mut self) -> impl Iterator<Item = Rendered> + '_ {
         (0..self.scene.frames).map(|number| self.frame(number))

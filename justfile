@@ -34,6 +34,10 @@ deny-advisories:
 fuzz-check:
     cargo check --manifest-path fuzz/Cargo.toml --locked
 
+# A table of docs/world.md anew, e.g. `just world faults`; also `cameras`, `crowds` and `snapshot`, minutes each.
+world table:
+    cargo run --release -p photinus-evaluate --example world -- {{table}} --update
+
 # A minute of fuzzing for one target, e.g. `just fuzz spots`; needs cargo-fuzz and a nightly toolchain.
 fuzz target:
     cargo +nightly fuzz run {{target}} -- -max_total_time=60

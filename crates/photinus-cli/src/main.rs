@@ -4,6 +4,7 @@
 //! input -> run: detect or locate, frame by frame -> output (JSON lines, CSV, overlay, lines to read) -> summary
 //! info, convert: what a file holds, and the same in another format
 //! simulate: a scene -> frames with truth
+//! inject: a dataset -> the same with faults
 //! evaluate: results against the truth of a dataset
 //! calibrate: photos of a grid -> a camera whose errors are known
 //! demo: all of it on a flight that the program carries along
@@ -21,6 +22,7 @@ mod evaluate;
 mod failure;
 mod fault;
 mod info;
+mod inject;
 mod input;
 mod interrupt;
 mod kind;
@@ -79,6 +81,7 @@ enum Command {
     Info(info::Args),
     Convert(convert::Args),
     Simulate(simulate::Args),
+    Inject(inject::Args),
     Evaluate(evaluate::Args),
     Demo(demo::Args),
     Reproduce(reproduce::Args),
@@ -106,6 +109,7 @@ impl Command {
             Self::Locate(args) => args.quiet(),
             Self::Detect(args) => args.quiet(),
             Self::Simulate(args) => args.quiet(),
+            Self::Inject(args) => args.quiet(),
             Self::Evaluate(args) => args.quiet(),
             Self::Reproduce(args) => args.quiet(),
             Self::Calibrate(args) => args.quiet(),
@@ -120,6 +124,7 @@ impl Command {
             Self::Info(args) => info::run(args, terminal),
             Self::Convert(args) => convert::run(args, terminal),
             Self::Simulate(args) => simulate::run(args, terminal),
+            Self::Inject(args) => inject::run(args, terminal),
             Self::Evaluate(args) => evaluate::run(args, terminal),
             Self::Demo(args) => demo::run(args, terminal),
             Self::Reproduce(args) => reproduce::run(args, terminal),

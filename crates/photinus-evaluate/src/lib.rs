@@ -25,9 +25,10 @@ use serde::Serialize;
 
 pub use frames::{EvaluateError, Pair, Side};
 pub use score::bounds::{BoundScore, Bounds, Violation};
+pub use score::classes::{ClassScore, SpotClass};
 pub use score::distance::{DistanceScore, PaperScore};
-pub use score::neighbours::{NeighbourScore, Neighbours};
-pub use score::position::{CHI_SQUARE_3_95, PositionScore};
+pub use score::neighbours::{NeighbourScore, Neighbours, SURE};
+pub use score::position::{CHI_SQUARE_3_50, CHI_SQUARE_3_95, PositionScore};
 pub use score::range::{Bin, ByRange, RangeBins};
 pub use score::spots::{SpotScore, Spots};
 pub use score::spread::Spread;

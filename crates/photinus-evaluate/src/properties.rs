@@ -147,6 +147,8 @@ fn gaussian_errors_have_the_nees_of_their_covariance() {
     let sigma_of_share = (0.95 * 0.05 / 5000f64).sqrt();
     let inside_95 = position.inside_95.unwrap();
     assert!((inside_95 - 0.95).abs() < 2.5 * sigma_of_share, "{inside_95}");
+    let inside_50 = position.inside_50.unwrap();
+    assert!((inside_50 - 0.5).abs() < 2.5 * 0.5 / 5000f64.sqrt(), "{inside_50}");
 }
 
 #[test]

@@ -211,8 +211,7 @@ impl<'a> Budget<'a> {
             u_px: 16.0,
             v_px: 16.0,
             electrons: all_e,
-            off_axis_rad: 0.0,
-            radius_px: 0.0,
+            ..Default::default()
         };
         preset.lens.spread.draw(&light, &mut charge);
         f64::from(charge.row(16)[16])

@@ -15,7 +15,9 @@
 //! and place.
 
 pub mod background;
+pub mod cameras;
 pub mod dataset;
+pub mod faults;
 pub mod motion;
 pub mod occlusion;
 pub mod optics;
@@ -27,6 +29,7 @@ pub mod sensor;
 pub mod simulator;
 pub mod snapshot;
 pub mod source;
+pub mod stacking;
 
 pub use render::{CameraView, Rendered, Renderer};
 pub use scene::Scene;

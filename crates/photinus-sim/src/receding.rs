@@ -54,6 +54,8 @@ impl RecedingLed {
             electrons: self.electrons(distance_m, exposure_us),
             off_axis_rad: 0.0,
             radius_px: self.emitter.radius_m / distance_m / self.rad_per_px,
+            among: 1.0,
+            outward: [0.0; 2],
         };
         self.lens.spread.draw(&light, &mut charge);
         self.sensor.overflow.settle(&mut charge, self.sensor.full_well_e);

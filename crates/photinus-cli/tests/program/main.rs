@@ -16,6 +16,7 @@ mod commands;
 mod demo;
 mod evaluate;
 mod files_survive;
+mod inject;
 mod mutated;
 mod narrow_frames;
 mod odd_input;

@@ -20,16 +20,25 @@ fn stage(test: &str) -> Stage {
     stage.file("rig/front.toml", FORWARD);
     stage.file("rig/back.toml", BACKWARD);
     let frames = stage.read("rig/frames.csv");
-    stage.file("rig/back.csv", frames.replace(",0,images", ",0.01,images").replace(",0.05,", ",0.06,").replace(",0.1,", ",0.11,"));
+    stage.file(
+        "rig/back.csv",
+        frames.replace(",0,images", ",0.01,images").replace(",0.05,", ",0.06,").replace(",0.1,", ",0.11,"),
+    );
     let camera = |name: &str, frames: &str| {
-        format!("[[camera]]\nname = \"{name}\"\ncamera = \"camera.toml\"\nmounting = \"{name}.toml\"\nframes = \"{frames}\"\n")
+        format!(
+            "[[camera]]\nname = \"{name}\"\ncamera = \"camera.toml\"\nmounting = \"{name}.toml\"\nframes = \"{frames}\"\n"
+        )
     };
     let table = "airframe = \"hexa.toml\"\nexposure_us = 1000\nrate_hz = 20\n";
-    stage.file("rig/dataset.toml", format!("{table}{}{}", camera("front", "frames.csv"), camera("back", "back.csv")));
+    stage.file(
+        "rig/dataset.toml",
+        format!("{table}{}{}", camera("front", "frames.csv"), camera("back", "back.csv")),
+    );
     let truth = |camera: &str, frame: usize, time_s: f64| {
         format!("{{\"frame\":{frame},\"camera\":\"{camera}\",\"time_s\":{time_s},\"neighbours\":[]}}\n")
     };
-    let truth = (0..3).map(|n| truth("front", n, n as f64 / 20.0) + &truth("back", n, n as f64 / 20.0 + 0.01));
+    let truth =
+        (0..3).map(|n| truth("front", n, n as f64 / 20.0) + &truth("back", n, n as f64 / 20.0 + 0.01));
     stage.file("rig/truth.jsonl", truth.collect::<String>());
     stage
 }
@@ -66,12 +75,17 @@ fn every_line_says_its_camera_and_places_in_the_body_frame() {
         assert!((back_m[axis] - expected_back[axis]).abs() < 1e-9, "{back_m:?} not {expected_back:?}");
     }
     // 10 mrad about the vertical at 2.7 m move it 27 mm sideways.
-    let variance = |record: &Value| {
-        record["neighbours"][0]["position_body_covariance_m2"][1][1].as_f64().unwrap()
-    };
+    let variance =
+        |record: &Value| record["neighbours"][0]["position_body_covariance_m2"][1][1].as_f64().unwrap();
     let added_m2 = variance(&records[0]) - variance(&records[1]);
     assert!((added_m2 / (1e-4 * seen_m[2] * seen_m[2] + 1e-6) - 1.0).abs() < 0.02, "{added_m2}");
-    assert_eq!(stage.names("seen"), ["back", "front"].iter().flat_map(|name| (0..3).map(move |n| format!("overlay-{name}-{n:06}.png"))).collect::<Vec<_>>());
+    assert_eq!(
+        stage.names("seen"),
+        ["back", "front"]
+            .iter()
+            .flat_map(|name| (0..3).map(move |n| format!("overlay-{name}-{n:06}.png")))
+            .collect::<Vec<_>>()
+    );
     assert!(stage.read("t.csv").lines().next().unwrap().ends_with(",camera,x_body_m,y_body_m,z_body_m"));
     assert!(stage.read("t.csv").lines().nth(2).unwrap().contains(",back,-2."));
 }
@@ -81,11 +95,20 @@ fn one_camera_of_several_can_be_chosen() {
     let stage = stage("rig-only");
     assert_eq!(stage.run("locate rig -q --out all.jsonl").code, 0);
     assert_eq!(stage.run("locate rig -q --only back --out back.jsonl").code, 0);
-    let of_back: String =
-        stage.read("all.jsonl").lines().filter(|line| line.contains("\"camera\":\"back\"")).map(|line| format!("{line}\n")).collect();
+    let of_back: String = stage
+        .read("all.jsonl")
+        .lines()
+        .filter(|line| line.contains("\"camera\":\"back\""))
+        .map(|line| format!("{line}\n"))
+        .collect();
     assert_eq!(stage.read("back.jsonl"), of_back);
     let names = "it has the cameras front, back; choose one with --only NAME";
-    for words in ["locate rig --camera camera.toml", "detect rig --mask rig/images/000000.png", "convert rig one", "evaluate rig all.jsonl"] {
+    for words in [
+        "locate rig --camera camera.toml",
+        "detect rig --mask rig/images/000000.png",
+        "convert rig one",
+        "evaluate rig all.jsonl",
+    ] {
         stage.refuses(words, &[names]);
     }
     stage.refuses("locate rig --only left", &["--only left: the dataset has the cameras front, back"]);
@@ -103,7 +126,8 @@ fn one_camera_of_several_can_be_chosen() {
 fn a_mounting_of_its_own_and_a_run_that_goes_on() {
     let stage = stage("rig-resume");
     stage.file("front.toml", FORWARD);
-    let plain = stage.run("locate frame.png --camera camera.toml --airframe hexa.toml -q --out - --mounting front.toml");
+    let plain = stage
+        .run("locate frame.png --camera camera.toml --airframe hexa.toml -q --out - --mounting front.toml");
     assert!(plain.out.contains("\"position_body_m\":[2.8"), "{}", plain.out);
     assert_eq!(stage.run("locate rig -q --out whole.jsonl").code, 0);
     let whole = stage.read("whole.jsonl");

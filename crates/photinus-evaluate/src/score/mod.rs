@@ -1,6 +1,7 @@
 //! What was compared -> scores, over all and by range.
 
 pub(crate) mod bounds;
+pub(crate) mod classes;
 pub(crate) mod distance;
 pub(crate) mod neighbours;
 pub(crate) mod position;

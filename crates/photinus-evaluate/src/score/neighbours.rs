@@ -19,6 +19,9 @@ pub struct Neighbours {
     pub split: usize,
 }
 
+/// A reported neighbour whose sigma is below this share of its distance is sure of itself: something steers by it.
+pub const SURE: f64 = 0.2;
+
 /// How many neighbours were found. Counts are over frames: the same one in ten frames counts ten times.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct NeighbourScore {
@@ -33,6 +36,8 @@ pub struct NeighbourScore {
     /// Reported where none is.
     #[serde(rename = "false")]
     pub false_neighbours: usize,
+    /// Those of them that are sure of themselves: a sigma below [`SURE`] of the distance.
+    pub sure_false: usize,
     /// found / visible.
     pub recall: Option<f64>,
     /// found / (found + false).
@@ -45,6 +50,7 @@ enum Count {
     Missed,
     Unseen,
     False,
+    SureFalse,
 }
 
 impl Neighbours {
@@ -75,10 +81,17 @@ fn counts(frame: &ComparedFrame<'_>, has_leds: bool) -> Vec<(Option<f64>, Count)
     }
     for (found, reported) in frame.found().iter().enumerate() {
         if !frame.neighbours.iter().any(|pair| pair.1 == found) {
-            counts.push((reported.distance_m.estimate, Count::False));
+            let count = if is_sure(reported) { Count::SureFalse } else { Count::False };
+            counts.push((reported.distance_m.estimate, count));
         }
     }
     counts
+}
+
+fn is_sure(reported: &NeighbourRecord) -> bool {
+    let sigma_share =
+        reported.distance_m.estimate.zip(reported.distance_m.sigma).map(|(mean, sigma)| sigma / mean);
+    sigma_share.is_some_and(|share| share < SURE)
 }
 
 /// The neighbours of truth that a reported one's spots are of.
@@ -105,14 +118,16 @@ fn split(frame: &ComparedFrame<'_>) -> usize {
 impl NeighbourScore {
     fn new(counts: &[&(Option<f64>, Count)]) -> Self {
         let count = |of: Count| counts.iter().filter(|(_, count)| *count == of).count();
-        let (found, missed, false_neighbours) =
-            (count(Count::Found), count(Count::Missed), count(Count::False));
+        let (found, missed, sure_false) =
+            (count(Count::Found), count(Count::Missed), count(Count::SureFalse));
+        let false_neighbours = count(Count::False) + sure_false;
         Self {
             visible: found + missed,
             found,
             missed,
             unseen: count(Count::Unseen),
             false_neighbours,
+            sure_false,
             recall: share(found, found + missed),
             precision: share(found, found + false_neighbours),
         }
@@ -121,7 +136,7 @@ impl NeighbourScore {
 
 #[cfg(test)]
 mod tests {
-    use photinus_io::results::FrameRecord;
+    use photinus_io::results::{Distance, FrameRecord};
 
     use super::*;
     use crate::hand_made::{found_at, record, shining, spot, there, truth};
@@ -149,6 +164,20 @@ mod tests {
         assert_eq!(evaluation.pairs.len(), 2, "the errors of what is unseen count");
         let frames = evaluation.scores.frames;
         assert_eq!((frames.truth, frames.evaluated, frames.missing, frames.without_truth), (3, 2, 1, 0));
+    }
+
+    #[test]
+    fn a_false_neighbour_with_a_small_sigma_is_a_sure_one() {
+        let truth = [truth(0, vec![shining(1, LEFT, &[[10.0, 10.0]])])];
+        let with = |sigma| {
+            let there = found_at([0.0, -3.0, 4.0]);
+            NeighbourRecord { distance_m: Distance { sigma, ..there.distance_m }, ..there }
+        };
+        // of 5 m: 18 %, 22 %, none
+        let results = [record(0, vec![], vec![found_at(LEFT), with(Some(0.9)), with(Some(1.1)), with(None)])];
+        let all =
+            evaluate(&truth, &results, &Settings::default()).unwrap().scores.neighbours.by_range.overall;
+        assert_eq!((all.found, all.false_neighbours, all.sure_false), (1, 3, 1));
     }
 
     #[test]

@@ -6,6 +6,8 @@ use serde::Serialize;
 use super::spread::{Spread, mean, share};
 use crate::frames::Pair;
 
+/// Half of a chi-square of 3 degrees of freedom is below this.
+pub const CHI_SQUARE_3_50: f64 = 2.365_973_884_375_337_6;
 /// 95 % of a chi-square of 3 degrees of freedom are below this.
 pub const CHI_SQUARE_3_95: f64 = 7.814_727_903_251_178;
 
@@ -21,6 +23,8 @@ pub struct PositionScore {
     pub nees: Option<f64>,
     /// Standard error of that mean, were errors Gaussian and independent: sqrt(6 / count).
     pub nees_standard_error: Option<f64>,
+    /// The share of true positions inside the 50 % ellipsoid; 0.5 where covariances are right.
+    pub inside_50: Option<f64>,
     /// The share of true positions inside the 95 % ellipsoid; 0.95 where covariances are right.
     pub inside_95: Option<f64>,
 }
@@ -28,14 +32,15 @@ pub struct PositionScore {
 impl PositionScore {
     pub(crate) fn new(pairs: &[&Pair<'_>]) -> Self {
         let nees: Vec<f64> = pairs.iter().filter_map(|pair| pair.nees()).collect();
-        let inside = nees.iter().filter(|&&nees| nees <= CHI_SQUARE_3_95).count();
         let count = nees.len();
+        let inside = |limit: f64| share(nees.iter().filter(|&&nees| nees <= limit).count(), count);
         Self {
             error_m: Spread::of(pairs.iter().filter_map(|pair| Some(pair.position_error_m()?.norm()))),
             with_covariance: count,
             nees: mean(nees.iter().copied()),
             nees_standard_error: (count > 0).then(|| (6.0 / count as f64).sqrt()),
-            inside_95: share(inside, count),
+            inside_50: inside(CHI_SQUARE_3_50),
+            inside_95: inside(CHI_SQUARE_3_95),
         }
     }
 }
@@ -80,7 +85,7 @@ mod tests {
         assert_eq!((all.error_m.count, all.with_covariance), (3, 2));
         assert!((all.error_m.rms.unwrap() - (10.05f64 / 3.0).sqrt()).abs() < 1e-12);
         assert!((all.nees.unwrap() - 6.0).abs() < 1e-9, "(3 + 9) / 2");
-        assert_eq!(all.inside_95, Some(0.5));
+        assert_eq!((all.inside_50, all.inside_95), (Some(0.0), Some(0.5)));
         assert_eq!(all.nees_standard_error, Some(3f64.sqrt()));
     }
 }

@@ -3,13 +3,18 @@
 use std::collections::BTreeMap;
 
 use nalgebra::{Matrix2, Vector2};
+use photinus_io::dataset::TruthLed;
 use photinus_io::results::SpotRecord;
 use serde::Serialize;
 
+use super::classes::{ClassScore, SpotClass};
 use super::range::{ByRange, RangeBins};
 use super::spread::{Spread, mean, share};
 use crate::frames::ComparedFrame;
 use crate::pairing::leds::{LedFate, SpotFate};
+
+/// LEDs that are no further apart are seen in one place, px.
+const SAME_PLACE_PX: f64 = 0.05;
 
 /// Spots against the LEDs of truth.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -18,6 +23,8 @@ pub struct Spots {
     /// its neighbour is at; one of no neighbour counts over all alone.
     #[serde(flatten)]
     pub by_range: ByRange<SpotScore>,
+    /// Spots of one LED alone, by what they look like.
+    pub classes: BTreeMap<SpotClass, ClassScore>,
     /// LEDs missed because what is there was rejected, by the reason.
     pub rejected_leds: BTreeMap<String, usize>,
 }
@@ -61,9 +68,10 @@ enum Count<'a> {
 
 /// A spot of one LED alone, and how far off it is.
 #[derive(Clone, Copy)]
-struct Centroid<'a> {
+pub(crate) struct Centroid<'a> {
     spot: &'a SpotRecord,
-    error_px: Vector2<f64>,
+    class: SpotClass,
+    pub(crate) error_px: Vector2<f64>,
 }
 
 impl Spots {
@@ -77,7 +85,15 @@ impl Spots {
                 }
             }
         }
-        Self { by_range: ByRange::new(bins, &counts, |(range_m, _)| *range_m, SpotScore::new), rejected_leds }
+        let mut by_class: BTreeMap<SpotClass, Vec<Centroid<'_>>> = BTreeMap::new();
+        for centroid in counts.iter().filter_map(|(_, count)| count.centroid()) {
+            by_class.entry(centroid.class).or_default().push(centroid);
+        }
+        Self {
+            by_range: ByRange::new(bins, &counts, |(range_m, _)| *range_m, SpotScore::new),
+            classes: by_class.into_iter().map(|(class, all)| (class, ClassScore::new(&all))).collect(),
+            rejected_leds,
+        }
     }
 }
 
@@ -85,14 +101,21 @@ impl Spots {
 fn counts<'a>(frame: &ComparedFrame<'a>) -> Vec<(Option<f64>, Count<'a>)> {
     let pairing = &frame.leds;
     let spots = frame.record.map_or(&[][..], |record| &record.spots);
-    let is_shared = |spot: usize| pairing.led_fates.contains(&LedFate::Merged(spot));
+    // LEDs in one place are one light.
+    let is_shared = |spot: usize, own: &TruthLed| {
+        let others =
+            pairing.leds.iter().zip(&pairing.led_fates).filter(|(_, fate)| **fate == LedFate::Merged(spot));
+        others.into_iter().any(|(other, _)| {
+            libm::hypot(other.led.u_px - own.u_px, other.led.v_px - own.v_px) > SAME_PLACE_PX
+        })
+    };
     let mut counts = Vec::new();
     for (led, &fate) in pairing.leds.iter().zip(&pairing.led_fates) {
         let centroid = match fate {
-            LedFate::Found(spot) if !is_shared(spot) => {
-                let spot = &spots[spot];
+            LedFate::Found(index) if !is_shared(index, led.led) => {
+                let spot = &spots[index];
                 let error_px = Vector2::new(spot.u_px - led.led.u_px, spot.v_px - led.led.v_px);
-                Some(Centroid { spot, error_px })
+                Some(Centroid { spot, class: SpotClass::of(index, spots), error_px })
             }
             _ => None,
         };
@@ -116,13 +139,7 @@ fn reported_range_m(frame: &ComparedFrame<'_>, spot: usize) -> Option<f64> {
 impl SpotScore {
     fn new(counts: &[&(Option<f64>, Count<'_>)]) -> Self {
         let count = |of: fn(&Count<'_>) -> bool| counts.iter().filter(|(_, count)| of(count)).count();
-        let centroids: Vec<Centroid<'_>> = counts
-            .iter()
-            .filter_map(|(_, count)| match count {
-                Count::Led(_, centroid) => *centroid,
-                Count::Double | Count::False => None,
-            })
-            .collect();
+        let centroids: Vec<Centroid<'_>> = counts.iter().filter_map(|(_, count)| count.centroid()).collect();
         let found = count(|count| matches!(count, Count::Led(LedFate::Found(_), _)));
         let missed = count(|count| matches!(count, Count::Led(LedFate::Missed | LedFate::Rejected(_), _)));
         let double = count(|count| matches!(count, Count::Double));
@@ -144,8 +161,18 @@ impl SpotScore {
     }
 }
 
+impl<'a> Count<'a> {
+    fn centroid(&self) -> Option<Centroid<'a>> {
+        match self {
+            Self::Led(_, centroid) => *centroid,
+            Self::Double | Self::False => None,
+        }
+    }
+}
+
 impl Centroid<'_> {
-    fn nees(&self) -> Option<f64> {
+    /// The squared error over the covariance that the spot claims; `None` where that cannot be inverted.
+    pub(crate) fn nees(&self) -> Option<f64> {
         let [[uu, uv], [vu, vv]] = self.spot.covariance_px2;
         let inverse = Matrix2::new(uu, uv, vu, vv).try_inverse()?;
         Some(self.error_px.dot(&(inverse * self.error_px))).filter(|nees| nees.is_finite())
@@ -190,6 +217,10 @@ mod tests {
         assert!((all.centroid_bias_u_px.unwrap() - 0.15).abs() < 1e-12);
         assert!((all.centroid_bias_v_px.unwrap() - 0.2).abs() < 1e-12);
         assert!((all.centroid_nees.unwrap() - 0.25 * 12.0 / 2.0).abs() < 1e-9);
+        // The second spot is of two LEDs, the fourth a double: one is left alone, one is beside its double.
+        let classes: Vec<_> = scores.classes.iter().map(|(class, score)| (*class, score.count)).collect();
+        assert_eq!(classes, [(SpotClass::Small, 1), (SpotClass::Beside, 1)]);
+        assert!((scores.classes[&SpotClass::Small].nees.unwrap() - 0.25 * 12.0).abs() < 1e-9);
         let bins: Vec<_> = scores.by_range.bins.iter().map(|bin| (bin.from_m, bin.score.recall)).collect();
         assert_eq!(bins, [(2.0, Some(0.0)), (4.0, None), (8.0, Some(0.75))]);
         assert_eq!(
@@ -197,6 +228,18 @@ mod tests {
             Some(0.0),
             "binned where its neighbour was said to be"
         );
+    }
+
+    #[test]
+    fn leds_in_one_place_are_one_light() {
+        let count = |apart_px: f64| {
+            let leds = [[100.0, 100.0], [100.0 + apart_px, 100.0]];
+            let truth = [truth(0, vec![shining(1, [0.0, 0.0, 4.0], &leds)])];
+            let results = [record(0, vec![spot(100.0, 100.0, 4)], vec![])];
+            let scores = evaluate(&truth, &results, &Settings::default()).unwrap().scores.spots.unwrap();
+            scores.by_range.overall.centroid_error_px.count
+        };
+        assert_eq!((count(0.01), count(1.0)), (1, 0));
     }
 
     #[test]

@@ -1,4 +1,10 @@
-//! What stands between an LED and the camera: simple solids that belong to airframes.
+//! What stands between an LED and the camera: simple solids that belong to airframes, and parts that mirror (`mirror.rs`).
+
+mod mirror;
+mod own;
+
+pub use mirror::{Image, Mirror, Surface};
+pub use own::{Edge, OwnAirframe};
 
 use nalgebra::Vector3;
 

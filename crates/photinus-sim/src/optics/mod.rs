@@ -3,9 +3,18 @@
 //! Projection is that of any [`photinus::camera::Camera`]. A [`Lens`] adds what a projection does not say: pupil,
 //! transmission (with the filter), relative illumination off the axis, point spread, veiling glare.
 
-mod psf;
+mod aberration;
+mod gaussian;
+mod moffat;
+mod sampled;
+mod spread;
+mod vignette;
 
-pub use psf::{Gaussian, PointLight, PointSpread};
+pub use aberration::Aberrations;
+pub use gaussian::Gaussian;
+pub use sampled::SampledSpread;
+pub use spread::{PointLight, PointSpread};
+pub use vignette::Vignette;
 
 /// A lens and filter in front of the sensor.
 #[derive(Clone, Debug, PartialEq)]
@@ -16,6 +25,8 @@ pub struct Lens {
     pub transmission: f64,
     /// Relative illumination at 90 deg off the axis, against that on it.
     pub side_illumination: f64,
+    /// What the rims of the lens cut off besides.
+    pub vignette: Option<Vignette>,
     /// How a point of light spreads over pixels.
     pub spread: PointSpread,
     /// Share of all light in the image that is scattered evenly over it (veiling glare index, ISO 9358).
@@ -27,7 +38,8 @@ impl Lens {
     /// on to nothing. A fisheye's pupil turns and grows with the angle, so the cos^4 of a plain lens does not hold.
     pub fn illumination(&self, off_axis_rad: f64) -> f64 {
         let share = off_axis_rad / core::f64::consts::FRAC_PI_2;
-        (1.0 - (1.0 - self.side_illumination) * share * share).max(0.0)
+        let open = self.vignette.map_or(1.0, |vignette| vignette.open(off_axis_rad));
+        (1.0 - (1.0 - self.side_illumination) * share * share).max(0.0) * open
     }
 
     /// Power that reaches the sensor, W, from an irradiance at the pupil.
@@ -43,11 +55,19 @@ mod tests {
     #[test]
     fn gathered_power_is_pupil_times_transmission_times_illumination() {
         let spread = PointSpread::new(vec![Gaussian { share: 1.0, sigma_px: 0.5 }], 0.0).unwrap();
-        let lens =
-            Lens { pupil_m2: 5e-7, transmission: 0.1, side_illumination: 0.6, spread, veiling_glare: 0.0 };
+        let lens = Lens {
+            pupil_m2: 5e-7,
+            transmission: 0.1,
+            side_illumination: 0.6,
+            vignette: None,
+            spread,
+            veiling_glare: 0.0,
+        };
         assert!((lens.gathered_w(0.06, 0.0) - 3e-9).abs() < 1e-20);
         assert!((lens.illumination(core::f64::consts::FRAC_PI_2) - 0.6).abs() < 1e-12);
         assert!((lens.illumination(core::f64::consts::FRAC_PI_4) - 0.9).abs() < 1e-12);
         assert!(lens.illumination(3.0) <= 0.0);
+        let cut = Lens { vignette: Vignette::new(0.2, 1.0), ..lens };
+        assert!(cut.illumination(0.1) > 0.99 && cut.illumination(1.1) <= 0.0);
     }
 }

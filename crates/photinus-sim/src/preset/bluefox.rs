@@ -4,7 +4,7 @@ use core::f64::consts::PI;
 
 use super::{Fitted, Preset};
 use crate::optics::{Gaussian, Lens, PointSpread};
-use crate::sensor::{Overflow, Response, Sensor, Shutter};
+use crate::sensor::{ColumnSmear, Converter, Overflow, Pattern, Response, Sensor, Shutter};
 use crate::source::Emitter;
 
 /// What `fit_preset` found for the paper's figures 10 and 11.
@@ -32,6 +32,7 @@ pub fn bluefox(fitted: &Fitted) -> Preset {
             pupil_m2: PI * 0.39e-3 * 0.39e-3,
             transmission: fitted.transmission,
             side_illumination: 0.6,
+            vignette: None,
             spread: PointSpread::new(vec![core, skirt], 0.1).expect("shares of a fit sum to 1"),
             veiling_glare: 0.0,
         },
@@ -40,13 +41,17 @@ pub fn bluefox(fitted: &Fitted) -> Preset {
             response: Response::Linear,
             electrons_per_dn,
             full_well_e: fitted.well * 255.0 * electrons_per_dn,
+            well_noise_e: 0.0,
             overflow: Overflow { spill: fitted.spill },
+            smear: ColumnSmear::NONE,
             read_noise_e: 30.0,
             dark_offset_dn: 0.0,
             corner_offset_dn: 0.0,
             dark_current_e_per_s: 1000.0,
             hot_pixel_share: 1e-5,
             hot_pixel_e_per_s: 1e5,
+            pattern: Pattern::NONE,
+            converter: Converter::EIGHT_BITS,
             shutter: Shutter::Global,
         },
     }

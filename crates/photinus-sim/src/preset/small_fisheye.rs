@@ -4,7 +4,7 @@ use core::f64::consts::PI;
 
 use super::Preset;
 use crate::optics::{Gaussian, Lens, PointSpread};
-use crate::sensor::{Overflow, Response, Sensor, Shutter};
+use crate::sensor::{ColumnSmear, Converter, Overflow, Pattern, Response, Sensor, Shutter};
 use crate::source::Emitter;
 
 /// What is fitted of this camera.
@@ -44,6 +44,7 @@ pub fn small_fisheye(fit: &SmallFisheyeFit) -> Preset {
             pupil_m2: PI * 0.39e-3 * 0.39e-3,
             transmission: fit.transmission,
             side_illumination: 0.6,
+            vignette: None,
             spread: PointSpread::new(vec![core, skirt], 0.1).expect("shares of a fit sum to 1"),
             veiling_glare: 0.0,
         },
@@ -52,13 +53,17 @@ pub fn small_fisheye(fit: &SmallFisheyeFit) -> Preset {
             response: Response::Soft { ceiling_dn: fit.ceiling_dn },
             electrons_per_dn: 33.0,
             full_well_e: 1e9,
+            well_noise_e: 0.0,
             overflow: Overflow { spill: 0.0 },
+            smear: ColumnSmear::NONE,
             read_noise_e: 9.0,
             dark_offset_dn: 20.5,
             corner_offset_dn: 8.0,
             dark_current_e_per_s: 0.0,
             hot_pixel_share: 0.0,
             hot_pixel_e_per_s: 0.0,
+            pattern: Pattern::NONE,
+            converter: Converter::EIGHT_BITS,
             shutter: Shutter::Global,
         },
     }

@@ -6,6 +6,7 @@ use nalgebra::{Isometry3, Vector3};
 use photinus::camera::{Bearing, Camera, Pixel};
 
 use super::Renderer;
+use super::lights::is_hidden;
 use crate::background::{Daylight, Water};
 use crate::optics::{Lens, PointLight};
 use crate::sensor::{Background, hash};
@@ -54,7 +55,10 @@ impl Backdrop {
 struct SunDisc {
     centre: Pixel,
     electrons: f64,
+    /// Radius of what is full of its charge, px.
     radius_px: f64,
+    /// Radius of its image, px.
+    own_px: f64,
 }
 
 impl Renderer {
@@ -89,7 +93,10 @@ impl Renderer {
             let aureole_e = sun.as_ref().map_or(0.0, |sun| sun.aureole_e(&node.place));
             (even_e + electrons(radiance) * node.etendue_sr + aureole_e + corner_e) as f32
         });
+        self.readout.smear_background(&mut self.background, self.charge.height());
         if let Some(sun) = sun {
+            let (first, columns) = sun.columns(self.charge.width());
+            self.readout.smear_columns(&mut self.charge, first, &columns);
             self.fill_disc(&sun);
         }
     }
@@ -119,6 +126,8 @@ impl Renderer {
                 electrons,
                 off_axis_rad: bearing.off_axis_rad(),
                 radius_px: 0.0,
+                among: 1.0,
+                outward: PointLight::outward([place.u, place.v], self.axis_px),
             };
             self.view.lens.spread.draw(&light, &mut self.charge);
             all_e += electrons;
@@ -126,22 +135,27 @@ impl Renderer {
         all_e
     }
 
-    fn sun_electrons(&self, snapshot: &Snapshot, daylight: &Daylight, off_axis_rad: f64) -> f64 {
+    pub(super) fn sun_electrons(&self, snapshot: &Snapshot, daylight: &Daylight, off_axis_rad: f64) -> f64 {
         let power_w = self.view.lens.gathered_w(daylight.sun_w_m2(), off_axis_rad);
         let (exposure_s, photon_j) = (snapshot.exposure.length_s, snapshot.emitter.photon_j());
         self.view.sensor.photo_electrons(power_w, exposure_s, photon_j)
     }
 
-    /// The sun where it stands in the image. It overflows so far that its size is a matter of charge: the disc whose
-    /// full wells hold all its photo-electrons (see `sensor/overflow.rs`), not less than the sun itself.
+    /// The sun where it stands in the image, with the light that no vehicle keeps from the camera. It overflows so far that its
+    /// size is a matter of charge: the disc that its photo-electrons fill (see `sensor/overflow.rs`), not less than the sun
+    /// itself.
     fn sun_disc(&self, snapshot: &Snapshot, world_from_camera: &Isometry3<f64>) -> Option<SunDisc> {
         let daylight = snapshot.daylight?;
         let bearing = Bearing::new(world_from_camera.rotation.inverse() * daylight.sun()?.into_inner())?;
         let centre = self.view.camera.pixel(&bearing)?;
-        let electrons = self.sun_electrons(snapshot, &daylight, bearing.off_axis_rad());
+        let seen = visible_share(snapshot, &world_from_camera.translation.vector, daylight.sun()?);
+        if seen <= 0.0 || self.own.hides(&centre) {
+            return None;
+        }
+        let electrons = seen * self.sun_electrons(snapshot, &daylight, bearing.off_axis_rad());
         let own_px = Daylight::SUN_RADIUS_RAD / self.view.camera.rad_per_px(centre)?;
-        let full_px = (electrons / (PI * self.view.sensor.full_well_e)).sqrt();
-        Some(SunDisc { centre, electrons, radius_px: full_px.max(own_px) })
+        let full_px = self.view.sensor.overflow.full_radius_px(electrons / self.view.sensor.full_well_e);
+        Some(SunDisc { centre, electrons, radius_px: full_px.max(own_px), own_px })
     }
 
     fn fill_disc(&mut self, sun: &SunDisc) {
@@ -164,7 +178,39 @@ impl Renderer {
     }
 }
 
+/// Share of the sun's disc that vehicles leave free, of nineteen places of it that stand for equal parts.
+fn visible_share(snapshot: &Snapshot, camera_m: &Vector3<f64>, sun: &Vector3<f64>) -> f64 {
+    const FAR_M: f64 = 1e4;
+    let side = sun.cross(&Vector3::new(0.0, 0.0, 1.0)).try_normalize(1e-6).unwrap_or_else(Vector3::x);
+    let up = side.cross(sun);
+    let rings = [(1, 0.0), (6, 0.55), (12, 0.88)];
+    let places = rings.into_iter().flat_map(|(count, radius)| {
+        (0..count).map(move |index| (radius, PI * 2.0 * f64::from(index) / f64::from(count)))
+    });
+    let free = places.filter(|(radius, angle)| {
+        let (sin, cos) = libm::sincos(*angle);
+        let aside = (side * cos + up * sin) * (radius * Daylight::SUN_RADIUS_RAD);
+        !is_hidden(snapshot, camera_m, &(camera_m + (sun + aside) * FAR_M))
+    });
+    free.count() as f64 / 19.0
+}
+
 impl SunDisc {
+    /// The light of its image column by column, from a first column on.
+    fn columns(&self, width: usize) -> (usize, Vec<f32>) {
+        let reach_px = self.own_px.max(0.5);
+        let first = (self.centre.u - reach_px).round().clamp(0.0, width as f64 - 1.0);
+        let last = (self.centre.u + reach_px).round().clamp(0.0, width as f64 - 1.0);
+        // of a disc, the share to the left of a line
+        let left = |u_px: f64| {
+            let x = ((u_px - self.centre.u) / reach_px).clamp(-1.0, 1.0);
+            0.5 + (x * (1.0 - x * x).sqrt() + libm::asin(x)) / PI
+        };
+        let share = |u: usize| left(u as f64 + 0.5) - left(u as f64 - 0.5);
+        let columns = (first as usize..=last as usize).map(|u| (self.electrons * share(u)) as f32);
+        (first as usize, columns.collect())
+    }
+
     fn aureole_e(&self, place: &Pixel) -> f64 {
         let (du, dv) = (place.u - self.centre.u, place.v - self.centre.v);
         let core_px = self.radius_px.max(Background::STEP_PX as f64);

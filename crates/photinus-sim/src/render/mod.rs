@@ -1,11 +1,15 @@
 //! Snapshot -> frame with truth.
 //!
-//! A frame in the order of the light: every LED that shines towards the camera is drawn where it falls (`lights.rs`), hot
-//! pixels and shot noise are added, charge overflows, the sun's disc and the background are laid under it (`backdrop.rs`), and one
+//! A frame in the order of the light: every LED that shines towards the camera is drawn where it falls (`lights.rs`), by way of
+//! mirrors too (`mirrors.rs`), what the observer's own airframe leaves of it (`own.rs`), hot pixels and shot noise are added, charge overflows, the sun's disc and the background are laid under it (`backdrop.rs`), and one
 //! pass over the rows reads it out. A frame depends on camera, seed, snapshot and number alone.
 
 mod backdrop;
 mod lights;
+mod mirrors;
+mod own;
+#[cfg(test)]
+mod tests;
 mod view;
 
 use std::sync::Arc;
@@ -17,6 +21,7 @@ use photinus_io::image::GreyImage;
 use crate::sensor::{Background, Charge, Readout, hash};
 use crate::snapshot::Snapshot;
 use backdrop::Backdrop;
+use own::Own;
 pub use view::CameraView;
 
 /// A frame and what was there.
@@ -34,12 +39,15 @@ pub struct Rendered {
 #[derive(Clone, Debug)]
 pub struct Renderer {
     view: Arc<CameraView>,
+    /// Where the optical axis meets the image.
+    axis_px: [f64; 2],
     seed: u64,
     hot_pixels: Vec<HotPixel>,
     charge: Charge,
     background: Background,
     backdrop: Backdrop,
     readout: Readout,
+    own: Own,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -60,13 +68,16 @@ impl Renderer {
             let dark_e_per_s = -libm::log(uniform) * view.sensor.hot_pixel_e_per_s;
             HotPixel { u: draw as usize % width, v: (draw >> 20) as usize % height, dark_e_per_s }
         };
+        let axis = view.camera.model().centre();
         Self {
             seed,
+            axis_px: [axis.u, axis.v],
             hot_pixels: (0..count).map(hot).collect(),
             charge: Charge::new(width, height),
             background: Background::new(width, height),
             backdrop: Backdrop::new(&view.camera, &view.lens),
-            readout: Readout::new(&view.sensor),
+            readout: Readout::of_unit(&view.sensor, (width, height), seed),
+            own: Own::default(),
             view: Arc::new(view),
         }
     }
@@ -84,12 +95,12 @@ impl Renderer {
         self.charge.clear();
         let (neighbours, mut electrons) = self.draw_markers(snapshot);
         electrons += self.draw_glints(snapshot, &world_from_camera, key);
+        electrons += self.draw_lamps(snapshot);
+        electrons += self.draw_own_edges(&snapshot.emitter, exposure.length_s);
         for hot in &self.hot_pixels {
             self.charge.add(hot.u, hot.v, (hot.dark_e_per_s * exposure.length_s) as f32);
         }
-        self.readout.shot(&mut self.charge, key);
-        let sensor = &self.view.sensor;
-        sensor.overflow.settle(&mut self.charge, sensor.full_well_e);
+        self.readout.expose(&mut self.charge, key);
         self.lay_background(snapshot, &world_from_camera, electrons);
         let down = world_from_camera.rotation.inverse() * -Vector3::z();
         Rendered {
@@ -97,6 +108,16 @@ impl Renderer {
             truth: TruthFrame { frame, time_s: exposure.middle_s(), neighbours, ..TruthFrame::default() },
             gravity: Unit::new_normalize(down),
         }
+    }
+
+    /// All light that falls into the frame from points, without noise, before anything overflows.
+    #[cfg(test)]
+    pub(crate) fn points(&mut self, snapshot: &Snapshot) -> Charge {
+        self.charge.clear();
+        self.draw_markers(snapshot);
+        self.draw_lamps(snapshot);
+        self.draw_own_edges(&snapshot.emitter, snapshot.exposure.length_s);
+        self.charge.clone()
     }
 
     /// The markers' light alone, without noise, before anything overflows.

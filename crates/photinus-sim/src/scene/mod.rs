@@ -3,21 +3,25 @@
 //! Paths in a scene are relative to the scene's folder. Unknown keys are refused; every refusal names file, key and
 //! reason. The keys are described in docs/scenes.md.
 
+mod camera_table;
 mod check;
+mod light_table;
 mod read;
 mod table;
 #[cfg(test)]
 mod tests;
 
-use nalgebra::Isometry3;
+pub(crate) use camera_table::parse_sampled;
+use nalgebra::{Isometry3, Vector3};
 use photinus::airframe::Airframe;
 use photinus::camera::Camera;
 use photinus_io::blink::BlinkCodes;
 
 use crate::background::{Daylight, Water};
 use crate::motion::Motion;
-use crate::occlusion::Solid;
+use crate::occlusion::{Mirror, OwnAirframe, Solid};
 use crate::preset::Preset;
+use crate::source::{LedFaults, Lobe};
 
 /// What is simulated.
 #[derive(Clone, Debug)]
@@ -38,6 +42,10 @@ pub struct Scene {
     pub daylight: Option<Daylight>,
     /// A water surface below.
     pub water: Option<Water>,
+    /// Lamps that are no markers.
+    pub lamps: Vec<SceneLamp>,
+    /// What of the robot with the cameras they see.
+    pub own_airframe: OwnAirframe,
     /// How the robot with the cameras moves.
     pub observer: Motion,
     /// Its cameras, at least one.
@@ -66,10 +74,29 @@ pub struct Target {
     pub airframe: Airframe,
     /// What of it hides LEDs.
     pub solids: Vec<Solid>,
+    /// How its LEDs really shine, in place of the airframe's lobes.
+    pub lobe: Option<Lobe>,
+    /// What is wrong with its LEDs.
+    pub faults: LedFaults,
+    /// What of it mirrors.
+    pub mirrors: Vec<Mirror>,
     /// How it moves.
     pub motion: Motion,
     /// How its LEDs blink; without, they shine.
     pub blink: Option<BlinkPlan>,
+}
+
+/// A lamp that shines all the time, the same in every direction.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SceneLamp {
+    /// Where it is, in the world or in the body frame of what it is beside, m.
+    pub position_m: Vector3<f64>,
+    /// Intensity against that of a marker's LED on its axis.
+    pub power: f64,
+    /// Its radius, m.
+    pub radius_m: f64,
+    /// Index of the target that it moves with.
+    pub beside: Option<usize>,
 }
 
 /// Which code words a target sends, and when.

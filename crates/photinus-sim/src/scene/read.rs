@@ -8,6 +8,7 @@ use photinus_io::blink::read_blink_codes;
 use photinus_io::{Result, read_camera, table as toml_table};
 use toml::value::{Datetime, Offset};
 
+use super::camera_table::{OpticsTable, SensorTable};
 use super::check::Check;
 use super::table::{
     BlinkTable, CameraTable, DaylightTable, MotionTable, PresetName, SceneTable, SkyName, SolidTable,
@@ -17,7 +18,7 @@ use super::{BlinkPlan, MountedCamera, Scene, Target};
 use crate::background::{Daylight, Place, Sky, Water, sun_direction};
 use crate::motion::{Flight, Motion, Path as FlightPath, Recorded, Spin, Wander};
 use crate::occlusion::Solid;
-use crate::preset::{BLUEFOX_FIT, SMALL_FISHEYE_FIT, bluefox, small_fisheye};
+use crate::preset::{BLUEFOX_FIT, Preset, SMALL_FISHEYE_FIT, bluefox, small_fisheye};
 use crate::sensor::hash;
 
 /// Longest scene, s, and most frames of one.
@@ -100,16 +101,16 @@ impl Reader<'_> {
         )?;
         let cameras = table.camera.into_iter().enumerate().map(|(i, camera)| self.camera(i, camera));
         let targets = table.target.into_iter().enumerate().map(|(i, target)| self.target(i, target));
+        let targets: Vec<Target> = targets.collect::<Result<_>>()?;
+        let lamps = table.lamp.into_iter().enumerate();
+        let lamps = lamps.map(|(i, lamp)| lamp.read(check, &format!("lamp[{i}]"), &targets));
         Ok(Scene {
             name: table.name,
             seed: table.seed,
             rate_hz,
             frames: (duration_s * rate_hz).round().max(1.0) as u64,
             exposure_us,
-            preset: match table.preset {
-                PresetName::Bluefox => bluefox(&BLUEFOX_FIT),
-                PresetName::SmallFisheye => small_fisheye(&SMALL_FISHEYE_FIT),
-            },
+            preset: self.preset(table.preset, &table.optics, &table.sensor)?,
             daylight: table.daylight.map(|daylight| self.daylight(&daylight)).transpose()?,
             water: table
                 .water
@@ -121,8 +122,21 @@ impl Reader<'_> {
                 .transpose()?,
             observer,
             cameras: cameras.collect::<Result<_>>()?,
-            targets: targets.collect::<Result<_>>()?,
+            lamps: lamps.collect::<Result<_>>()?,
+            own_airframe: table.own_airframe.read(check, |key, solid| self.solid(key, solid))?,
+            targets,
         })
+    }
+
+    /// A preset with what the scene changes of it.
+    fn preset(&self, name: PresetName, optics: &OpticsTable, sensor: &SensorTable) -> Result<Preset> {
+        let mut preset = match name {
+            PresetName::Bluefox => bluefox(&BLUEFOX_FIT),
+            PresetName::SmallFisheye => small_fisheye(&SMALL_FISHEYE_FIT),
+        };
+        optics.apply(&self.check, &mut preset.lens)?;
+        sensor.apply(&self.check, &mut preset.sensor)?;
+        Ok(preset)
     }
 
     /// A file that the scene names.
@@ -192,7 +206,21 @@ impl Reader<'_> {
         let solids = table.solid.into_iter().enumerate();
         let solids = solids.map(|(i, solid)| self.solid(&format!("target[{index}].solid[{i}]"), solid));
         let blink = table.blink.map(|blink| self.blink(&key("blink"), blink, &airframe)).transpose()?;
-        Ok(Target { id: table.id, solids: solids.collect::<Result<_>>()?, motion, blink, airframe })
+        let lobe = table.lobe.map(|lobe| lobe.read(&self.check, &key("lobe"))).transpose()?;
+        let faults = table.leds.read(&self.check, &key("leds"), &airframe, (self.seed, table.id))?;
+        let mirrors = table.mirror.into_iter().enumerate();
+        let mirrors =
+            mirrors.map(|(i, mirror)| mirror.read(&self.check, &format!("target[{index}].mirror[{i}]")));
+        Ok(Target {
+            id: table.id,
+            solids: solids.collect::<Result<_>>()?,
+            lobe,
+            faults,
+            mirrors: mirrors.collect::<Result<_>>()?,
+            motion,
+            blink,
+            airframe,
+        })
     }
 
     fn blink(

@@ -5,6 +5,9 @@ use std::path::PathBuf;
 use serde::Deserialize;
 use toml::value::Datetime;
 
+use super::camera_table::{OpticsTable, SensorTable};
+use super::light_table::{LampTable, LedsTable, LobeTable, MirrorTable, OwnTable};
+
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct SceneTable {
@@ -12,11 +15,19 @@ pub(super) struct SceneTable {
     #[serde(default)]
     pub(super) seed: u64,
     pub(super) preset: PresetName,
+    #[serde(default)]
+    pub(super) optics: OpticsTable,
+    #[serde(default)]
+    pub(super) sensor: SensorTable,
     pub(super) rate_hz: f64,
     pub(super) duration_s: f64,
     pub(super) exposure_us: f64,
     pub(super) daylight: Option<DaylightTable>,
     pub(super) water: Option<WaterTable>,
+    #[serde(default)]
+    pub(super) lamp: Vec<LampTable>,
+    #[serde(default)]
+    pub(super) own_airframe: OwnTable,
     pub(super) observer: MoverTable,
     pub(super) camera: Vec<CameraTable>,
     pub(super) target: Vec<TargetTable>,
@@ -132,6 +143,11 @@ pub(super) struct TargetTable {
     pub(super) spin: Vec<SpinTable>,
     #[serde(default)]
     pub(super) solid: Vec<SolidTable>,
+    pub(super) lobe: Option<LobeTable>,
+    #[serde(default)]
+    pub(super) leds: LedsTable,
+    #[serde(default)]
+    pub(super) mirror: Vec<MirrorTable>,
     pub(super) blink: Option<BlinkTable>,
 }
 

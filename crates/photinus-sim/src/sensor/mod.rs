@@ -1,21 +1,35 @@
 //! The sensor: photo-electrons in, 8-bit grey levels out.
 //!
 //! ```text
-//! light -> photo-electrons with shot noise -> overflow (charge.rs, overflow.rs) -> full well
-//!       -> read noise -> gain, dark offset, 8 bits (readout.rs)
+//! light -> smear along columns (smear.rs) -> pattern of gain (pattern.rs) -> photo-electrons with shot noise
+//!       -> overflow (charge.rs, overflow.rs) -> full well -> read noise -> gain, dark offset (readout.rs, pixel.rs)
+//!       -> bits (converter.rs)
 //! ```
-//! The order and the terms are those of EMVA 1288 (linear model); overflow is what the paper calls blooming.
+//! The order and the terms are those of EMVA 1288 (linear model); overflow is what the paper calls blooming. A sensor without
+//! pattern, noise of its well and bits of its own takes a shorter way through the readout.
 
+mod background;
 mod charge;
+mod converter;
 mod noise;
 mod overflow;
+mod pattern;
+mod pixel;
 mod readout;
+mod smear;
 
+#[cfg(test)]
+mod tests;
+
+pub use background::Background;
 pub use charge::Charge;
+pub use converter::Converter;
 pub use noise::NoiseTable;
 pub(crate) use noise::hash;
 pub use overflow::{Overflow, Overflown};
-pub use readout::{Background, Readout};
+pub use pattern::Pattern;
+pub use readout::Readout;
+pub use smear::ColumnSmear;
 
 /// How the rows of a frame are exposed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -52,8 +66,12 @@ pub struct Sensor {
     pub electrons_per_dn: f64,
     /// Charge at which a pixel overflows, electrons; more than 255 levels' worth where the converter saturates first.
     pub full_well_e: f64,
+    /// Noise of a full pixel from frame to frame, electrons: that of its reset, in place of shot noise.
+    pub well_noise_e: f64,
     /// What becomes of charge above the full well.
     pub overflow: Overflow,
+    /// Light that rows pick up on their way through a column.
+    pub smear: ColumnSmear,
     /// Noise of reading a pixel, electrons.
     pub read_noise_e: f64,
     /// Grey level of a pixel without light.
@@ -66,6 +84,10 @@ pub struct Sensor {
     pub hot_pixel_share: f64,
     /// Mean dark current of a hot pixel, electrons per second; its distribution is exponential.
     pub hot_pixel_e_per_s: f64,
+    /// How unequal the pixels are.
+    pub pattern: Pattern,
+    /// How many levels the converter tells apart.
+    pub converter: Converter,
     /// How the rows are exposed.
     pub shutter: Shutter,
 }

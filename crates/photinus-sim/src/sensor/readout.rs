@@ -3,50 +3,10 @@
 //! A pixel without a marker costs its background, its noise and its rounding, nothing else.
 
 use super::noise::hash;
-use super::{Charge, NoiseTable, Response, Sensor};
-
-/// Light that changes slowly over the image (sky, ground, glare, dark current): electrons on a coarse grid, linear between.
-#[derive(Clone, Debug)]
-pub struct Background {
-    columns: usize,
-    rows: usize,
-    electrons: Vec<f32>,
-}
-
-impl Background {
-    /// Pixels between two nodes of the grid.
-    pub const STEP_PX: usize = 16;
-
-    /// A background of nothing for an image of this size.
-    pub fn new(width: usize, height: usize) -> Self {
-        let nodes = |length: usize| length.div_ceil(Self::STEP_PX) + 1;
-        let (columns, rows) = (nodes(width), nodes(height));
-        Self { columns, rows, electrons: vec![0.0; columns * rows] }
-    }
-
-    /// Sets every node to what `electrons` gives for its column and row in the image.
-    pub fn fill(&mut self, mut electrons: impl FnMut(usize, usize) -> f32) {
-        for (index, node) in self.electrons.iter_mut().enumerate() {
-            let (column, row) = (index % self.columns, index / self.columns);
-            *node = electrons(column * Self::STEP_PX, row * Self::STEP_PX);
-        }
-    }
-
-    /// Number of nodes, in the order of [`Background::fill`].
-    pub fn nodes(&self) -> usize {
-        self.electrons.len()
-    }
-
-    /// Electrons at the nodes' columns, for image row `v`.
-    fn row(&self, v: usize, onto: &mut Vec<f32>) {
-        let above = (v / Self::STEP_PX).min(self.rows - 2);
-        let weight = (v - above * Self::STEP_PX) as f32 / Self::STEP_PX as f32;
-        let [upper, lower] =
-            [above, above + 1].map(|row| &self.electrons[row * self.columns..][..self.columns]);
-        onto.clear();
-        onto.extend(upper.iter().zip(lower).map(|(a, b)| a + (b - a) * weight));
-    }
-}
+use super::overflow::Overflown;
+use super::pattern::Map;
+use super::pixel::{Pixels, Reading};
+use super::{Background, Charge, ColumnSmear, NoiseTable, Overflow, Response, Sensor};
 
 /// Reads frames out of a sensor.
 #[derive(Clone, Debug)]
@@ -56,17 +16,29 @@ pub struct Readout {
     offset_dn: f32,
     well_dn: f32,
     ceiling_dn: Option<f32>,
+    overflow: Overflow,
+    full_well_e: f64,
+    smear: ColumnSmear,
+    /// Pixels that are not all alike: the longer way.
+    pixels: Option<Pixels>,
     noise: NoiseTable,
     nodes_e: Vec<f32>,
     nodes_dn: Vec<f32>,
     nodes_sigma_dn: Vec<f32>,
 }
 
-const LANE: usize = Background::STEP_PX;
+pub(super) const LANE: usize = Background::STEP_PX;
 const DARK: [f32; LANE] = [0.0; LANE];
 
 impl Readout {
-    /// A readout of `sensor`.
+    /// A readout of `sensor` as unit number `unit` of its make: the number tells where its pattern lies. The image has
+    /// `width` columns and `height` rows.
+    pub fn of_unit(sensor: &Sensor, (width, height): (usize, usize), unit: u64) -> Self {
+        let map = || Map::new(&sensor.pattern, (width, height), unit);
+        Self { pixels: Pixels::new(sensor, map), ..Self::new(sensor) }
+    }
+
+    /// A readout of `sensor`, were its pixels all alike and its well and converter plain.
     pub fn new(sensor: &Sensor) -> Self {
         let dn_per_electron = 1.0 / sensor.electrons_per_dn;
         Self {
@@ -78,11 +50,53 @@ impl Readout {
                 Response::Linear => None,
                 Response::Soft { ceiling_dn } => Some(ceiling_dn as f32),
             },
+            overflow: sensor.overflow,
+            full_well_e: sensor.full_well_e,
+            smear: sensor.smear,
+            pixels: None,
             noise: NoiseTable::new(),
             nodes_e: Vec::new(),
             nodes_dn: Vec::new(),
             nodes_sigma_dn: Vec::new(),
         }
+    }
+
+    /// Lets the background be seen `brightness` times as bright in the pixels that are `hidden`, row by row.
+    pub fn hide(&mut self, sensor: &Sensor, width: usize, hidden: &[bool], brightness: f64) {
+        if hidden.is_empty() {
+            return;
+        }
+        let plain = || Map::new(&sensor.pattern, (width, hidden.len() / width), 0);
+        let pixels = self.pixels.get_or_insert_with(|| Pixels::unequal(sensor, plain()));
+        pixels.map_mut().hide(hidden, brightness as f32);
+    }
+
+    /// Makes of the light of an exposure the charge that is read: smear along columns, the pattern of gains, shot noise, and
+    /// what flows over. Says where charge went that is not read.
+    pub fn expose(&self, charge: &mut Charge, key: u64) -> Overflown {
+        self.smear.of_light(charge);
+        let map = self.pixels.as_ref().map(Pixels::map);
+        if let Some(map) = map {
+            map.scale(charge);
+        }
+        self.shot(charge, key);
+        match map.filter(|map| map.has_wells()) {
+            Some(map) => {
+                let well_e = self.full_well_e as f32;
+                self.overflow.settle_each(charge, |u, v| well_e * map.well(u, v))
+            }
+            None => self.overflow.settle(charge, self.full_well_e),
+        }
+    }
+
+    /// Adds to every pixel of a column, from column `first` on, what it picks up of so many electrons of light.
+    pub fn smear_columns(&self, charge: &mut Charge, first: usize, light_e: &[f32]) {
+        self.smear.of_columns(charge, first, light_e);
+    }
+
+    /// Adds to a background what its rows pick up on their way through the columns.
+    pub fn smear_background(&self, background: &mut Background, height: usize) {
+        self.smear.of_background(background, height);
     }
 
     /// Adds the shot noise of the charge: variance equal to the mean. The background's is added with its reading.
@@ -122,8 +136,27 @@ impl Readout {
                 let first = node * LANE;
                 let is_lit = first < touched.1 && first + LANE > touched.0;
                 let lit_dn = if is_lit { self.respond(&light[first..first + pixels.len()]) } else { DARK };
-                self.read_lane(node, &lit_dn, &normal[lane * LANE..][..LANE], pixels);
+                let normal = &normal[lane * LANE..][..LANE];
+                match &self.pixels {
+                    None => self.read_lane(node, &lit_dn, normal, pixels),
+                    Some(each) => {
+                        let reading = self.reading(node);
+                        let second = &self.noise.run(hash(row_key), run as u64)[lane * LANE..][..LANE];
+                        each.read(&reading, (first, v), (&lit_dn, normal, second), pixels);
+                    }
+                }
             }
+        }
+    }
+
+    /// What a lane of pixels has in common.
+    fn reading(&self, node: usize) -> Reading {
+        Reading {
+            background_e: [self.nodes_e[node], self.nodes_e[node + 1]],
+            read_variance_e2: self.read_variance_e2,
+            dn_per_electron: self.dn_per_electron,
+            well_dn: self.well_dn,
+            offset_dn: self.offset_dn,
         }
     }
 
@@ -156,13 +189,13 @@ impl Readout {
 
 /// The nearest grey level: adding 2^23 leaves the rounded number in the low bits of a float.
 #[inline]
-fn to_grey(level: f32) -> u8 {
+pub(super) fn to_grey(level: f32) -> u8 {
     (level.clamp(0.0, 255.0) + 8_388_608.0).to_bits() as u8
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Overflow, Response, Shutter};
+    use super::super::{Converter, Overflow, Pattern, Response, Shutter};
     use super::*;
 
     fn sensor() -> Sensor {
@@ -171,13 +204,17 @@ mod tests {
             response: Response::Linear,
             electrons_per_dn: 20.0,
             full_well_e: 4000.0,
+            well_noise_e: 0.0,
             overflow: Overflow { spill: 0.9 },
+            smear: ColumnSmear::NONE,
             read_noise_e: 30.0,
             dark_offset_dn: 10.0,
             corner_offset_dn: 0.0,
             dark_current_e_per_s: 0.0,
             hot_pixel_share: 0.0,
             hot_pixel_e_per_s: 0.0,
+            pattern: Pattern::NONE,
+            converter: Converter::EIGHT_BITS,
             shutter: Shutter::Global,
         }
     }

@@ -15,8 +15,8 @@ use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64;
 
 use crate::render::{CameraView, Rendered, Renderer};
-use crate::scene::{BlinkPlan, Scene, Target};
-use crate::snapshot::{Exposure, LedLight, Lit, Moving, Snapshot, Vehicle};
+use crate::scene::{BlinkPlan, Scene, SceneLamp, Target};
+use crate::snapshot::{Exposure, Lamp, LedLight, Lit, Looks, Moving, Snapshot, Vehicle};
 use crate::source::Blink;
 
 /// Renders the frames of one camera of a scene.
@@ -42,10 +42,11 @@ impl Simulator {
             sensor: preset.sensor.clone(),
         };
         // the cameras of a scene differ in their noise; the first one has the scene's seed itself
-        let renderer = Renderer::new(view, scene.seed ^ ((camera as u64) << 56));
+        let renderer = Renderer::new(view, scene.seed ^ ((camera as u64) << 56))
+            .with_own_airframe(&scene.own_airframe, mounted.body_from_camera);
         let mut random = Pcg64::new(u128::from(scene.seed), 0x1ed);
-        let mut power = || preset.emitter.unit_factor(StandardNormal.sample(&mut random));
-        let vehicles = scene.targets.iter().map(|target| vehicle(target, &mut power)).collect();
+        let mut draw = || StandardNormal.sample(&mut random);
+        let vehicles = scene.targets.iter().map(|target| vehicle(target, &scene, &mut draw)).collect();
         let exposure = renderer.view().exposure(0.0, scene.exposure_us * 1e-6);
         let snapshot = Snapshot {
             exposure,
@@ -54,6 +55,7 @@ impl Simulator {
             emitter: preset.emitter,
             daylight: scene.daylight,
             water: scene.water,
+            lamps: scene.lamps.iter().map(lamp).collect(),
         };
         let blinks = scene.targets.iter().map(blinks).collect();
         Some(Self { body_from_camera: mounted.body_from_camera, blinks, snapshot, renderer, scene })
@@ -63,6 +65,13 @@ impl Simulator {
     pub fn frame(&mut self, number: u64) -> Rendered {
         self.expose(self.exposure(number));
         self.renderer.render(&self.snapshot, number)
+    }
+
+    /// The light of points in a frame, without noise.
+    #[cfg(test)]
+    pub(crate) fn light_of(&mut self, number: u64) -> crate::sensor::Charge {
+        self.expose(self.exposure(number));
+        self.renderer.points(&self.snapshot)
     }
 
     /// All frames of the scene, one after the other.
@@ -91,6 +100,11 @@ impl Simulator {
                 }
             }
         }
+        for (lamp, placed) in self.snapshot.lamps.iter_mut().zip(&self.scene.lamps) {
+            if let Some(vehicle) = placed.beside.and_then(|index| self.snapshot.vehicles.get(index)) {
+                lamp.motion = vehicle.motion.carrying(&Isometry3::from(placed.position_m));
+            }
+        }
     }
 }
 
@@ -100,15 +114,25 @@ impl From<&Scene> for Arc<Scene> {
     }
 }
 
-fn vehicle(target: &Target, power: &mut impl FnMut() -> f64) -> Vehicle {
-    let light = |_: &Led| LedLight { power: power(), lit: Lit::always() };
+/// A vehicle as it was built: with what is wrong with its LEDs.
+fn vehicle(target: &Target, scene: &Scene, draw: &mut impl FnMut() -> f64) -> Vehicle {
+    let (unit, count) = ((scene.seed, target.id), target.airframe.leds().len());
+    let powers = target.faults.powers(&scene.preset.emitter, count, unit, draw);
+    // a seed that was set later may move markers to where they are no airframe: they stay where they should be
+    let built = target.faults.built(&target.airframe, unit.0, unit.1);
     Vehicle {
         id: target.id,
-        airframe: Arc::new(target.airframe.clone()),
+        airframe: Arc::new(built.unwrap_or_else(|_| target.airframe.clone())),
         solids: target.solids.clone().into(),
+        looks: Arc::new(Looks { lobe: target.lobe.clone(), mirrors: target.mirrors.clone() }),
         motion: Moving::still(Isometry3::identity()),
-        leds: target.airframe.leds().iter().map(light).collect(),
+        leds: powers.into_iter().map(|power| LedLight { power, lit: Lit::always() }).collect(),
     }
+}
+
+fn lamp(lamp: &SceneLamp) -> Lamp {
+    let motion = Moving::still(Isometry3::from(lamp.position_m));
+    Lamp { motion, power: lamp.power, radius_m: lamp.radius_m }
 }
 
 /// The signal of each LED of a target; `None` where it shines all the time.

@@ -288,12 +288,14 @@ fn a_snapshot_made_by_hand_gives_the_frame_of_the_scene() {
             id: 1,
             airframe: Arc::new(scene.targets[0].airframe.clone()),
             solids: Arc::new([]),
+            looks: Arc::default(),
             motion: state.during(-0.01, 0.02),
             leds: vec![LedLight::steady()],
         }],
         emitter: scene.preset.emitter,
         daylight: None,
         water: None,
+        lamps: Vec::new(),
     };
     // a driver may well live in a thread of its own
     let by_hand = std::thread::scope(|scope| scope.spawn(|| renderer.render(&snapshot, 19)).join()).unwrap();

@@ -17,8 +17,8 @@ pub use lit::Lit;
 pub use moving::{Kinematics, Moving};
 
 use crate::background::{Daylight, Water};
-use crate::occlusion::Solid;
-use crate::source::Emitter;
+use crate::occlusion::{Mirror, Solid};
+use crate::source::{Emitter, Lobe};
 
 /// The world during one exposure of one camera.
 #[derive(Clone, Debug)]
@@ -35,6 +35,8 @@ pub struct Snapshot {
     pub daylight: Option<Daylight>,
     /// A water surface below.
     pub water: Option<Water>,
+    /// Lamps that are no markers.
+    pub lamps: Vec<Lamp>,
 }
 
 /// A vehicle with markers, during an exposure.
@@ -46,10 +48,32 @@ pub struct Vehicle {
     pub airframe: Arc<Airframe>,
     /// What of it hides LEDs.
     pub solids: Arc<[Solid]>,
+    /// What else there is to see of it.
+    pub looks: Arc<Looks>,
     /// The pose world_from_body.
     pub motion: Moving,
     /// What its LEDs do, in the order of the airframe; one that is missing is dark.
     pub leds: Vec<LedLight>,
+}
+
+/// What there is to see of a vehicle besides its markers where they sit.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Looks {
+    /// How its LEDs shine, in place of the airframe's lobes.
+    pub lobe: Option<Lobe>,
+    /// What of it mirrors its LEDs and the sun.
+    pub mirrors: Vec<Mirror>,
+}
+
+/// A lamp that is no marker: it shines all the time, the same in every direction.
+#[derive(Clone, Copy, Debug)]
+pub struct Lamp {
+    /// Where it is: the origin of this pose.
+    pub motion: Moving,
+    /// Intensity against that of the mean part on its axis.
+    pub power: f64,
+    /// Its radius, m.
+    pub radius_m: f64,
 }
 
 /// What an LED does during an exposure.

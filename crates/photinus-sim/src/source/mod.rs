@@ -1,12 +1,16 @@
 //! What an LED sends out: radiant intensity, its spread between units, its blinking.
 //!
 //! An [`Emitter`] is the part, common to all LEDs of a scene; the lobe of each LED is that of its airframe
-//! ([`photinus::airframe::Lobe`]): for a Lambertian one, intensity falls with the cosine of the angle to the axis
+//! ([`photinus::airframe::Lobe`]) unless the vehicle says another ([`Lobe`]): for a Lambertian one, intensity falls with the cosine of the angle to the axis
 //! (paper, figure 8). Irradiance at the camera follows from the inverse square of the distance.
 
 mod blink;
+mod faults;
+mod lobe;
 
 pub use blink::Blink;
+pub use faults::LedFaults;
+pub use lobe::Lobe;
 
 /// An LED as a part: how much it radiates, from how large a face, how equal its units are.
 #[derive(Clone, Copy, Debug, PartialEq)]

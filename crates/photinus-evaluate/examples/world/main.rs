@@ -1,0 +1,77 @@
+//! The world against the program: what faults, cameras and crowds do to it with default options.
+//!
+//! ```text
+//! cargo run --release -p photinus-evaluate --example world -- faults|cameras|crowds [frames] [--update]
+//! cargo run --release -p photinus-evaluate --example world -- snapshot [--update]
+//! ```
+//!
+//! Prints a table of neighbours and a table of spots. With `--update` the tables take the place of those in docs/world.md, or of
+//! the committed snapshot. The columns are explained in docs/world.md.
+
+#![expect(clippy::print_stdout, clippy::print_stderr, reason = "an example prints its table")]
+
+mod calibrated;
+mod cameras;
+mod crowds;
+mod document;
+mod faults;
+mod light;
+mod priors;
+mod row;
+mod snapshot;
+mod table;
+
+use std::process::ExitCode;
+
+use row::{Outcome, Row};
+use table::Table;
+
+const USAGE: &str = "give faults, cameras or crowds, a number of frames per row if you like, and --update to write \
+                     docs/world.md; or snapshot, and --update to write the committed one";
+
+fn main() -> ExitCode {
+    let mut words: Vec<String> = std::env::args().skip(1).collect();
+    let update = words.iter().any(|word| word == "--update");
+    words.retain(|word| word != "--update");
+    let frames = words.get(1).map_or(Some(500), |text| text.parse().ok().filter(|&frames| frames > 0));
+    let (Some(what), Some(frames)) = (words.first(), frames) else { return usage() };
+    let single = |rows: Vec<Row>| rows.into_iter().map(|row| (row, frames)).collect();
+    let rows: Vec<(Row, u64)> = match what.as_str() {
+        "faults" => single(faults::rows(&cameras::paper())),
+        "cameras" => single(cameras::rows()),
+        "crowds" => crowds::rows(&cameras::paper(), 2 * frames),
+        "snapshot" => return take_snapshot(update),
+        _ => return usage(),
+    };
+    let outcomes: Vec<Outcome> = rows.iter().map(|(row, frames)| told(row.run(*frames))).collect();
+    let tables = [Table::of_neighbours(&outcomes), Table::of_spots(&outcomes)];
+    println!("{}\nspots\n{}", tables[0].aligned(), tables[1].aligned());
+    let notes = if what == "cameras" { cameras::about() + "\n" } else { String::new() };
+    let written = if update { document::update(what, frames, &tables, &notes) } else { Ok(()) };
+    written.map_or_else(failed, |()| ExitCode::SUCCESS)
+}
+
+/// Says that a row is done: some take long.
+fn told(outcome: Outcome) -> Outcome {
+    eprintln!("{}, {}", outcome.name, outcome.airframe);
+    outcome
+}
+
+fn take_snapshot(update: bool) -> ExitCode {
+    let text = snapshot::text();
+    print!("{text}");
+    let written = if update { std::fs::write(snapshot::FILE, text) } else { Ok(()) };
+    written
+        .map_err(|error| format!("{}: {error}", snapshot::FILE))
+        .map_or_else(failed, |()| ExitCode::SUCCESS)
+}
+
+fn usage() -> ExitCode {
+    eprintln!("{USAGE}");
+    ExitCode::from(2)
+}
+
+fn failed(reason: String) -> ExitCode {
+    eprintln!("error: {reason}");
+    ExitCode::FAILURE
+}

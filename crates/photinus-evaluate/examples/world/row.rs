@@ -1,0 +1,189 @@
+//! One row of a table: a camera, vehicles, what goes wrong -> scores.
+
+use nalgebra::{Isometry3, Translation3, Unit, Vector3};
+use photinus::airframe::{Airframe, Ring};
+use photinus::camera::Camera;
+use photinus::locator::{Locator, Settings};
+use photinus_evaluate::{Scores, evaluate};
+use photinus_io::dataset::TruthFrame;
+use photinus_io::frames::Frame;
+use photinus_io::results::FrameRecord;
+use photinus_sim::faults::{Fault, Faults, Shot};
+use photinus_sim::preset::Preset;
+use photinus_sim::snapshot::{Moving, Snapshot};
+use photinus_sim::{CameraView, Renderer};
+use rand_pcg::Pcg64;
+
+use crate::calibrated::{calibrated, to_centroids};
+use crate::light::{Fallen, Lights, fallen};
+use crate::priors::{Build, Drawing, known_gravity, world_from_camera};
+
+/// Frames that share the places of hot pixels and lamps, and the side to which gravity is wrong.
+const SPELL: u64 = 20;
+
+/// What frames are taken with.
+#[derive(Clone, Debug)]
+pub(crate) struct Eye {
+    pub(crate) camera: Camera,
+    pub(crate) preset: Preset,
+    pub(crate) exposure_us: f64,
+}
+
+/// One row: what is there, and what is wrong with it.
+#[derive(Clone, Debug)]
+pub(crate) struct Row {
+    pub(crate) name: String,
+    pub(crate) eye: Eye,
+    pub(crate) airframe: Airframe,
+    /// Vehicles in each frame.
+    pub(crate) vehicles: usize,
+    pub(crate) ranges_m: [f64; 2],
+    pub(crate) build: Build,
+    pub(crate) smear_px: f64,
+    pub(crate) faults: Vec<Fault>,
+}
+
+/// What came out of a row.
+pub(crate) struct Outcome {
+    pub(crate) name: String,
+    pub(crate) airframe: String,
+    pub(crate) frames: u64,
+    pub(crate) vehicles: usize,
+    pub(crate) scores: Scores,
+    pub(crate) lights: Lights,
+}
+
+/// The airframes of the tables: those of scenes/, and an octorotor.
+pub(crate) fn airframe(arms: usize) -> Airframe {
+    let quarter = std::f64::consts::FRAC_PI_2;
+    let (name, radius_m, leds_per_arm, splay_rad) = match arms {
+        4 => ("quadrotor-0.245", 0.245, 2, quarter),
+        8 => ("octorotor-0.5", 0.5, 1, 0.0),
+        _ => ("hexarotor-0.4", 0.4, 1, 0.0),
+    };
+    let ring = Ring { arms, radius_m, leds_per_arm, splay_rad };
+    Airframe::from_ring(name, ring).expect("a ring")
+}
+
+impl Row {
+    /// A single neighbour with nothing wrong.
+    pub(crate) fn plain(name: impl Into<String>, eye: &Eye, arms: usize) -> Self {
+        Self {
+            name: name.into(),
+            eye: eye.clone(),
+            airframe: airframe(arms),
+            vehicles: 1,
+            ranges_m: [2.0, 15.0],
+            build: Build::default(),
+            smear_px: 0.0,
+            faults: Vec::new(),
+        }
+    }
+
+    /// Renders, injects, locates with default options, and scores.
+    pub(crate) fn run(&self, frames: u64) -> Outcome {
+        let mut studio = Studio::new(self);
+        let wrong = |seed| Faults { list: self.faults.clone(), seed };
+        let told = wrong(0).airframe(&self.airframe).expect("an airframe");
+        let camera = calibrated(&self.eye.camera, &self.eye.preset.lens);
+        let camera = wrong(0).camera(&camera).expect("a camera");
+        let mut locator = Locator::new(camera, &told, None, Settings::default()).expect("default settings");
+        let (mut truth, mut records, mut lights) = (Vec::new(), Vec::new(), Lights::default());
+        for first in (0..frames).step_by(SPELL as usize) {
+            let numbers = first..frames.min(first + SPELL);
+            let (shots, fallen): (Vec<_>, Vec<_>) = numbers.map(|number| studio.shoot(number)).unzip();
+            let shots = wrong(first).inject(shots.into_iter().map(Ok));
+            for (shot, fallen) in shots.zip(fallen) {
+                let Shot { frame, truth: there } = shot.expect("frames of memory");
+                let located = locator.locate(&frame.image.view(), frame.gravity.as_ref(), &mut |_| ());
+                let located = located.expect("the camera's size");
+                let mut record = record_of(&frame);
+                record.put_located(located, told.name());
+                lights.add(&located.sightings, &record.spots, &fallen);
+                records.push(record);
+                truth.extend(there);
+            }
+        }
+        let evaluation = evaluate(&truth, &records, &photinus_evaluate::Settings::default());
+        Outcome {
+            name: self.name.clone(),
+            airframe: self.airframe.name().to_owned(),
+            frames,
+            vehicles: self.vehicles,
+            scores: evaluation.expect("frames of one world").scores,
+            lights,
+        }
+    }
+}
+
+fn record_of(frame: &Frame) -> FrameRecord {
+    FrameRecord {
+        frame: Some(frame.index),
+        time_s: frame.time_s,
+        latency_s: None,
+        source: String::new(),
+        spots: Vec::new(),
+        rejected: Vec::new(),
+        neighbours: Vec::new(),
+    }
+}
+
+/// Takes the frames of a row.
+struct Studio<'a> {
+    row: &'a Row,
+    renderer: Renderer,
+}
+
+impl<'a> Studio<'a> {
+    fn new(row: &'a Row) -> Self {
+        let Eye { camera, preset, .. } = &row.eye;
+        let view =
+            CameraView { camera: camera.clone(), lens: preset.lens.clone(), sensor: preset.sensor.clone() };
+        Self { row, renderer: Renderer::new(view, 1) }
+    }
+
+    /// A frame with vehicles drawn for its number, and the light that fell.
+    fn shoot(&mut self, number: u64) -> (Shot, Vec<Fallen>) {
+        let row = self.row;
+        let mut rng = Pcg64::new(u128::from(number), 0xfa17);
+        let gravity = known_gravity(&mut rng);
+        let snapshot = self.snapshot(number, &gravity, &mut rng);
+        let mut rendered = self.renderer.render(&snapshot, number);
+        let lens = &row.eye.preset.lens;
+        to_centroids(&mut rendered.truth, &row.eye.camera, lens);
+        let fallen = fallen(&snapshot, &rendered.truth, lens);
+        let TruthFrame { frame: index, time_s, .. } = rendered.truth;
+        let frame = Frame {
+            image: rendered.image,
+            index,
+            time_s: Some(time_s),
+            source: row.name.clone(),
+            gravity: Some(gravity),
+            conversions: Vec::new(),
+        };
+        (Shot { frame, truth: Some(rendered.truth) }, fallen)
+    }
+
+    fn snapshot(&self, number: u64, gravity: &Unit<Vector3<f64>>, rng: &mut Pcg64) -> Snapshot {
+        let row = self.row;
+        let exposure_s = row.eye.exposure_us * 1e-6;
+        let drawing = Drawing {
+            airframe: &row.airframe,
+            build: row.build,
+            camera: &row.eye.camera,
+            ranges_m: row.ranges_m,
+            exposure_s,
+            smear_px: row.smear_px,
+        };
+        let pose = Isometry3::from_parts(Translation3::identity(), world_from_camera().into());
+        Snapshot {
+            exposure: self.renderer.view().exposure(number as f64, exposure_s),
+            camera: Moving::still(pose),
+            vehicles: drawing.vehicles(row.vehicles, gravity, rng),
+            emitter: row.eye.preset.emitter,
+            daylight: None,
+            water: None,
+            lamps: Vec::new(),
+        }
+    }
+}

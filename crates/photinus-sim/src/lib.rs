@@ -15,12 +15,16 @@
 //! and place.
 
 pub mod background;
+pub mod clock;
 pub mod dataset;
+mod draw;
+pub mod instruments;
 pub mod motion;
 pub mod occlusion;
 pub mod optics;
 pub mod preset;
 pub mod receding;
+pub mod recording;
 pub mod render;
 pub mod scene;
 pub mod sensor;

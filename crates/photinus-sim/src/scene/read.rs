@@ -4,20 +4,22 @@ use std::path::{Path, PathBuf};
 
 use nalgebra::{Isometry3, Matrix3, Rotation3, Translation3, UnitQuaternion, Vector3};
 use photinus_io::airframe::read_airframe;
-use photinus_io::blink::read_blink_codes;
-use photinus_io::{Result, read_camera, table as toml_table};
+use photinus_io::{Result, physics, read_camera, table as toml_table};
 use toml::value::{Datetime, Offset};
 
 use super::check::Check;
 use super::table::{
-    BlinkTable, CameraTable, DaylightTable, MotionTable, PresetName, SceneTable, SkyName, SolidTable,
-    SpinTable, TargetTable,
+    CameraTable, DaylightTable, MotionTable, PresetName, SceneTable, SkyName, SolidTable, SpinTable,
+    TargetTable,
 };
-use super::{BlinkPlan, MountedCamera, Scene, Target};
+use super::{MountedCamera, Scene, Target};
 use crate::background::{Daylight, Place, Sky, Water, sun_direction};
+use crate::clock::Clock;
+use crate::instruments::Instruments;
 use crate::motion::{Flight, Motion, Path as FlightPath, Recorded, Spin, Wander};
 use crate::occlusion::Solid;
 use crate::preset::{BLUEFOX_FIT, SMALL_FISHEYE_FIT, bluefox, small_fisheye};
+use crate::recording::Recording;
 use crate::sensor::hash;
 
 /// Longest scene, s, and most frames of one.
@@ -69,22 +71,23 @@ fn wind_seed(seed: u64, robot: u64) -> u64 {
     hash(seed ^ hash(robot))
 }
 
-struct Reader<'a> {
-    check: Check<'a>,
+pub(super) struct Reader<'a> {
+    pub(super) check: Check<'a>,
     seed: u64,
 }
 
 impl Reader<'_> {
     fn scene(&self, table: SceneTable) -> Result<Scene> {
         let check = &self.check;
-        let rate_hz = check.positive("rate_hz", table.rate_hz, 1e4)?;
+        let rate_hz = check.rate("rate_hz", table.rate_hz)?;
         let duration_s = check.positive("duration_s", table.duration_s, LONGEST_S)?;
-        let exposure_us = check.positive("exposure_us", table.exposure_us, 1e7)?;
-        if exposure_us > 1e6 / rate_hz {
-            let reason = format!("an exposure of {exposure_us} us is longer than {:.1} us", 1e6 / rate_hz);
+        let exposure_us = self.exposure("exposure_us", table.exposure_us, rate_hz)?;
+        let names: Vec<&str> = table.camera.iter().map(|camera| camera.name.as_str()).collect();
+        if let Some(twice) = (1..names.len()).find(|i| names[..*i].contains(&names[*i])) {
+            let reason = format!("another camera is called `{}`", names[twice]);
             return Err(check
-                .refuse("exposure_us", reason)
-                .advise("that is the time between frames at rate_hz"));
+                .refuse(&format!("camera[{twice}].name"), reason)
+                .advise("name each its own way"));
         }
         for (key, count) in [("camera", table.camera.len()), ("target", table.target.len())] {
             if count == 0 {
@@ -98,7 +101,7 @@ impl Reader<'_> {
             (observer.wind_m_s, observer.heading_deg, observer.spin),
             OBSERVER,
         )?;
-        let cameras = table.camera.into_iter().enumerate().map(|(i, camera)| self.camera(i, camera));
+        let cameras = table.camera.into_iter().enumerate().map(|(i, camera)| self.camera(i, camera, rate_hz));
         let targets = table.target.into_iter().enumerate().map(|(i, target)| self.target(i, target));
         Ok(Scene {
             name: table.name,
@@ -114,7 +117,8 @@ impl Reader<'_> {
             water: table
                 .water
                 .map(|water| -> Result<Water> {
-                    let level_m = check.within("water.level_m", water.level_m, (-1e5, 1e5))?;
+                    let level_m =
+                        physics::within(check.path, "water.level_m", water.level_m, &physics::PLACE_M)?;
                     let wind_m_s = check.within("water.wind_m_s", water.wind_m_s, (0.0, 40.0))?;
                     Ok(Water { level_m, wind_m_s })
                 })
@@ -122,11 +126,27 @@ impl Reader<'_> {
             observer,
             cameras: cameras.collect::<Result<_>>()?,
             targets: targets.collect::<Result<_>>()?,
+            instruments: Instruments {
+                gyro: table.gyro.map(|gyro| self.gyro(&gyro)).transpose()?,
+                gravity: table.gravity.map(|gravity| self.gravity(&gravity)).transpose()?,
+                odometry: table.odometry.map(|odometry| self.odometry(&odometry)).transpose()?,
+            },
+            recording: table.recording.map_or(Ok(Recording::default()), |r| self.recording(&r, rate_hz))?,
         })
     }
 
+    /// An exposure that fits between two frames.
+    fn exposure(&self, key: &str, exposure_us: f64, rate_hz: f64) -> Result<f64> {
+        let exposure_us = physics::within(self.check.path, key, exposure_us, &physics::EXPOSURE_US)?;
+        if exposure_us <= 1e6 / rate_hz {
+            return Ok(exposure_us);
+        }
+        let reason = format!("an exposure of {exposure_us} us is longer than {:.1} us", 1e6 / rate_hz);
+        Err(self.check.refuse(key, reason).advise("that is the time between frames at rate_hz"))
+    }
+
     /// A file that the scene names.
-    fn named(&self, key: &str, file: &Path) -> Result<PathBuf> {
+    pub(super) fn named(&self, key: &str, file: &Path) -> Result<PathBuf> {
         if file.as_os_str().is_empty() {
             return Err(self.check.refuse(key, "the path is empty").advise("name a file"));
         }
@@ -162,7 +182,7 @@ impl Reader<'_> {
         Ok(Daylight::new(sky, sun))
     }
 
-    fn camera(&self, index: usize, table: CameraTable) -> Result<MountedCamera> {
+    fn camera(&self, index: usize, table: CameraTable, rate_hz: f64) -> Result<MountedCamera> {
         let key = |name: &str| format!("camera[{index}].{name}");
         let plain = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
         if table.name.is_empty() || !table.name.chars().all(plain) {
@@ -181,6 +201,20 @@ impl Reader<'_> {
                 Translation3::from(position_m),
                 mounting(yaw_rad, pitch_rad, roll_rad),
             ),
+            clock: Clock {
+                offset_s: self.check.within(&key("clock.offset_s"), table.clock.offset_s, (-1e3, 1e3))?,
+                ppm: physics::within(
+                    self.check.path,
+                    &key("clock.ppm"),
+                    table.clock.ppm,
+                    &physics::CLOCK_PPM,
+                )?,
+            },
+            phase_s: self.check.within(&key("clock.phase_s"), table.clock.phase_s, (-1e3, 1e3))?,
+            exposure_us: match table.exposure_us {
+                Some(exposure_us) => Some(self.exposure(&key("exposure_us"), exposure_us, rate_hz)?),
+                None => None,
+            },
         })
     }
 
@@ -193,30 +227,6 @@ impl Reader<'_> {
         let solids = solids.map(|(i, solid)| self.solid(&format!("target[{index}].solid[{i}]"), solid));
         let blink = table.blink.map(|blink| self.blink(&key("blink"), blink, &airframe)).transpose()?;
         Ok(Target { id: table.id, solids: solids.collect::<Result<_>>()?, motion, blink, airframe })
-    }
-
-    fn blink(
-        &self,
-        key: &str,
-        table: BlinkTable,
-        airframe: &photinus::airframe::Airframe,
-    ) -> Result<BlinkPlan> {
-        let codes = read_blink_codes(self.named(&format!("{key}.codes"), &table.codes)?)?;
-        let last = airframe.leds().iter().filter_map(|led| led.signal).max().unwrap_or(0) as usize;
-        if table.first_word.saturating_add(last) >= codes.words().len() {
-            let reason =
-                format!("word {} of {} words", table.first_word.saturating_add(last), codes.words().len());
-            return Err(self
-                .check
-                .refuse(&format!("{key}.first_word"), reason)
-                .advise("an LED of signal s sends word first_word + s, counted from 0"));
-        }
-        Ok(BlinkPlan {
-            codes,
-            first_word: table.first_word,
-            rate_hz: self.check.positive(&format!("{key}.rate_hz"), table.rate_hz, 1e5)?,
-            shift_s: self.check.within(&format!("{key}.shift_s"), table.shift_s, (-1e3, 1e3))?,
-        })
     }
 
     fn solid(&self, key: &str, table: SolidTable) -> Result<Solid> {

@@ -49,16 +49,17 @@ impl Drop for Folder {
 /// Writes `frames` frames of all cameras and reads the dataset back.
 fn written(folder: &Folder, scene: &Scene, frames: u64) -> Dataset {
     let cameras: Vec<usize> = (0..scene.cameras.len()).collect();
-    let mut dataset = SceneDataset::create(&folder.0, scene, &cameras, frames).unwrap();
+    let mut dataset = SceneDataset::create(&folder.0, scene, &cameras, frames).expect("a new folder");
     for camera in cameras {
-        let mut simulator = Simulator::new(scene, camera).unwrap();
-        (0..frames).for_each(|number| dataset.add(camera, &simulator.frame(number)).unwrap());
+        let mut simulator = Simulator::new(scene, camera).expect("it has this camera");
+        (0..frames)
+            .for_each(|number| dataset.add(camera, &simulator.frame(number)).expect("it can be written"));
     }
-    Dataset::read(&folder.0).unwrap()
+    Dataset::read(&folder.0).expect("what was written is read")
 }
 
 fn truth_of(dataset: &Dataset, camera: &str) -> Vec<TruthFrame> {
-    let truth = dataset.truth().unwrap().unwrap();
+    let truth = dataset.truth().expect("truth is read").expect("truth is there");
     truth.into_iter().filter(|frame| frame.camera.as_deref() == Some(camera)).collect()
 }
 
@@ -69,8 +70,11 @@ fn camera_from_body(neighbour: &TruthNeighbour) -> Isometry3<f64> {
 }
 
 fn mounting(camera: &DatasetCamera) -> Isometry3<f64> {
-    let mounting = camera.mounting.unwrap();
-    Isometry3::from_parts(Translation3::from(mounting.position_m.unwrap()), mounting.body_from_camera)
+    let mounting = camera.mounting.expect("a rig has mountings");
+    Isometry3::from_parts(
+        Translation3::from(mounting.position_m.expect("where it sits is known")),
+        mounting.body_from_camera,
+    )
 }
 
 #[test]

@@ -6,6 +6,7 @@
 mod blink;
 mod check;
 mod instruments;
+mod movers;
 mod read;
 mod table;
 #[cfg(test)]

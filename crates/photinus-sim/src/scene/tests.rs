@@ -169,3 +169,24 @@ fn every_scene_of_the_library_is_read() {
     }
     assert!(read >= 1);
 }
+
+#[test]
+fn the_example_of_the_documentation_is_read() {
+    let document = std::fs::read_to_string(scenes().join("../docs/scenes.md")).unwrap();
+    let lines = document.lines().skip_while(|line| !line.starts_with("    name ="));
+    let example = lines.take_while(|line| line.is_empty() || line.starts_with("    "));
+    let text: String = example.map(|line| line.trim_start().to_owned() + "\n").collect();
+    let scene = parse(&text).unwrap_or_else(|error| panic!("{error}"));
+    let camera = &scene.cameras[0];
+    assert_eq!(
+        (camera.exposure_us, scene.targets[0].blink.as_ref().unwrap().words.as_slice()),
+        (Some(500.0), &[1][..])
+    );
+    assert_eq!((camera.clock, camera.phase_s), (crate::clock::Clock { offset_s: 0.002, ppm: 20.0 }, 0.004));
+    let (instruments, recording) = (&scene.instruments, &scene.recording);
+    assert!(instruments.gyro.is_some() && instruments.gravity.is_some() && instruments.odometry.is_some());
+    assert_eq!(
+        (recording.lost, recording.late, recording.late_by_s, recording.swapped),
+        (0.01, 0.02, 0.005, 0.005)
+    );
+}

@@ -16,12 +16,16 @@
 
 pub mod background;
 pub mod cameras;
+pub mod clock;
 pub mod dataset;
+mod draw;
+pub mod instruments;
 pub mod motion;
 pub mod occlusion;
 pub mod optics;
 pub mod preset;
 pub mod receding;
+pub mod recording;
 pub mod render;
 pub mod scene;
 pub mod sensor;

@@ -116,7 +116,7 @@ impl Dataset {
     /// # Errors
     /// As [`read_truth`].
     pub fn truth(&self) -> Result<Option<Vec<TruthFrame>>> {
-        self.optional(TRUTH_FILE, |path| read_truth(path))
+        self.optional(TRUTH_FILE, read_truth)
     }
 
     /// How fast the camera (of several: the vehicle's body) turned; `None` when the folder does not say.
@@ -124,7 +124,7 @@ impl Dataset {
     /// # Errors
     /// As [`read_imu`].
     pub fn imu(&self) -> Result<Option<Vec<ImuRow>>> {
-        self.optional(IMU_FILE, |path| read_imu(path))
+        self.optional(IMU_FILE, read_imu)
     }
 
     /// Where the vehicle with the cameras believed to be; `None` when the folder does not say.
@@ -132,7 +132,7 @@ impl Dataset {
     /// # Errors
     /// As [`read_odometry`].
     pub fn odometry(&self) -> Result<Option<Vec<OdometryRow>>> {
-        self.optional(ODOMETRY_FILE, |path| read_odometry(path))
+        self.optional(ODOMETRY_FILE, read_odometry)
     }
 
     fn optional<T>(&self, name: &str, read: impl FnOnce(PathBuf) -> Result<T>) -> Result<Option<T>> {

@@ -7,11 +7,13 @@ use photinus_io::Error;
 use photinus_io::dataset::TruthFrame;
 use photinus_io::video::Y4mWriter;
 use photinus_io::whole::{WholeFile, WholeFolder};
-use photinus_sim::{Rendered, Scene, Simulator, dataset};
+use photinus_sim::dataset::SceneDataset;
+use photinus_sim::scene::files_of;
+use photinus_sim::{Rendered, Scene, Simulator};
 
 use crate::failure::Failure;
 use crate::interrupt;
-use crate::targets::{FileTarget, Targets, WriteArgs};
+use crate::targets::{Targets, WriteArgs};
 use crate::terminal::Terminal;
 
 const EXAMPLES: &str = "\
@@ -21,7 +23,7 @@ Examples:
   photinus simulate scenes/crossing.toml --out truth.jsonl             where everything was, no frames
   photinus locate flight --out results.jsonl
 
-A scene with several cameras gives a folder per camera inside the one that is named.";
+A scene with several cameras gives one dataset with all of them; its frames lie in a folder per camera.";
 
 /// Render a scene: frames with truth
 #[derive(Debug, clap::Args)]
@@ -74,16 +76,10 @@ fn threads(text: &str) -> Result<usize, String> {
 }
 
 /// Where rendered frames go.
-enum Sink {
-    Dataset(photinus_io::dataset::DatasetWriter),
+enum Sink<'a> {
+    Dataset { making: WholeFolder, writer: Box<SceneDataset<'a>> },
     Video(Y4mWriter<BufWriter<WholeFile>>),
     Truth(BufWriter<WholeFile>),
-}
-
-/// What is made: a folder of datasets, or one file.
-enum Making {
-    Folder(WholeFolder),
-    File(FileTarget),
 }
 
 /// Runs the command.
@@ -94,49 +90,47 @@ pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> Result<(), Failure> {
     }
     let frames = args.frames.unwrap_or(scene.frames);
     let cameras = cameras(args, &scene)?;
-    let making = Making::new(args)?;
-    let mut sinks = Vec::new();
-    for &camera in &cameras {
-        sinks.push((camera, making.sink(&scene, camera, cameras.len() > 1)?));
-    }
+    let mut sink = Sink::create(args, &scene, &cameras, frames)?;
     if scene.targets.iter().any(|target| target.airframe != scene.targets[0].airframe) {
-        terminal.note("the targets' airframes differ; the dataset names that of the first one");
+        terminal.note("the targets' airframes differ: dataset.toml names that of the first one, vehicles.toml all of them");
     }
     let started = std::time::Instant::now();
     terminal.start(Some(frames * cameras.len() as u64));
-    let mut written = 0;
-    for (camera, mut sink) in sinks {
+    let (mut written, mut stopped) = (0_u64, None);
+    for &camera in &cameras {
         let simulator = Simulator::new(&scene, camera)
             .ok_or_else(|| Failure::Input(format!("the scene has no camera number {camera}")))?;
         let rendered = simulator.render(0..frames, args.threads, |rendered| {
             if interrupt::is_asked() {
                 return Err(Stopped::Asked);
             }
-            sink.take(&rendered, &args.out).map_err(|error| Stopped::Failed(making.tell(error)))?;
+            sink.take(camera, &rendered, &args.out).map_err(Stopped::Failed)?;
             written += 1;
             terminal.frame_done();
             Ok(())
         });
-        match rendered {
-            Ok(()) | Err(Stopped::Asked) => sink.finish(&args.out),
-            // The frames before it are a dataset of their own; half a video is none.
-            Err(Stopped::Failed(error)) => {
-                drop(sink);
-                if let (Making::Folder(folder), 1..) = (making, written) {
-                    folder.keep().map_err(Failure::running)?;
-                    terminal.note(format_args!("{}: {written} frames are in it", args.out.display()));
-                }
-                return Err(Failure::running(error));
-            }
+        stopped = rendered.err();
+        if stopped.is_some() {
+            break;
         }
-        .map_err(Failure::running)?;
     }
     interrupt::look_away();
     terminal.finish();
-    making.keep().map_err(Failure::running)?;
-    if interrupt::is_asked() {
-        let told = format!("interrupted after {written} frames; {} holds them", args.out.display());
-        return Err(Failure::Interrupted(told));
+    let held = format!("{}: {written} frames are in it", args.out.display());
+    match stopped {
+        None => sink.keep(&args.out).map_err(Failure::running)?,
+        Some(Stopped::Asked) => {
+            sink.keep(&args.out).map_err(Failure::running)?;
+            return Err(Failure::Interrupted(format!("interrupted; {held}")));
+        }
+        Some(Stopped::Failed(error)) => {
+            // The frames before it are a dataset of their own; half a video is none.
+            if let (Sink::Dataset { .. }, 1..) = (&sink, written) {
+                sink.keep(&args.out).map_err(Failure::running)?;
+                terminal.note(held);
+            }
+            return Err(Failure::running(error));
+        }
     }
     terminal.summary(format_args!(
         "{}: {written} frames of {} in {:.1} s, written to {}",
@@ -182,68 +176,50 @@ fn extension(path: &Path) -> Option<&str> {
     path.extension().and_then(|end| end.to_str()).filter(|end| ["y4m", "jsonl"].contains(end))
 }
 
-impl Making {
-    fn new(args: &Args) -> Result<Self, Failure> {
-        let mut targets = Targets::new(args.write, [args.scene.clone()]);
-        Ok(match extension(&args.out) {
-            Some(_) => Self::File(targets.file(&args.out)?),
-            None => Self::Folder(targets.folder(&args.out)?.whole().map_err(Failure::input)?),
-        })
-    }
-
-    fn sink(&self, scene: &Scene, camera: usize, several: bool) -> Result<Sink, Failure> {
-        match self {
-            Self::Folder(folder) => {
-                let path = match several {
-                    true => folder.path().join(&scene.cameras[camera].name),
-                    false => folder.path().to_owned(),
-                };
-                let created = dataset::create(path, scene, camera);
-                created.map(Sink::Dataset).map_err(|error| Failure::input(folder.tell(error)))
-            }
-            Self::File(target) => {
-                let file = BufWriter::new(target.whole().map_err(Failure::input)?);
-                if extension(target.path()) != Some("y4m") {
-                    return Ok(Sink::Truth(file));
-                }
-                let view = &scene.cameras[camera].camera;
+impl<'a> Sink<'a> {
+    /// Opens what is named, for one camera, or a dataset for all of them.
+    fn create(args: &Args, scene: &'a Scene, cameras: &[usize], frames: u64) -> Result<Self, Failure> {
+        let read = files_of(&args.scene).map_err(Failure::input)?;
+        let mut targets = Targets::new(args.write, read);
+        let mut file = || {
+            let whole = targets.file(&args.out)?.whole().map_err(Failure::input)?;
+            Ok(BufWriter::new(whole))
+        };
+        match extension(&args.out) {
+            Some("y4m") => {
+                let view = &scene.cameras[cameras[0]].camera;
                 // a rate in thousandths: what Y4M can say of 59.9 Hz
                 let rate = ((scene.rate_hz * 1000.0).round() as u32, 1000);
                 let size = (view.width(), view.height());
-                Y4mWriter::new(file, target.path(), size, rate).map(Sink::Video).map_err(Failure::running)
+                Y4mWriter::new(file()?, &args.out, size, rate).map(Self::Video).map_err(Failure::running)
+            }
+            Some(_) => Ok(Self::Truth(file()?)),
+            None => {
+                let making = targets.folder(&args.out)?.whole().map_err(Failure::input)?;
+                let writer = SceneDataset::create(making.path(), scene, cameras, frames);
+                let writer = Box::new(writer.map_err(|error| Failure::running(making.tell(error)))?);
+                Ok(Self::Dataset { making, writer })
             }
         }
     }
 
-    fn tell(&self, error: Error) -> Error {
+    fn take(&mut self, camera: usize, rendered: &Rendered, path: &Path) -> photinus_io::Result<()> {
         match self {
-            Self::Folder(folder) => folder.tell(error),
-            Self::File(_) => error,
-        }
-    }
-
-    /// What was made is whole.
-    fn keep(self) -> photinus_io::Result<()> {
-        match self {
-            Self::Folder(folder) => folder.keep(),
-            Self::File(_) => Ok(()),
-        }
-    }
-}
-
-impl Sink {
-    fn take(&mut self, rendered: &Rendered, path: &Path) -> photinus_io::Result<()> {
-        match self {
-            Self::Dataset(writer) => dataset::add(writer, rendered),
+            Self::Dataset { making, writer } => {
+                writer.add(camera, rendered).map_err(|error| making.tell(error))
+            }
             Self::Video(writer) => writer.write(&rendered.image.view()),
             Self::Truth(file) => write_truth(file, &rendered.truth, path),
         }
     }
 
-    /// All frames are in it.
-    fn finish(self, path: &Path) -> photinus_io::Result<()> {
+    /// What is in it is whole.
+    fn keep(self, path: &Path) -> photinus_io::Result<()> {
         let file = match self {
-            Self::Dataset(_) => return Ok(()),
+            Self::Dataset { making, writer } => {
+                drop(writer);
+                return making.keep();
+            }
             Self::Video(writer) => writer.finish()?,
             Self::Truth(file) => file,
         };

@@ -14,7 +14,8 @@ use photinus_io::frames::FrameSource;
 use photinus_sim::faults::{Fault, Faults, Shot};
 
 use crate::failure::Failure;
-use crate::output::refuse_to_mix;
+use crate::interrupt;
+use crate::targets::{Targets, WriteArgs};
 use crate::terminal::Terminal;
 
 const EXAMPLES: &str = "\
@@ -41,6 +42,8 @@ pub(crate) struct Args {
     /// Where random numbers start
     #[arg(long, value_name = "SEED", default_value_t = 0)]
     seed: u64,
+    #[command(flatten)]
+    write: WriteArgs,
     /// Print errors only
     #[arg(short, long)]
     quiet: bool,
@@ -77,8 +80,10 @@ pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> std::result::Result<(
             args.dataset.display()
         )));
     }
-    refuse_to_mix(&args.out)?;
-    let mut writer = folder::start(&dataset, &args.of_camera(0), &args.out).map_err(Failure::input)?;
+    let target = Targets::new(args.write, dataset.files()).folder(&args.out)?;
+    let making = target.whole().map_err(Failure::input)?;
+    let mut writer = folder::start(&dataset, &args.of_camera(0), making.path())
+        .map_err(|error| Failure::input(making.tell(error)))?;
     let by_frame = |truth: TruthFrame| ((truth.camera.clone(), truth.frame), truth);
     let mut truth: Truth = truth.unwrap_or_default().into_iter().map(by_frame).collect();
     let count: u64 = dataset.cameras().iter().map(|camera| camera.frames.len() as u64).sum();
@@ -88,7 +93,8 @@ pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> std::result::Result<(
         for shot in args.of_camera(camera).inject(shots(&dataset, camera, &mut truth)) {
             match shot {
                 Ok(shot) => {
-                    write(&mut writer, camera, &shot).map_err(Failure::running)?;
+                    write(&mut writer, camera, &shot)
+                        .map_err(|error| Failure::running(making.tell(error)))?;
                     written += 1;
                 }
                 Err(error) => {
@@ -97,9 +103,21 @@ pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> std::result::Result<(
                 }
             }
             terminal.frame_done();
+            if interrupt::is_asked() {
+                break;
+            }
         }
     }
+    interrupt::look_away();
     terminal.finish();
+    drop(writer);
+    if written > 0 {
+        making.keep().map_err(Failure::running)?;
+    }
+    if interrupt::is_asked() {
+        let told = format!("interrupted; {}: {written} frames are in it", args.out.display());
+        return Err(Failure::Interrupted(told));
+    }
     terminal.summary(format_args!(
         "{}: {written} of {count} frames written to {}",
         args.dataset.display(),

@@ -7,7 +7,8 @@ use std::path::{Path, PathBuf};
 use photinus_io::Error;
 use photinus_io::dataset::TruthFrame;
 use photinus_io::video::Y4mWriter;
-use photinus_sim::{Rendered, Scene, Simulator, dataset};
+use photinus_sim::dataset::SceneDataset;
+use photinus_sim::{Rendered, Scene, Simulator};
 
 use crate::failure::Failure;
 use crate::terminal::Terminal;
@@ -19,7 +20,7 @@ Examples:
   photinus simulate scenes/crossing.toml --out truth.jsonl             where everything was, no frames
   photinus locate flight --out results.jsonl
 
-A scene with several cameras gives a folder per camera inside the one that is named.";
+A scene with several cameras gives one dataset with all of them; its frames lie in a folder per camera.";
 
 /// Render a scene: frames with truth
 #[derive(Debug, clap::Args)]
@@ -56,8 +57,8 @@ impl Args {
 }
 
 /// Where rendered frames go.
-enum Sink {
-    Dataset(photinus_io::dataset::DatasetWriter),
+enum Sink<'a> {
+    Dataset(Box<SceneDataset<'a>>),
     Video(Y4mWriter<BufWriter<File>>),
     Truth(BufWriter<File>),
 }
@@ -70,27 +71,24 @@ pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> Result<(), Failure> {
     }
     let frames = args.frames.unwrap_or(scene.frames);
     let cameras = cameras(args, &scene)?;
-    let mut sinks = Vec::new();
-    for &camera in &cameras {
-        sinks.push((camera, Sink::create(args, &scene, camera, cameras.len() > 1)?));
-    }
+    let mut sink = Sink::create(args, &scene, &cameras, frames)?;
     if scene.targets.iter().any(|target| target.airframe != scene.targets[0].airframe) {
-        terminal.note("the targets' airframes differ; the dataset names that of the first one");
+        terminal.note("the targets' airframes differ: dataset.toml names that of the first one, vehicles.toml all of them");
     }
     let started = std::time::Instant::now();
     terminal.start(Some(frames * cameras.len() as u64));
-    for (camera, mut sink) in sinks {
+    for &camera in &cameras {
         let simulator = Simulator::new(&scene, camera)
             .ok_or_else(|| Failure::Input(format!("the scene has no camera number {camera}")))?;
         simulator
             .render(0..frames, args.threads, |rendered| {
-                sink.take(&rendered, &args.out)?;
+                sink.take(camera, &rendered, &args.out)?;
                 terminal.frame_done();
                 Ok(())
             })
             .map_err(Failure::running)?;
-        sink.finish(&args.out).map_err(Failure::running)?;
     }
+    sink.finish(&args.out).map_err(Failure::running)?;
     terminal.finish();
     let (count, seconds) = (frames * cameras.len() as u64, started.elapsed().as_secs_f64());
     terminal.summary(format_args!(
@@ -130,34 +128,31 @@ fn extension(path: &Path) -> Option<&str> {
     path.extension().and_then(|end| end.to_str()).filter(|end| ["y4m", "jsonl"].contains(end))
 }
 
-impl Sink {
-    fn create(args: &Args, scene: &Scene, camera: usize, several: bool) -> Result<Self, Failure> {
+impl<'a> Sink<'a> {
+    /// Opens what is named, for one camera, or a dataset for all of them.
+    fn create(args: &Args, scene: &'a Scene, cameras: &[usize], frames: u64) -> Result<Self, Failure> {
         let file = || {
             let created = File::create_new(&args.out).map_err(|error| Error::io(&args.out, error));
             created.map(BufWriter::new).map_err(Failure::input)
         };
         match extension(&args.out) {
             Some("y4m") => {
-                let view = &scene.cameras[camera].camera;
+                let view = &scene.cameras[cameras[0]].camera;
                 // a rate in thousandths: what Y4M can say of 59.9 Hz
                 let rate = ((scene.rate_hz * 1000.0).round() as u32, 1000);
                 let size = (view.width(), view.height());
                 Y4mWriter::new(file()?, &args.out, size, rate).map(Self::Video).map_err(Failure::running)
             }
             Some(_) => Ok(Self::Truth(file()?)),
-            None => {
-                let folder = match several {
-                    true => args.out.join(&scene.cameras[camera].name),
-                    false => args.out.clone(),
-                };
-                dataset::create(folder, scene, camera).map(Self::Dataset).map_err(Failure::input)
-            }
+            None => SceneDataset::create(&args.out, scene, cameras, frames)
+                .map(|dataset| Self::Dataset(Box::new(dataset)))
+                .map_err(Failure::input),
         }
     }
 
-    fn take(&mut self, rendered: &Rendered, path: &Path) -> photinus_io::Result<()> {
+    fn take(&mut self, camera: usize, rendered: &Rendered, path: &Path) -> photinus_io::Result<()> {
         match self {
-            Self::Dataset(writer) => dataset::add(writer, rendered),
+            Self::Dataset(dataset) => dataset.add(camera, rendered),
             Self::Video(writer) => writer.write(&rendered.image.view()),
             Self::Truth(file) => write_truth(file, &rendered.truth, path),
         }

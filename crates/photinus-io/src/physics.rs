@@ -32,7 +32,7 @@ pub fn within(path: &Path, key: &str, value: f64, range: &RangeInclusive<f64>) -
     if range.contains(&value) {
         return Ok(value);
     }
-    Err(Error::format(path, format!("{value} is out of range"))
+    Err(Error::format(path, format!("{value:?} is out of range"))
         .at(Place::Key(key.to_owned()))
         .advise(advice(range)))
 }

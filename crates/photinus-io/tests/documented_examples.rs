@@ -30,7 +30,7 @@ fn datasets() {
 
 #[test]
 fn rigs() {
-    let rig = DatasetToml::parse(&example("airframe ="), "example").unwrap();
+    let rig = DatasetToml::parse(&example("# a dataset.toml with"), "example").unwrap();
     assert!(matches!(rig, DatasetToml::Rig(rig) if rig.cameras[0].exposure_us.is_some()));
     assert_eq!(parse_vehicles(&example("[[vehicle]]"), "example").unwrap()[0].words, [1, 4]);
     assert_eq!(parse_imu(&example("time_s,wx_rad_s"), "example").unwrap().len(), 2);

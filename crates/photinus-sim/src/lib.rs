@@ -16,13 +16,17 @@
 
 pub mod background;
 pub mod cameras;
+pub mod clock;
 pub mod dataset;
+mod draw;
 pub mod faults;
+pub mod instruments;
 pub mod motion;
 pub mod occlusion;
 pub mod optics;
 pub mod preset;
 pub mod receding;
+pub mod recording;
 pub mod render;
 pub mod scene;
 pub mod sensor;

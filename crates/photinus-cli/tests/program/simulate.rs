@@ -46,6 +46,52 @@ fn a_seed_gives_the_same_bytes_whatever_the_threads() {
     assert_eq!(read_truth(stage.path("t.jsonl")).unwrap().len(), 30, "the scene's duration");
 }
 
+/// Every file of a folder and the folders in it, with its bytes.
+fn files(folder: &std::path::Path) -> Vec<(std::path::PathBuf, Vec<u8>)> {
+    let mut all = Vec::new();
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        match path.is_dir() {
+            true => all.extend(files(&path)),
+            false => all.push((path.clone(), std::fs::read(&path).unwrap())),
+        }
+    }
+    all.sort();
+    all
+}
+
+#[test]
+fn several_cameras_give_one_dataset_whatever_the_threads() {
+    let stage = stage("simulate-rig");
+    let back = "[[camera]]\nname = \"back\"\nfile = \"camera.toml\"\nyaw_deg = 180.0\nclock = { phase_s = 0.01 }\n[gyro]\n\
+        rate_hz = 100.0\nnoise_rad_s = 0.01\n[recording]\nlost = 0.2\nswapped = 0.5\n[[target]]";
+    stage.file("rig.toml", SCENE.replace("[[target]]", back));
+    let bytes = |threads: u32| {
+        let done = stage.run(&format!("simulate rig.toml --out rig --frames 6 --threads {threads}"));
+        assert_eq!(done.code, 0, "{}", done.err);
+        assert!(done.err.contains("12 frames of small"), "{}", done.err);
+        let bytes = files(&stage.path("rig"));
+        let dataset = Dataset::read(stage.path("rig")).unwrap();
+        let names: Vec<_> = dataset.cameras().iter().map(|camera| camera.name.as_deref()).collect();
+        assert_eq!(names, [Some("front"), Some("back")]);
+        assert!(
+            dataset.cameras().iter().all(|camera| !camera.frames.is_empty() && camera.mounting.is_some())
+        );
+        assert_eq!(dataset.imu().unwrap().unwrap().len(), 22, "to 0.21 s at 100 Hz");
+        std::fs::remove_dir_all(stage.path("rig")).unwrap();
+        bytes
+    };
+    assert!(bytes(1) == bytes(3));
+    assert_eq!(stage.run("simulate rig.toml --out one -q --frames 2 --camera back").code, 0);
+    assert_eq!(Dataset::read(stage.path("one")).unwrap().cameras()[0].name, None);
+    let done = stage.run("simulate rig.toml --out rig.y4m");
+    assert!(
+        done.err.contains("it can hold one camera; choose with --camera among front, back"),
+        "{}",
+        done.err
+    );
+}
+
 #[test]
 fn bad_scenes_are_refused_with_file_key_and_reason() {
     let stage = stage("simulate-bad");

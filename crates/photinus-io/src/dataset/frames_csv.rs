@@ -99,7 +99,7 @@ fn time(record: &[&str], column: usize) -> std::result::Result<f64, Wrong> {
     let time_s = finite(record, column)?;
     match physics::TIME_S.contains(&time_s) {
         true => Ok(time_s),
-        false => Err((format!("time_s {time_s} is out of range"), "give seconds")),
+        false => Err((format!("time_s {time_s:?} is out of range"), "give seconds")),
     }
 }
 

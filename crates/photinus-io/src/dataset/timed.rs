@@ -46,8 +46,8 @@ pub(super) fn rows<const N: usize>(
         for ((value, cell), (name, range)) in row.iter_mut().zip(text.split(',')).zip(columns) {
             *value = match cell.trim().parse() {
                 Ok(value) if range.contains(&value) => value,
-                Ok(value) if !value.is_nan() => {
-                    let reason = format!("{name} {value} is out of range");
+                Ok(value) if !f64::is_nan(value) => {
+                    let reason = format!("{name} {value:?} is out of range");
                     return refuse(line, reason, physics::advice(range));
                 }
                 _ => {

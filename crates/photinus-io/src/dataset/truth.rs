@@ -79,7 +79,7 @@ mod limits {
     use crate::physics;
 
     fn check<E: Error>(value: f64, range: &RangeInclusive<f64>) -> Result<f64, E> {
-        let refuse = || E::custom(format!("{value} is out of range; {}", physics::advice(range)));
+        let refuse = || E::custom(format!("{value:?} is out of range; {}", physics::advice(range)));
         range.contains(&value).then_some(value).ok_or_else(refuse)
     }
 

@@ -65,7 +65,7 @@ impl Renderer {
     /// Samples along a streak are not farther apart than this, px.
     const STREAK_STEP_PX: f64 = 0.25;
     /// Samples of a streak that is hardly one.
-    const SHORT_STREAK: f64 = 16.0;
+    const SHORT_STREAK: f64 = 18.0;
     /// Most samples of a streak: a thousand pixels of it.
     const MOST_SAMPLES: f64 = 4000.0;
 

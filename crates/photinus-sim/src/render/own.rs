@@ -32,7 +32,7 @@ struct EdgeLight {
 /// Places of an edge are not farther apart than this, px.
 const STEP_PX: f64 = 0.3;
 /// Places of an edge whose light one pixel gets.
-const AMONG: f64 = 16.0;
+const AMONG: f64 = 18.0;
 
 impl Own {
     fn new(camera: &Camera, airframe: &OwnAirframe, body_from_camera: &Isometry3<f64>) -> Self {

@@ -3,10 +3,7 @@
 use std::path::Path;
 
 use nalgebra::Vector3;
-use photinus_io::{Error, Place, Result};
-
-/// Farthest place in a scene, m.
-const FARTHEST_M: f64 = 1e5;
+use photinus_io::{Error, Place, Result, physics};
 
 /// Checks the numbers of one file.
 pub(super) struct Check<'a> {
@@ -24,7 +21,7 @@ impl Check<'_> {
         if (least..=most).contains(&value) {
             return Ok(value);
         }
-        Err(self.refuse(key, format!("{value} is out of range")).advise(format!("give {least} to {most}")))
+        Err(self.refuse(key, format!("{value:?} is out of range")).advise(format!("give {least} to {most}")))
     }
 
     /// A number above 0.
@@ -37,10 +34,20 @@ impl Check<'_> {
             .advise(format!("give up to {most}")))
     }
 
+    /// Frames, bits or measurements per second.
+    pub(super) fn rate(&self, key: &str, value_hz: f64) -> Result<f64> {
+        physics::within(self.path, key, value_hz, &physics::RATE_HZ)
+    }
+
+    /// A share, 0 to 1.
+    pub(super) fn share(&self, key: &str, value: f64) -> Result<f64> {
+        self.within(key, value, (0.0, 1.0))
+    }
+
     /// A place.
     pub(super) fn place(&self, key: &str, place_m: [f64; 3]) -> Result<Vector3<f64>> {
         for value in place_m {
-            self.within(key, value, (-FARTHEST_M, FARTHEST_M))?;
+            physics::within(self.path, key, value, &physics::PLACE_M)?;
         }
         Ok(Vector3::from(place_m))
     }

@@ -3,9 +3,14 @@
 //! Paths in a scene are relative to the scene's folder. Unknown keys are refused; every refusal names file, key and
 //! reason. The keys are described in docs/scenes.md.
 
+mod blink;
 mod camera_table;
 mod check;
+mod instruments;
 mod light_table;
+#[cfg(test)]
+mod light_tests;
+mod movers;
 mod read;
 mod table;
 #[cfg(test)]
@@ -18,9 +23,12 @@ use photinus::camera::Camera;
 use photinus_io::blink::BlinkCodes;
 
 use crate::background::{Daylight, Water};
+use crate::clock::Clock;
+use crate::instruments::Instruments;
 use crate::motion::Motion;
 use crate::occlusion::{Mirror, OwnAirframe, Solid};
 use crate::preset::Preset;
+use crate::recording::Recording;
 use crate::source::{LedFaults, Lobe};
 
 /// What is simulated.
@@ -52,6 +60,10 @@ pub struct Scene {
     pub cameras: Vec<MountedCamera>,
     /// Those that are looked at.
     pub targets: Vec<Target>,
+    /// What the observer measures of itself.
+    pub instruments: Instruments,
+    /// What goes wrong with the recording.
+    pub recording: Recording,
 }
 
 /// A camera and how it sits on the observer.
@@ -63,6 +75,12 @@ pub struct MountedCamera {
     pub camera: Camera,
     /// The pose body_from_camera.
     pub body_from_camera: Isometry3<f64>,
+    /// The clock that times its frames.
+    pub clock: Clock,
+    /// What that clock reads when the first exposure begins, s.
+    pub phase_s: f64,
+    /// Its own exposure, us, where it is not that of the scene.
+    pub exposure_us: Option<f64>,
 }
 
 /// A robot with markers.
@@ -102,12 +120,14 @@ pub struct SceneLamp {
 /// Which code words a target sends, and when.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BlinkPlan {
-    /// The words.
+    /// The book of words.
     pub codes: BlinkCodes,
-    /// Word of an LED whose signal is 0 or none; that of signal s is s words further.
-    pub first_word: usize,
-    /// Bits per second on the camera's clock.
+    /// The word of each signal of the airframe; an LED without a signal sends that of signal 0.
+    pub words: Vec<usize>,
+    /// Bits per second on the target's clock.
     pub rate_hz: f64,
-    /// How far into its word it is at time 0, s.
-    pub shift_s: f64,
+    /// The target's clock: its words begin when it reads 0.
+    pub clock: Clock,
+    /// How far edges stray, sigma, s.
+    pub jitter_s: f64,
 }

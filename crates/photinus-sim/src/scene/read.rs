@@ -3,26 +3,23 @@
 use std::path::{Path, PathBuf};
 
 use nalgebra::{Isometry3, Matrix3, Rotation3, Translation3, UnitQuaternion, Vector3};
-use photinus_io::airframe::read_airframe;
-use photinus_io::blink::read_blink_codes;
-use photinus_io::{Result, read_camera, table as toml_table};
+use photinus_io::{Result, physics, read_camera, table as toml_table};
 use toml::value::{Datetime, Offset};
 
 use super::camera_table::{OpticsTable, SensorTable};
 use super::check::Check;
-use super::table::{
-    BlinkTable, CameraTable, DaylightTable, MotionTable, PresetName, SceneTable, SkyName, SolidTable,
-    SpinTable, TargetTable,
-};
-use super::{BlinkPlan, MountedCamera, Scene, Target};
+use super::table::{CameraTable, DaylightTable, PresetName, SceneTable, SkyName};
+use super::{MountedCamera, Scene, Target};
 use crate::background::{Daylight, Place, Sky, Water, sun_direction};
-use crate::motion::{Flight, Motion, Path as FlightPath, Recorded, Spin, Wander};
-use crate::occlusion::Solid;
+use crate::clock::Clock;
+use crate::instruments::Instruments;
+use crate::motion::Motion;
 use crate::preset::{BLUEFOX_FIT, Preset, SMALL_FISHEYE_FIT, bluefox, small_fisheye};
+use crate::recording::Recording;
 use crate::sensor::hash;
 
 /// Longest scene, s, and most frames of one.
-const LONGEST_S: f64 = 86_400.0;
+pub(super) const LONGEST_S: f64 = 86_400.0;
 
 impl Scene {
     /// Reads a scene file and the files it names.
@@ -66,26 +63,27 @@ impl Scene {
 /// What tells the observer's wind from that of target number n, which is n.
 const OBSERVER: u64 = u64::MAX;
 
-fn wind_seed(seed: u64, robot: u64) -> u64 {
+pub(super) fn wind_seed(seed: u64, robot: u64) -> u64 {
     hash(seed ^ hash(robot))
 }
 
-struct Reader<'a> {
-    check: Check<'a>,
-    seed: u64,
+pub(super) struct Reader<'a> {
+    pub(super) check: Check<'a>,
+    pub(super) seed: u64,
 }
 
 impl Reader<'_> {
     fn scene(&self, table: SceneTable) -> Result<Scene> {
         let check = &self.check;
-        let rate_hz = check.positive("rate_hz", table.rate_hz, 1e4)?;
+        let rate_hz = check.rate("rate_hz", table.rate_hz)?;
         let duration_s = check.positive("duration_s", table.duration_s, LONGEST_S)?;
-        let exposure_us = check.positive("exposure_us", table.exposure_us, 1e7)?;
-        if exposure_us > 1e6 / rate_hz {
-            let reason = format!("an exposure of {exposure_us} us is longer than {:.1} us", 1e6 / rate_hz);
+        let exposure_us = self.exposure("exposure_us", table.exposure_us, rate_hz)?;
+        let names: Vec<&str> = table.camera.iter().map(|camera| camera.name.as_str()).collect();
+        if let Some(twice) = (1..names.len()).find(|i| names[..*i].contains(&names[*i])) {
+            let reason = format!("another camera is called `{}`", names[twice]);
             return Err(check
-                .refuse("exposure_us", reason)
-                .advise("that is the time between frames at rate_hz"));
+                .refuse(&format!("camera[{twice}].name"), reason)
+                .advise("name each its own way"));
         }
         for (key, count) in [("camera", table.camera.len()), ("target", table.target.len())] {
             if count == 0 {
@@ -99,7 +97,7 @@ impl Reader<'_> {
             (observer.wind_m_s, observer.heading_deg, observer.spin),
             OBSERVER,
         )?;
-        let cameras = table.camera.into_iter().enumerate().map(|(i, camera)| self.camera(i, camera));
+        let cameras = table.camera.into_iter().enumerate().map(|(i, camera)| self.camera(i, camera, rate_hz));
         let targets = table.target.into_iter().enumerate().map(|(i, target)| self.target(i, target));
         let targets: Vec<Target> = targets.collect::<Result<_>>()?;
         let lamps = table.lamp.into_iter().enumerate();
@@ -115,7 +113,8 @@ impl Reader<'_> {
             water: table
                 .water
                 .map(|water| -> Result<Water> {
-                    let level_m = check.within("water.level_m", water.level_m, (-1e5, 1e5))?;
+                    let level_m =
+                        physics::within(check.path, "water.level_m", water.level_m, &physics::PLACE_M)?;
                     let wind_m_s = check.within("water.wind_m_s", water.wind_m_s, (0.0, 40.0))?;
                     Ok(Water { level_m, wind_m_s })
                 })
@@ -125,6 +124,12 @@ impl Reader<'_> {
             lamps: lamps.collect::<Result<_>>()?,
             own_airframe: table.own_airframe.read(check, |key, solid| self.solid(key, solid))?,
             targets,
+            instruments: Instruments {
+                gyro: table.gyro.map(|gyro| self.gyro(&gyro)).transpose()?,
+                gravity: table.gravity.map(|gravity| self.gravity(&gravity)).transpose()?,
+                odometry: table.odometry.map(|odometry| self.odometry(&odometry)).transpose()?,
+            },
+            recording: table.recording.map_or(Ok(Recording::default()), |r| self.recording(&r, rate_hz))?,
         })
     }
 
@@ -139,8 +144,18 @@ impl Reader<'_> {
         Ok(preset)
     }
 
+    /// An exposure that fits between two frames.
+    fn exposure(&self, key: &str, exposure_us: f64, rate_hz: f64) -> Result<f64> {
+        let exposure_us = physics::within(self.check.path, key, exposure_us, &physics::EXPOSURE_US)?;
+        if exposure_us <= 1e6 / rate_hz {
+            return Ok(exposure_us);
+        }
+        let reason = format!("an exposure of {exposure_us} us is longer than {:.1} us", 1e6 / rate_hz);
+        Err(self.check.refuse(key, reason).advise("that is the time between frames at rate_hz"))
+    }
+
     /// A file that the scene names.
-    fn named(&self, key: &str, file: &Path) -> Result<PathBuf> {
+    pub(super) fn named(&self, key: &str, file: &Path) -> Result<PathBuf> {
         if file.as_os_str().is_empty() {
             return Err(self.check.refuse(key, "the path is empty").advise("name a file"));
         }
@@ -176,7 +191,7 @@ impl Reader<'_> {
         Ok(Daylight::new(sky, sun))
     }
 
-    fn camera(&self, index: usize, table: CameraTable) -> Result<MountedCamera> {
+    fn camera(&self, index: usize, table: CameraTable, rate_hz: f64) -> Result<MountedCamera> {
         let key = |name: &str| format!("camera[{index}].{name}");
         let plain = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
         if table.name.is_empty() || !table.name.chars().all(plain) {
@@ -195,127 +210,21 @@ impl Reader<'_> {
                 Translation3::from(position_m),
                 mounting(yaw_rad, pitch_rad, roll_rad),
             ),
-        })
-    }
-
-    fn target(&self, index: usize, table: TargetTable) -> Result<Target> {
-        let key = |name: &str| format!("target[{index}].{name}");
-        let airframe = read_airframe(self.named(&key("airframe"), &table.airframe)?)?.airframe;
-        let how = (table.wind_m_s, table.heading_deg, table.spin);
-        let motion = self.motion(&format!("target[{index}]"), table.motion, how, u64::from(table.id))?;
-        let solids = table.solid.into_iter().enumerate();
-        let solids = solids.map(|(i, solid)| self.solid(&format!("target[{index}].solid[{i}]"), solid));
-        let blink = table.blink.map(|blink| self.blink(&key("blink"), blink, &airframe)).transpose()?;
-        let lobe = table.lobe.map(|lobe| lobe.read(&self.check, &key("lobe"))).transpose()?;
-        let faults = table.leds.read(&self.check, &key("leds"), &airframe, (self.seed, table.id))?;
-        let mirrors = table.mirror.into_iter().enumerate();
-        let mirrors =
-            mirrors.map(|(i, mirror)| mirror.read(&self.check, &format!("target[{index}].mirror[{i}]")));
-        Ok(Target {
-            id: table.id,
-            solids: solids.collect::<Result<_>>()?,
-            lobe,
-            faults,
-            mirrors: mirrors.collect::<Result<_>>()?,
-            motion,
-            blink,
-            airframe,
-        })
-    }
-
-    fn blink(
-        &self,
-        key: &str,
-        table: BlinkTable,
-        airframe: &photinus::airframe::Airframe,
-    ) -> Result<BlinkPlan> {
-        let codes = read_blink_codes(self.named(&format!("{key}.codes"), &table.codes)?)?;
-        let last = airframe.leds().iter().filter_map(|led| led.signal).max().unwrap_or(0) as usize;
-        if table.first_word.saturating_add(last) >= codes.words().len() {
-            let reason =
-                format!("word {} of {} words", table.first_word.saturating_add(last), codes.words().len());
-            return Err(self
-                .check
-                .refuse(&format!("{key}.first_word"), reason)
-                .advise("an LED of signal s sends word first_word + s, counted from 0"));
-        }
-        Ok(BlinkPlan {
-            codes,
-            first_word: table.first_word,
-            rate_hz: self.check.positive(&format!("{key}.rate_hz"), table.rate_hz, 1e5)?,
-            shift_s: self.check.within(&format!("{key}.shift_s"), table.shift_s, (-1e3, 1e3))?,
-        })
-    }
-
-    fn solid(&self, key: &str, table: SolidTable) -> Result<Solid> {
-        let check = &self.check;
-        Ok(match table {
-            SolidTable::Sphere { centre_m, radius_m } => Solid::Sphere {
-                centre_m: check.place(&format!("{key}.sphere.centre_m"), centre_m)?,
-                radius_m: check.positive(&format!("{key}.sphere.radius_m"), radius_m, 100.0)?,
-            },
-            SolidTable::Cylinder { centre_m, radius_m, half_height_m } => Solid::Cylinder {
-                centre_m: check.place(&format!("{key}.cylinder.centre_m"), centre_m)?,
-                radius_m: check.positive(&format!("{key}.cylinder.radius_m"), radius_m, 100.0)?,
-                half_height_m: check.positive(
-                    &format!("{key}.cylinder.half_height_m"),
-                    half_height_m,
-                    100.0,
+            clock: Clock {
+                offset_s: self.check.within(&key("clock.offset_s"), table.clock.offset_s, (-1e3, 1e3))?,
+                ppm: physics::within(
+                    self.check.path,
+                    &key("clock.ppm"),
+                    table.clock.ppm,
+                    &physics::CLOCK_PPM,
                 )?,
             },
+            phase_s: self.check.within(&key("clock.phase_s"), table.clock.phase_s, (-1e3, 1e3))?,
+            exposure_us: match table.exposure_us {
+                Some(exposure_us) => Some(self.exposure(&key("exposure_us"), exposure_us, rate_hz)?),
+                None => None,
+            },
         })
-    }
-
-    fn motion(
-        &self,
-        owner: &str,
-        table: MotionTable,
-        (wind_m_s, heading_deg, spins): (f64, f64, Vec<SpinTable>),
-        salt: u64,
-    ) -> Result<Motion> {
-        let check = &self.check;
-        let key = |name: &str| format!("{owner}.motion.{name}");
-        let path = match table {
-            MotionTable::Hover { position_m } => {
-                FlightPath::Hover { position_m: check.place(&key("hover.position_m"), position_m)? }
-            }
-            MotionTable::Line { from_m, to_m, duration_s } => FlightPath::Line {
-                from_m: check.place(&key("line.from_m"), from_m)?,
-                to_m: check.place(&key("line.to_m"), to_m)?,
-                duration_s: check.positive(&key("line.duration_s"), duration_s, LONGEST_S)?,
-            },
-            MotionTable::Circle { centre_m, radius_m, speed_m_s, phase_deg } => FlightPath::Circle {
-                centre_m: check.place(&key("circle.centre_m"), centre_m)?,
-                radius_m: check.positive(&key("circle.radius_m"), radius_m, 1e4)?,
-                speed_m_s: check.within(&key("circle.speed_m_s"), speed_m_s, (-100.0, 100.0))?,
-                phase_rad: check.angle(&key("circle.phase_deg"), phase_deg)?,
-            },
-            MotionTable::FigureEight { centre_m, half_size_m, period_s } => FlightPath::FigureEight {
-                centre_m: check.place(&key("figure_eight.centre_m"), centre_m)?,
-                half_size_m: [
-                    check.positive(&key("figure_eight.half_size_m"), half_size_m[0], 1e4)?,
-                    check.positive(&key("figure_eight.half_size_m"), half_size_m[1], 1e4)?,
-                ],
-                period_s: check.positive(&key("figure_eight.period_s"), period_s, LONGEST_S)?,
-            },
-            MotionTable::Recorded { file } => {
-                let path = self.named(&key("recorded.file"), &file)?;
-                return Recorded::read(&path).map(Motion::Recorded);
-            }
-        };
-        let wind_m_s = check.within(&format!("{owner}.wind_m_s"), wind_m_s, (0.0, 40.0))?;
-        let wander = Wander::new(wind_m_s, wind_seed(self.seed, salt));
-        let heading_rad = check.angle(&format!("{owner}.heading_deg"), heading_deg)?;
-        let spin = |(i, spin): (usize, SpinTable)| -> Result<Spin> {
-            let key = |name: &str| format!("{owner}.spin[{i}].{name}");
-            Ok(Spin {
-                start_s: check.within(&key("start_s"), spin.start_s, (-LONGEST_S, LONGEST_S))?,
-                duration_s: check.positive(&key("duration_s"), spin.duration_s, LONGEST_S)?,
-                turns: check.within(&key("turns"), spin.turns, (-1e4, 1e4))?,
-            })
-        };
-        let spins = spins.into_iter().enumerate().map(spin).collect::<Result<_>>()?;
-        Ok(Motion::Flown(Flight { path, wander, heading_rad, spins }))
     }
 
     /// Refuses a target that a camera would be inside of, looked at every frame, or 2000 times in a long scene.

@@ -31,6 +31,10 @@ pub(super) struct SceneTable {
     pub(super) observer: MoverTable,
     pub(super) camera: Vec<CameraTable>,
     pub(super) target: Vec<TargetTable>,
+    pub(super) gyro: Option<GyroTable>,
+    pub(super) gravity: Option<GravityTable>,
+    pub(super) odometry: Option<OdometryTable>,
+    pub(super) recording: Option<RecordingTable>,
 }
 
 #[derive(Clone, Copy, Deserialize)]
@@ -127,6 +131,59 @@ pub(super) struct CameraTable {
     pub(super) pitch_deg: f64,
     #[serde(default)]
     pub(super) roll_deg: f64,
+    #[serde(default)]
+    pub(super) clock: ClockTable,
+    pub(super) exposure_us: Option<f64>,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct ClockTable {
+    pub(super) offset_s: f64,
+    pub(super) ppm: f64,
+    pub(super) phase_s: f64,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct GyroTable {
+    pub(super) rate_hz: f64,
+    #[serde(default)]
+    pub(super) noise_rad_s: f64,
+    #[serde(default)]
+    pub(super) bias_rad_s: f64,
+    #[serde(default)]
+    pub(super) bias_walk_rad_s: f64,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct GravityTable {
+    pub(super) noise_deg: f64,
+    pub(super) bias_deg: f64,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct OdometryTable {
+    pub(super) rate_hz: f64,
+    #[serde(default)]
+    pub(super) place_walk_m: f64,
+    #[serde(default)]
+    pub(super) heading_walk_deg: f64,
+    #[serde(default)]
+    pub(super) tilt_noise_deg: f64,
+    #[serde(default)]
+    pub(super) velocity_noise_m_s: f64,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct RecordingTable {
+    pub(super) lost: f64,
+    pub(super) late: f64,
+    pub(super) late_by_s: f64,
+    pub(super) swapped: f64,
 }
 
 #[derive(Deserialize)]
@@ -162,9 +219,13 @@ pub(super) enum SolidTable {
 #[serde(deny_unknown_fields)]
 pub(super) struct BlinkTable {
     pub(super) codes: PathBuf,
-    #[serde(default)]
-    pub(super) first_word: usize,
+    pub(super) words: Option<Vec<usize>>,
+    pub(super) first_word: Option<usize>,
     pub(super) rate_hz: f64,
     #[serde(default)]
     pub(super) shift_s: f64,
+    #[serde(default)]
+    pub(super) ppm: f64,
+    #[serde(default)]
+    pub(super) jitter_s: f64,
 }

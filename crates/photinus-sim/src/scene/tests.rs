@@ -65,7 +65,11 @@ fn bad_scenes_are_refused_with_file_key_and_reason() {
             "exposure_us = 17000.0",
             "`exposure_us`: an exposure of 17000 us is longer than 16666.7 us",
         ),
-        ("exposure_us = 1000.0", "exposure_us = nan", "`exposure_us`: NaN is not a positive number"),
+        (
+            "exposure_us = 1000.0",
+            "exposure_us = nan",
+            "`exposure_us`: NaN is out of range; give 0.1 to 60000000",
+        ),
         (
             "hover = { position_m = [0.0, 0.0, 3.0] }",
             "recorded = { file = \"none.csv\" }",
@@ -82,7 +86,7 @@ fn bad_scenes_are_refused_with_file_key_and_reason() {
         (
             "latitude_deg = 50.0",
             "latitude_deg = 95",
-            "`daylight.latitude_deg`: 95 is out of range; give -90 to 90",
+            "`daylight.latitude_deg`: 95.0 is out of range; give -90 to 90",
         ),
         (
             "half_height_m = 0.1",
@@ -90,7 +94,61 @@ fn bad_scenes_are_refused_with_file_key_and_reason() {
             "`target[0].solid[0].cylinder.half_height_m`: 0 is not a positive",
         ),
         ("bluefox-dsl215-bp365", "other", "line 3: unknown variant `other`"),
-        ("yaw_deg = 90.0", "yaw_deg = 9000.0", "`camera[0].yaw_deg`: 9000 is out of range"),
+        ("rate_hz = 60.0", "rate_hz = 1e-308", "`rate_hz`: 1e-308 is out of range; give 0.001 to 1000000"),
+        ("exposure_us = 1000.0", "exposure_us = 1e300", "`exposure_us`: 1e300 is out of range"),
+        (
+            "[0.0, 0.0, 3.0] } }",
+            "[0.0, 0.0, 3e6] } }",
+            "`observer.motion.hover.position_m`: 3000000.0 is out of",
+        ),
+        ("yaw_deg = 90.0", "clock = { ppm = 1e9 }", "`camera[0].clock.ppm`: 1000000000.0 is out of range"),
+        ("yaw_deg = 90.0", "clock = { phase = 1.0 }", "line 17: unknown key `phase`"),
+        ("yaw_deg = 90.0", "exposure_us = 2e4", "`camera[0].exposure_us`: an exposure of 20000 us is longer"),
+        ("[observer]", "[gyro]\nrate_hz = 0\n[observer]", "`gyro.rate_hz`: 0.0 is out of range"),
+        ("[observer]", "[gyro]\nnoise_rad_s = 0\n[observer]", "line 12: missing key `rate_hz`"),
+        ("[observer]", "[gravity]\nnoise_deg = -1\n[observer]", "`gravity.noise_deg`: -1.0 is out of range"),
+        (
+            "[observer]",
+            "[odometry]\nrate_hz = 9\nplace_walk_m = nan\n[observer]",
+            "`odometry.place_walk_m`: NaN is out of range",
+        ),
+        (
+            "[observer]",
+            "[recording]\nlost = 1.5\n[observer]",
+            "`recording.lost`: 1.5 is out of range; give 0 to 1",
+        ),
+        (
+            "[observer]",
+            "[recording]\nlate_by_s = 0.02\n[observer]",
+            "`recording.late_by_s`: 0.02 is out of range",
+        ),
+        ("[observer]", "[recording]\ndropped = 0.1\n[observer]", "line 13: unknown key `dropped`"),
+        (
+            "[[target]]",
+            "[[camera]]\nname = \"front\"\nfile = \"cameras/bluefox-dsl215.toml\"\n[[target]]",
+            "`camera[1].name`: another camera is called `front`",
+        ),
+        (
+            "solid = ",
+            "blink = { codes = \"codes/two-words.txt\", rate_hz = 60.0, words = [2] }\nsolid = ",
+            "`target[0].blink.words`: word 2 of ",
+        ),
+        (
+            "solid = ",
+            "blink = { codes = \"codes/two-words.txt\", rate_hz = 60.0, words = [0, 1] }\nsolid = ",
+            "`target[0].blink.words`: 2 words for 1 signals",
+        ),
+        (
+            "solid = ",
+            "blink = { codes = \"codes/two-words.txt\", rate_hz = 60.0, words = [0], first_word = 0 }\nsolid = ",
+            "`target[0].blink.first_word`: words are given, too",
+        ),
+        (
+            "solid = ",
+            "blink = { codes = \"codes/two-words.txt\", rate_hz = 60.0, jitter_s = 0.01 }\nsolid = ",
+            "`target[0].blink.jitter_s`: 0.01 is out of range; give 0 to 0.0016666666666666668",
+        ),
+        ("yaw_deg = 90.0", "yaw_deg = 9000.0", "`camera[0].yaw_deg`: 9000.0 is out of range"),
     ] {
         let text = SCENE.replacen(from, to, 1);
         assert_ne!(text, SCENE, "{from}");
@@ -110,4 +168,25 @@ fn every_scene_of_the_library_is_read() {
         }
     }
     assert!(read >= 1);
+}
+
+#[test]
+fn the_example_of_the_documentation_is_read() {
+    let document = std::fs::read_to_string(scenes().join("../docs/scenes.md")).unwrap();
+    let lines = document.lines().skip_while(|line| !line.starts_with("    name ="));
+    let example = lines.take_while(|line| line.is_empty() || line.starts_with("    "));
+    let text: String = example.map(|line| line.trim_start().to_owned() + "\n").collect();
+    let scene = parse(&text).unwrap_or_else(|error| panic!("{error}"));
+    let camera = &scene.cameras[0];
+    assert_eq!(
+        (camera.exposure_us, scene.targets[0].blink.as_ref().unwrap().words.as_slice()),
+        (Some(500.0), &[1][..])
+    );
+    assert_eq!((camera.clock, camera.phase_s), (crate::clock::Clock { offset_s: 0.002, ppm: 20.0 }, 0.004));
+    let (instruments, recording) = (&scene.instruments, &scene.recording);
+    assert!(instruments.gyro.is_some() && instruments.gravity.is_some() && instruments.odometry.is_some());
+    assert_eq!(
+        (recording.lost, recording.late, recording.late_by_s, recording.swapped),
+        (0.01, 0.02, 0.005, 0.005)
+    );
 }

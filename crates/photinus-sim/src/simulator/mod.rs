@@ -15,7 +15,8 @@ use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64;
 
 use crate::render::{CameraView, Rendered, Renderer};
-use crate::scene::{BlinkPlan, Scene, SceneLamp, Target};
+use crate::scene::{Scene, SceneLamp, Target};
+use crate::sensor::hash;
 use crate::snapshot::{Exposure, Lamp, LedLight, Lit, Looks, Moving, Snapshot, Vehicle};
 use crate::source::Blink;
 
@@ -23,7 +24,7 @@ use crate::source::Blink;
 #[derive(Clone, Debug)]
 pub struct Simulator {
     scene: Arc<Scene>,
-    body_from_camera: Isometry3<f64>,
+    camera: usize,
     blinks: Arc<[Vec<Option<Blink>>]>,
     snapshot: Snapshot,
     renderer: Renderer,
@@ -57,8 +58,8 @@ impl Simulator {
             water: scene.water,
             lamps: scene.lamps.iter().map(lamp).collect(),
         };
-        let blinks = scene.targets.iter().map(blinks).collect();
-        Some(Self { body_from_camera: mounted.body_from_camera, blinks, snapshot, renderer, scene })
+        let blinks = scene.targets.iter().map(|target| blinks(target, scene.seed)).collect();
+        Some(Self { camera, blinks, snapshot, renderer, scene })
     }
 
     /// Frame number `number`, counted from 0; any, in any order.
@@ -81,8 +82,10 @@ impl Simulator {
 
     /// When frame number `number` is exposed.
     pub fn exposure(&self, number: u64) -> Exposure {
-        let start_s = number as f64 / self.scene.rate_hz;
-        self.renderer.view().exposure(start_s, self.scene.exposure_us * 1e-6)
+        let mounted = &self.scene.cameras[self.camera];
+        let start_s = mounted.clock.time_s(mounted.phase_s + number as f64 / self.scene.rate_hz);
+        let exposure_us = mounted.exposure_us.unwrap_or(self.scene.exposure_us);
+        self.renderer.view().exposure(start_s, exposure_us * 1e-6)
     }
 
     /// Brings the snapshot to an exposure.
@@ -90,7 +93,7 @@ impl Simulator {
         let instants_s = exposure.instants_s();
         self.snapshot.exposure = exposure;
         let observer = Moving::through(instants_s.map(|time_s| self.scene.observer.pose(time_s)));
-        self.snapshot.camera = observer.carrying(&self.body_from_camera);
+        self.snapshot.camera = observer.carrying(&self.scene.cameras[self.camera].body_from_camera);
         let targets = self.scene.targets.iter().zip(self.blinks.iter());
         for (vehicle, (target, blinks)) in self.snapshot.vehicles.iter_mut().zip(targets) {
             vehicle.motion = Moving::through(instants_s.map(|time_s| target.motion.pose(time_s)));
@@ -135,16 +138,13 @@ fn lamp(lamp: &SceneLamp) -> Lamp {
     Lamp { motion, power: lamp.power, radius_m: lamp.radius_m }
 }
 
-/// The signal of each LED of a target; `None` where it shines all the time.
-fn blinks(target: &Target) -> Vec<Option<Blink>> {
-    let of = |led: &Led| target.blink.as_ref().and_then(|plan| plan.of(led));
+/// The signal of each LED of a target; `None` where it shines all the time. The LEDs of a target blink by one clock.
+fn blinks(target: &Target, seed: u64) -> Vec<Option<Blink>> {
+    let of = |led: &Led| {
+        let plan = target.blink.as_ref()?;
+        let word = *plan.words.get(led.signal.unwrap_or(0) as usize)?;
+        let blink = Blink::new(plan.codes.words().get(word)?.clone(), plan.rate_hz, plan.clock)?;
+        Some(blink.with_jitter(plan.jitter_s, hash(seed ^ hash(u64::from(target.id)))))
+    };
     target.airframe.leds().iter().map(of).collect()
-}
-
-impl BlinkPlan {
-    /// The signal of an LED.
-    fn of(&self, led: &Led) -> Option<Blink> {
-        let word = self.codes.words().get(self.first_word + led.signal.unwrap_or(0) as usize)?;
-        Blink::new(word.clone(), self.rate_hz, self.shift_s)
-    }
 }

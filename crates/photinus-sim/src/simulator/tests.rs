@@ -8,7 +8,6 @@ use photinus::camera::{Bearing, Pixel};
 use super::*;
 use crate::background::Water;
 use crate::sensor::{Charge, Shutter};
-use crate::snapshot::Kinematics;
 
 /// A camera at the origin that looks east, and whatever `rest` says.
 fn scene(exposure_us: f64, rest: &str) -> Scene {
@@ -258,51 +257,15 @@ fn a_frame_is_the_same_whoever_renders_it_and_when() {
     assert!(leds >= 24, "{leds} LEDs of twelve hexarotors are in view");
 }
 
-/// What a swarm does: its own states, its own snapshot, no scene.
 #[test]
-fn a_snapshot_made_by_hand_gives_the_frame_of_the_scene() {
-    let motion = "{ line = { from_m = [8.0, 1.9099, 3.0], to_m = [8.0, -1.9099, 3.0], duration_s = 2.0 } }";
-    let scene = scene(20_000.0, &led(motion, ""));
-    let mut simulator = Simulator::new(&scene, 0).unwrap();
-    let by_scene = simulator.frame(19);
-    let view = CameraView {
-        camera: scene.cameras[0].camera.clone(),
-        lens: scene.preset.lens.clone(),
-        sensor: scene.preset.sensor.clone(),
-    };
-    let mut renderer = Renderer::new(view, scene.seed);
-    let exposure = renderer.view().exposure(0.95, 0.02);
-    // the line is an arc of a cosine: at 0.96 s its place, speed and acceleration by hand
-    let (omega, half_m) = (core::f64::consts::FRAC_PI_2, 1.9099);
-    let (sin, cos) = libm::sincos(omega * 0.96);
-    let state = Kinematics {
-        pose: scene.targets[0].motion.pose(0.96),
-        velocity_m_s: Vector3::y() * (-half_m * omega * sin),
-        acceleration_m_s2: Vector3::y() * (-half_m * omega * omega * cos),
-        turn_rad_s: Vector3::zeros(),
-    };
-    let snapshot = Snapshot {
-        exposure,
-        camera: Moving::still(scene.observer.pose(0.0) * scene.cameras[0].body_from_camera),
-        vehicles: vec![Vehicle {
-            id: 1,
-            airframe: Arc::new(scene.targets[0].airframe.clone()),
-            solids: Arc::new([]),
-            looks: Arc::default(),
-            motion: state.during(-0.01, 0.02),
-            leds: vec![LedLight::steady()],
-        }],
-        emitter: scene.preset.emitter,
-        daylight: None,
-        water: None,
-        lamps: Vec::new(),
-    };
-    // a driver may well live in a thread of its own
-    let by_hand = std::thread::scope(|scope| scope.spawn(|| renderer.render(&snapshot, 19)).join()).unwrap();
-    let (hand, scene) = (&by_hand.truth.neighbours[0], &by_scene.truth.neighbours[0]);
-    assert!((Vector3::from(hand.position_m) - Vector3::from(scene.position_m)).norm() < 1e-9);
-    assert!((hand.leds[0].u_px - scene.leds[0].u_px).abs() < 1e-6);
-    let pixels = |rendered: &Rendered| rendered.image.pixels().to_vec();
-    let differ = pixels(&by_hand).iter().zip(pixels(&by_scene)).filter(|(a, b)| a.abs_diff(*b) > 1).count();
-    assert_eq!(differ, 0, "pixels of a streak that differ by more than a level");
+fn rows_of_a_rolling_shutter_see_a_later_bit() {
+    let motion = "{ hover = { position_m = [10.0, 0.0, 3.0] } }";
+    // the third bit of the word begins at 33.3 ms: 6 ms after the frame does, 6 ms before its middle row is exposed
+    let blink = "blink = { codes = \"codes/two-words.txt\", rate_hz = 60.0, shift_s = 0.0273333333 }";
+    let mut scene = scene(1000.0, &led(motion, blink));
+    let light = |scene: &Scene| exposed(&mut Simulator::new(scene, 0).unwrap(), 0.0, 1e-3).total();
+    let global_e = light(&scene);
+    scene.preset.sensor.shutter = Shutter::Rolling { line_s: 50e-6 };
+    let rolling_e = light(&scene);
+    assert!(global_e <= 0.0 && rolling_e > 100.0, "{global_e} {rolling_e}");
 }

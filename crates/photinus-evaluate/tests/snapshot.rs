@@ -74,6 +74,7 @@ fn centroid(camera: &Camera, lens: &Lens, place: Pixel) -> [f64; 2] {
         electrons: 1e6,
         off_axis_rad: camera.bearing(place).unwrap().off_axis_rad(),
         radius_px: 0.0,
+        among: 1.0,
         outward: PointLight::outward([place.u, place.v], [axis.u, axis.v]),
     };
     lens.spread.draw(&light, &mut charge);

@@ -12,10 +12,12 @@ fn crates() -> PathBuf {
 fn files(folder: &Path) -> Vec<PathBuf> {
     let entries = std::fs::read_dir(folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
     let mut found = Vec::new();
-    for path in entries.map(|entry| entry.unwrap().path()) {
+    for path in entries.map(|entry| entry.expect("an entry of a folder").path()) {
         if path.is_dir() {
             found.extend(files(&path));
-        } else if path.extension().is_some_and(|end| end == "rs") && path.file_stem().unwrap() != "tests" {
+        } else if path.extension().is_some_and(|end| end == "rs")
+            && path.file_stem().is_some_and(|stem| stem != "tests")
+        {
             found.push(path);
         }
     }
@@ -24,7 +26,7 @@ fn files(folder: &Path) -> Vec<PathBuf> {
 
 /// A file without its comments and its tests.
 fn code(path: &Path) -> String {
-    let text = std::fs::read_to_string(path).unwrap();
+    let text = std::fs::read_to_string(path).expect("a source file");
     let text = text.split("#[cfg(test)]\nmod tests {").next().unwrap_or_default();
     text.lines().map(|line| line.split("//").next().unwrap_or_default()).collect::<Vec<_>>().join("\n")
 }
@@ -47,7 +49,7 @@ fn numbers(rooms: &[&str]) -> BTreeMap<String, PathBuf> {
 
 /// Whether a number is one that everybody has: one digit, odd quarters below ten, a dozen, the largest grey level.
 fn is_trivial(number: &str) -> bool {
-    let value: f64 = number.parse().unwrap();
+    let value: f64 = number.parse().expect("a number that was printed");
     let digits = number.split('e').next().unwrap_or_default().chars().filter(char::is_ascii_digit).count();
     let is_odd_quarter =
         value < 10.0 && (4.0 * value).fract().abs() <= 0.0 && (2.0 * value).fract().abs() > 0.0;

@@ -10,6 +10,7 @@ use nalgebra::{Isometry3, Rotation3, Translation3, Unit, UnitQuaternion, Vector3
 use photinus::airframe::{Airframe, Led};
 use photinus::camera::{Camera, Pixel};
 use photinus::locator::Settings;
+use photinus_sim::clock::Clock;
 use photinus_sim::occlusion::Solid;
 use photinus_sim::snapshot::{LedLight, Lit, Moving, Vehicle};
 use photinus_sim::source::Blink;
@@ -97,11 +98,11 @@ impl Build {
 
     /// When each LED of an airframe shines during an exposure of `length_s` from time 0.
     fn lit(&self, airframe: &Airframe, length_s: f64, rng: &mut Pcg64) -> Vec<Lit> {
-        let shift_s = uniform(rng) * WORD_BITS as f64 / BIT_RATE_HZ;
+        let clock = Clock { offset_s: uniform(rng) * WORD_BITS as f64 / BIT_RATE_HZ, ppm: 0.0 };
         let mut lit = vec![Lit::always(); airframe.leds().len()];
         for (arm, marker) in airframe.markers().iter().enumerate().filter(|_| self.blinks) {
             let word = (0..WORD_BITS).map(|bit| WORDS[arm % WORDS.len()] >> bit & 1 == 1).collect();
-            let blink = Blink::new(word, BIT_RATE_HZ, shift_s).expect("a word and a rate");
+            let blink = Blink::new(word, BIT_RATE_HZ, clock).expect("a word and a rate");
             marker.leds.iter().for_each(|&led| blink.light(0.0, length_s, &mut lit[led]));
         }
         lit

@@ -4,15 +4,35 @@ use photinus::airframe::Airframe;
 use photinus_io::blink::read_blink_codes;
 use photinus_io::{Result, physics};
 
-use super::BlinkPlan;
 use super::read::Reader;
 use super::table::BlinkTable;
+use super::{BlinkPlan, Scene};
 use crate::clock::Clock;
+
+/// More bits than this in an exposure are a slip: no LED blinks faster than any camera can tell.
+const MOST_BITS: f64 = 1e4;
 
 /// Edges that stray farther than this share of a bit would change places.
 const MOST_JITTER: f64 = 0.1;
 
 impl Reader<'_> {
+    /// Refuses an LED that switches without end while a camera looks.
+    pub(super) fn bits_in_an_exposure(&self, scene: &Scene) -> Result<()> {
+        let own_us = scene.cameras.iter().filter_map(|camera| camera.exposure_us);
+        let exposure_s = own_us.fold(scene.exposure_us, f64::max) * 1e-6;
+        for (index, target) in scene.targets.iter().enumerate() {
+            let bits = target.blink.as_ref().map_or(0.0, |blink| blink.rate_hz * exposure_s);
+            if bits > MOST_BITS {
+                let reason = format!("an exposure of {exposure_s} s holds {bits:.0} bits");
+                return Err(self
+                    .check
+                    .refuse(&format!("target[{index}].blink.rate_hz"), reason)
+                    .advise(format!("let it hold up to {MOST_BITS}")));
+            }
+        }
+        Ok(())
+    }
+
     pub(super) fn blink(&self, key: &str, table: BlinkTable, airframe: &Airframe) -> Result<BlinkPlan> {
         let check = &self.check;
         let key = |name: &str| format!("{key}.{name}");

@@ -75,7 +75,7 @@ fn what_no_lens_sensor_or_light_has_is_refused_with_its_key() {
             "vignette = { clear_deg = 50, dark_deg = 40 }",
             "`optics.vignette`: from 50 to 40 deg",
         ),
-        ("optics/coma.toml", "sensors/ccd.toml", "ccd.toml, line 2: unknown key `electrons_per_dn`"),
+        ("optics/coma.toml", "sensors/ccd.toml", "ccd.toml, line 15: unknown key `bits`"),
         ("file = \"sensors/ccd.toml\"", "bits = 14", "`sensor.bits`: 14 is out of range; give 8 to 12"),
         ("file = \"sensors/ccd.toml\"", "spill = 1.5", "`sensor.spill`: 1.5 is out of range; give 0 to 1"),
         ("file = \"sensors/ccd.toml\"", "full_reads_dn = nan", "`sensor.full_reads_dn`: NaN is out of range"),

@@ -42,6 +42,7 @@ impl Scene {
         let table: SceneTable = toml_table::parse(text, path)?;
         let reader = Reader { check: Check { path }, seed: table.seed };
         let scene = reader.scene(table)?;
+        reader.bits_in_an_exposure(&scene)?;
         reader.clear_of_cameras(&scene)?;
         Ok(scene)
     }

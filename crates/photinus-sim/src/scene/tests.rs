@@ -171,11 +171,25 @@ fn every_scene_of_the_library_is_read() {
 }
 
 #[test]
-fn the_example_of_the_documentation_is_read() {
+fn an_led_does_not_switch_without_end_in_an_exposure() {
+    let blink = "blink = { codes = \"codes/two-words.txt\", rate_hz = 1e6 }\nsolid = ";
+    let text = SCENE.replace("solid = ", blink).replace("rate_hz = 60.0", "rate_hz = 20.0");
+    assert!(parse(&text).is_ok());
+    let error = parse(&text.replace("1000.0", "40000.0")).unwrap_err().to_string();
+    assert!(error.contains("`target[0].blink.rate_hz`: an exposure of 0.04 s holds 40000 bits"), "{error}");
+}
+
+/// The scene of the documentation, which has every table.
+fn example() -> String {
     let document = std::fs::read_to_string(scenes().join("../docs/scenes.md")).unwrap();
     let lines = document.lines().skip_while(|line| !line.starts_with("    name ="));
     let example = lines.take_while(|line| line.is_empty() || line.starts_with("    "));
-    let text: String = example.map(|line| line.trim_start().to_owned() + "\n").collect();
+    example.map(|line| line.trim_start().to_owned() + "\n").collect()
+}
+
+#[test]
+fn the_example_of_the_documentation_is_read() {
+    let text = example();
     let scene = parse(&text).unwrap_or_else(|error| panic!("{error}"));
     let camera = &scene.cameras[0];
     assert_eq!(
@@ -189,4 +203,34 @@ fn the_example_of_the_documentation_is_read() {
         (recording.lost, recording.late, recording.late_by_s, recording.swapped),
         (0.01, 0.02, 0.005, 0.005)
     );
+}
+
+/// Whatever number stands in a scene: it is refused, or a frame can be rendered.
+#[test]
+fn no_number_of_a_scene_panics() {
+    const NUMBERS: [&str; 10] =
+        ["nan", "-inf", "1e300", "-1", "1e-308", "0", "3", "0.001", "1e5", "99999999999999999999"];
+    let text = example();
+    let is_number = |c: char| c.is_ascii_digit() || matches!(c, '.' | '-');
+    let starts: Vec<usize> = text
+        .char_indices()
+        .filter(|(at, c)| {
+            c.is_ascii_digit() && !text[..*at].ends_with(|c: char| is_number(c) || c.is_alphabetic())
+        })
+        .map(|(at, _)| at)
+        .collect();
+    let (mut read, mut refused) = (0, 0);
+    for (index, start) in starts.iter().enumerate() {
+        let length = text[*start..].chars().take_while(|c| is_number(*c)).count();
+        for number in [NUMBERS[index % 10], NUMBERS[(index * 7 + 3) % 10]] {
+            let damaged = format!("{}{number}{}", &text[..*start], &text[start + length..]);
+            let Ok(scene) = parse(&damaged) else {
+                refused += 1;
+                continue;
+            };
+            read += 1;
+            crate::Simulator::new(&scene, 0).unwrap().frame(1);
+        }
+    }
+    assert!(read > 20 && refused > 20, "{read} {refused}");
 }

@@ -76,7 +76,7 @@ Exit codes: 0 done, 1 something failed while running, 2 bad usage or input, 130 
 
 #[derive(Subcommand)]
 enum Command {
-    Locate(locate::Args),
+    Locate(Box<locate::Args>),
     Detect(detect::Args),
     Info(info::Args),
     Convert(convert::Args),

@@ -58,7 +58,7 @@ pub(crate) struct Outputs {
 /// One of them.
 enum Sink {
     Results(ResultsWriter<Box<dyn Write>>),
-    Table(CsvWriter<Box<dyn Write>>),
+    Table(Box<CsvWriter<Box<dyn Write>>>),
     Pictures(Overlay),
     Lines(Lines),
 }
@@ -115,7 +115,7 @@ impl Claimed {
             if let Some(done) = done {
                 done.records()?.try_for_each(|record| table.write(&record?))?;
             }
-            sinks.push(Sink::Table(table));
+            sinks.push(Sink::Table(Box::new(table)));
         }
         if let Some(target) = self.overlay {
             sinks.push(Sink::Pictures(Overlay::new(target.grow()?, self.cameras)?));

@@ -101,7 +101,10 @@ fn every_camera_of_a_rig_has_the_fault_and_what_lies_beside_is_kept() {
 fn what_cannot_be_injected_is_refused() {
     let stage = stage("inject-bad");
     let refuses = |words: &str, parts: &[&str]| stage.refuses(&format!("inject {words}"), parts);
-    refuses("flight --fault noise=5 --out flight", &["flight: it is there already"]);
+    refuses("flight --fault noise=5 --out flight --force", &["flight: a file in it is an input"]);
+    std::fs::create_dir(stage.path("mine")).unwrap();
+    stage.file("mine/mine.txt", "mine");
+    refuses("flight --fault noise=5 --out mine", &["mine: it is there already"]);
     refuses("flight --fault fog --out x", &["`fog`: no such fault; there is gain=0.5 noise=8"]);
     refuses("flight --fault noise=-1 --out x", &["give noise= a number from 0 to 255"]);
     refuses("flight --out x", &["--fault <WORD>"]);

@@ -18,10 +18,11 @@ fn a_narrow_frame_takes_no_more_memory_than_a_square_one() {
         bytes.resize(bytes.len() + columns * rows, 9);
         stage.file("narrow.pgm", bytes);
         let program = env!("CARGO_BIN_EXE_photinus");
-        let limited = format!("ulimit -v {LIMIT_KB} && exec {program} detect narrow.pgm --overlay {columns}");
+        let limited =
+            format!("ulimit -v {LIMIT_KB} && exec {program} detect narrow.pgm --overlay {columns}x{rows}");
         let done = Command::new("sh").args(["-c", &limited]).current_dir(stage.path("")).output().unwrap();
         assert!(done.status.success(), "{columns}x{rows}: {}", String::from_utf8_lossy(&done.stderr));
-        let picture = read_image(stage.path(&format!("{columns}/overlay-000000.png"))).unwrap().image;
+        let picture = read_image(stage.path(&format!("{columns}x{rows}/overlay-000000.png"))).unwrap().image;
         assert!(picture.width() >= 300 && picture.height() >= 480, "{columns}x{rows}");
         assert!(picture.width() <= 6800 && picture.height() <= 4400, "{columns}x{rows}");
     }

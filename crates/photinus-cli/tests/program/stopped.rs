@@ -82,7 +82,7 @@ fn a_folder_that_is_interrupted_holds_whole_frames() {
     let done = child.wait_with_output().unwrap();
     let told = String::from_utf8(done.stderr).unwrap();
     assert_eq!(done.status.code(), Some(130), "{told}");
-    if told.contains("rec holds them") {
+    if told.contains("frames are in it") {
         assert_eq!(stage.run("info rec").code, 0);
     } else {
         // It came before the first frame.

@@ -119,6 +119,7 @@ impl Row {
 fn record_of(frame: &Frame) -> FrameRecord {
     FrameRecord {
         frame: Some(frame.index),
+        camera: None,
         time_s: frame.time_s,
         latency_s: None,
         source: String::new(),

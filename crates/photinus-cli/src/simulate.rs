@@ -1,6 +1,7 @@
 //! `photinus simulate`: scene -> frames with truth, as a dataset, a video, or truth alone.
 
 use std::io::{BufWriter, Write};
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 
 use photinus_io::Error;
@@ -12,6 +13,7 @@ use photinus_sim::scene::files_of;
 use photinus_sim::{Rendered, Scene, Simulator};
 
 use crate::failure::Failure;
+use crate::fault;
 use crate::interrupt;
 use crate::targets::{Targets, WriteArgs};
 use crate::terminal::Terminal;
@@ -100,16 +102,24 @@ pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> Result<(), Failure> {
     for &camera in &cameras {
         let simulator = Simulator::new(&scene, camera)
             .ok_or_else(|| Failure::Input(format!("the scene has no camera number {camera}")))?;
-        let rendered = simulator.render(0..frames, args.threads, |rendered| {
-            if interrupt::is_asked() {
-                return Err(Stopped::Asked);
-            }
-            sink.take(camera, &rendered, &args.out).map_err(Stopped::Failed)?;
-            written += 1;
-            terminal.frame_done();
-            Ok(())
-        });
-        stopped = rendered.err();
+        let render = || {
+            simulator.render(0..frames, args.threads, |rendered| {
+                if interrupt::is_asked() {
+                    return Err(Stopped::Asked);
+                }
+                sink.take(camera, &rendered, &args.out).map_err(Stopped::Failed)?;
+                written += 1;
+                terminal.frame_done();
+                Ok(())
+            })
+        };
+        // A thread that panics costs the frames after it, not those before.
+        stopped = catch_unwind(AssertUnwindSafe(render))
+            .unwrap_or_else(|payload| {
+                let refused = Error::format(&args.scene, fault::told(payload.as_ref()));
+                Err(Stopped::Failed(refused.advise(fault::ADVICE)))
+            })
+            .err();
         if stopped.is_some() {
             break;
         }

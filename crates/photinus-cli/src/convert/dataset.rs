@@ -5,7 +5,10 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use photinus_io::airframe::read_airframe;
-use photinus_io::dataset::{Dataset, DatasetCamera, DatasetInfo, DatasetWriter, TruthFrame};
+use photinus_io::dataset::{
+    Dataset, DatasetCamera, DatasetInfo, DatasetWriter, IMU_FILE, ODOMETRY_FILE, TruthFrame, Vehicle,
+    VehicleInfo, vehicles_text,
+};
 use photinus_io::mask::read_mask;
 use photinus_io::spot_curve::read_spot_curve;
 use photinus_io::whole::WholeFolder;
@@ -63,11 +66,19 @@ impl DatasetSink {
         let truth = truth.map_err(Failure::input)?.unwrap_or_default();
         let name = source.and_then(|(_, camera)| camera.name.clone());
         let truth = truth.into_iter().filter(|truth| truth.camera == name);
-        let info = parts.info(exposure_us, rate_hz);
+        let kept = Kept::of(source).map_err(Failure::input)?;
+        let info = DatasetInfo {
+            codes: kept.codes(),
+            vehicles: kept.vehicles(),
+            ..parts.info(exposure_us, rate_hz)
+        };
         let making = out.whole().map_err(Failure::input)?;
         let writer = DatasetWriter::create(making.path(), &info)
             .map_err(|error| Failure::input(making.tell(error)))?;
-        parts.copy(&info, making.path()).map_err(|error| Failure::running(making.tell(error)))?;
+        parts
+            .copy(&info, making.path())
+            .and_then(|()| kept.write(making.path()))
+            .map_err(|error| Failure::running(making.tell(error)))?;
         let truth = truth.map(|truth| (truth.frame, TruthFrame { camera: None, ..truth })).collect();
         Ok(Self { making, writer, rate_hz, truth })
     }
@@ -87,6 +98,72 @@ impl DatasetSink {
     pub(super) fn keep(self) -> Result<()> {
         drop(self.writer);
         self.making.keep()
+    }
+}
+
+/// What a dataset says beside its frames: who there may be, and what the vehicle that carries the camera measured.
+struct Kept(Vec<(PathBuf, Vec<u8>)>);
+
+const CODES_FILE: &str = "codes.txt";
+const VEHICLES_FILE: &str = "vehicles.toml";
+
+impl Kept {
+    /// Of a dataset, under names of its own. What the gyro of a rig measured is in the body frame, where the one camera that
+    /// is kept has no mounting: it is left out.
+    fn of(source: Option<(&Dataset, &DatasetCamera)>) -> Result<Self> {
+        let mut files = Vec::new();
+        let Some((dataset, camera)) = source else { return Ok(Self(files)) };
+        let read = |named: &Path| {
+            let path = dataset.path(named);
+            std::fs::read(&path).map_err(|error| Error::io(path, error))
+        };
+        if let Some(codes) = &dataset.info().codes {
+            files.push((CODES_FILE.into(), read(codes)?));
+        }
+        if !dataset.vehicles().is_empty() {
+            let vehicle = |vehicle: &Vehicle| {
+                let end =
+                    vehicle.airframe_file.extension().unwrap_or_default().to_string_lossy().into_owned();
+                let airframe = PathBuf::from(format!("airframe-of-{}.{end}", vehicle.id));
+                let blink = vehicle.blink.as_ref();
+                let info = VehicleInfo {
+                    id: vehicle.id,
+                    airframe: airframe.clone(),
+                    words: blink.map_or_else(Vec::new, |blink| blink.words.clone()),
+                    bit_rate_hz: blink.map(|blink| blink.bit_rate_hz),
+                };
+                Ok((info, (airframe, read(&vehicle.airframe_file)?)))
+            };
+            let told: Vec<_> = dataset.vehicles().iter().map(vehicle).collect::<Result<_>>()?;
+            let (vehicles, airframes): (Vec<_>, Vec<_>) = told.into_iter().unzip();
+            files.push((VEHICLES_FILE.into(), vehicles_text(&vehicles).into_bytes()));
+            files.extend(airframes);
+        }
+        let measured = [IMU_FILE, ODOMETRY_FILE].map(Path::new);
+        for name in measured.into_iter().filter(|name| camera.name.is_none() && dataset.path(name).is_file())
+        {
+            files.push((name.to_owned(), read(name)?));
+        }
+        Ok(Self(files))
+    }
+
+    fn named(&self, name: &str) -> Option<PathBuf> {
+        self.0.iter().map(|(file, _)| file).find(|file| *file == Path::new(name)).cloned()
+    }
+
+    fn codes(&self) -> Option<PathBuf> {
+        self.named(CODES_FILE)
+    }
+
+    fn vehicles(&self) -> Option<PathBuf> {
+        self.named(VEHICLES_FILE)
+    }
+
+    fn write(&self, out: &Path) -> Result<()> {
+        self.0.iter().try_for_each(|(name, bytes)| {
+            let path = out.join(name);
+            std::fs::write(&path, bytes).map_err(|error| Error::io(path, error))
+        })
     }
 }
 

@@ -2,6 +2,7 @@
 
 mod airframe;
 mod camera;
+mod dataset;
 mod frames;
 mod records;
 
@@ -94,8 +95,8 @@ fn report(path: &Path) -> Result<Report> {
         Kind::Airframe => airframe::report(path),
         Kind::Blink => records::blink(path),
         Kind::Camera => camera::report(path),
-        Kind::Dataset => frames::dataset(path),
-        Kind::DatasetTable => frames::dataset(path.parent().unwrap_or(Path::new("."))),
+        Kind::Dataset => dataset::dataset(path),
+        Kind::DatasetTable => dataset::dataset(path.parent().unwrap_or(Path::new("."))),
         Kind::Image => frames::image(path),
         Kind::Results => records::results(path),
         Kind::SpotCurve => records::spot_curve(path),

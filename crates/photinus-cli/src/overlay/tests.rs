@@ -118,6 +118,7 @@ fn picture(
     frame: Option<FrameView<'_>>,
     camera: Option<Camera>,
 ) -> GreyImage {
+    std::fs::create_dir_all(&folder.0).unwrap();
     let overlay = Overlay::new(folder.0.clone(), camera.into_iter().collect()).unwrap();
     overlay.draw(0, record, frame, None, &[]).unwrap();
     read_image(folder.0.join("overlay-000017.png")).unwrap().image

@@ -196,8 +196,14 @@ fn a_copy_of_a_dataset_keeps_all_that_it_is_not_told_otherwise() {
     stage.file(
         "rec/dataset.toml",
         "camera = \"../camera.toml\"\nairframe = \"../hexa.toml\"\nexposure_us = 1000\n\
-        rate_hz = 20\nspot_curve = \"spots.toml\"\nmask = \"own.png\"\n",
+        rate_hz = 20\nspot_curve = \"spots.toml\"\nmask = \"own.png\"\ncodes = \"book.txt\"\nvehicles = \"who.toml\"\n",
     );
+    stage.file("rec/book.txt", "0,1,1,0\n1,0,1,0\n");
+    stage.file(
+        "rec/who.toml",
+        "[[vehicle]]\nid = 7\nairframe = \"../hexa.toml\"\nwords = [1]\nbit_rate_hz = 60.0\n",
+    );
+    stage.file("rec/imu.csv", "time_s,wx_rad_s,wy_rad_s,wz_rad_s\n0,0.1,0.2,0.3\n");
     stage.file("rec/truth.jsonl", "{\"frame\":5,\"time_s\":0.3,\"neighbours\":[]}\n");
     stage.file("rec/images/b.png", "broken");
 
@@ -217,6 +223,8 @@ fn a_copy_of_a_dataset_keeps_all_that_it_is_not_told_otherwise() {
     let same = |one: &str, other: &str| {
         std::fs::read(stage.path(one)).unwrap() == std::fs::read(stage.path(other)).unwrap()
     };
+    assert_eq!((second.codes().map(|codes| codes.words().len()), second.vehicles()[0].id), (Some(2), 7));
+    assert!(same("rec/imu.csv", "again/imu.csv"));
     assert!(same("rec/own.png", "again/mask.png") && same("rec/spots.toml", "again/spot_curve.toml"));
 
     let warning = "the spot curve was measured with an exposure of 2000 us, the frames have 1000 us";

@@ -54,7 +54,14 @@ fn numbers(value: &Value) -> Vec<f64> {
 #[test]
 fn every_line_says_its_camera_and_places_in_the_body_frame() {
     let stage = stage("rig");
-    assert_eq!(stage.run("info rig").code, 0);
+    let told = stage.run("info rig");
+    for part in [
+        "a dataset of 2 cameras",
+        "camera called  back",
+        "back.toml: at -0.100, 0.000, 0.050 m in the body frame",
+    ] {
+        assert!(told.code == 0 && told.out.contains(part), "{}\nlacks {part}", told.out);
+    }
     let done = stage.run("locate rig -q --out r.jsonl --csv t.csv --overlay seen");
     assert_eq!(done.code, 0, "{}", done.err);
     let records = lines(&stage.read("r.jsonl"));

@@ -96,22 +96,31 @@ fn a_folder_that_is_interrupted_holds_whole_frames() {
 fn killed_runs_leave_whole_lines_and_no_half_files() {
     let stage = Stage::new("killed");
     stage.dataset("rec", 40);
-    for round in 0..12_u64 {
-        let words = match round % 4 {
+    stage.run("locate rec -q --out good.jsonl");
+    let scene = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/crossing.toml");
+    for round in 0..21_u64 {
+        let words = match round % 7 {
             0 => "locate rec -q --out r.jsonl --csv t.csv --force",
             1 => "convert rec whole.y4m --force",
             2 => "convert rec copy",
-            _ => "convert hexa.toml airframe.txt --force",
+            3 => "convert hexa.toml airframe.txt --force",
+            4 => "simulate SCENE -q --out scene --frames 20",
+            5 => "inject rec --fault noise=3 -q --out noisy",
+            _ => "evaluate rec good.jsonl -q --json scores.json --force",
         };
-        let _ = std::fs::remove_dir_all(stage.path("copy"));
-        let mut child = stage.command(words).stderr(Stdio::null()).spawn().unwrap();
-        std::thread::sleep(Duration::from_millis(4 + 9 * round));
+        for folder in ["copy", "scene", "noisy"] {
+            let _ = std::fs::remove_dir_all(stage.path(folder));
+        }
+        let mut child = stage.command(&words.replace("SCENE", scene)).stderr(Stdio::null()).spawn().unwrap();
+        std::thread::sleep(Duration::from_millis(4 + 6 * round));
         let _ = child.kill();
         child.wait().unwrap();
         if let Ok(text) = std::fs::read_to_string(stage.path("r.jsonl")) {
             whole_lines(&text);
         }
-        for name in ["whole.y4m", "copy", "airframe.txt"] {
+        let scores = std::fs::read_to_string(stage.path("scores.json"));
+        assert!(scores.is_err() || serde_json::from_str::<serde_json::Value>(&scores.unwrap()).is_ok());
+        for name in ["whole.y4m", "copy", "scene", "noisy", "airframe.txt"] {
             let is_whole = !stage.path(name).exists() || stage.run(&format!("info {name}")).code == 0;
             assert!(is_whole, "{name} is whole or not there");
         }
@@ -209,6 +218,31 @@ fn a_full_disk_is_told_and_leaves_no_half_file() {
         assert_eq!(stage.read("disk/mine.txt"), "mine");
     }
     assert_eq!(whole_lines(&stage.read("good.jsonl")), 60, "the file on the other disk is whole");
+
+    // With no room at all, commands that write one small file fail, too, and leave nothing.
+    let room =
+        (1..=64).rev().find(|kib| std::fs::write(stage.path("disk/filler"), vec![0; kib << 10]).is_ok());
+    assert!(room.is_some());
+    stage.file("sizes.csv", "distance_m,area_px\n1,30\n2,9\n3,5\n4,3\n5,2\n6,2\n8,1\n");
+    for words in [
+        "detect rec -q --out disk/s.jsonl",
+        "convert hexa.toml disk/a.txt",
+        "convert good.jsonl disk/t.csv",
+        "evaluate rec good.jsonl -q --json disk/s.json",
+        "inject rec --fault noise=3 -q --out disk/noisy",
+        "calibrate spot-size sizes.csv -q --out disk/curve.toml",
+        "reproduce 4 --quick -q --out disk/figures",
+    ] {
+        let done = stage.run(words);
+        assert!(matches!(done.code, 1 | 2), "{words}: {}", done.err);
+        assert!(
+            done.err.contains("No space left") && !done.err.contains(".partial"),
+            "{words}: {}",
+            done.err
+        );
+        let left: Vec<String> = stage.names("disk").into_iter().filter(|name| name != "s.jsonl").collect();
+        assert_eq!(left, ["filler", "mine.txt"], "{words}");
+    }
 }
 
 #[cfg(unix)]

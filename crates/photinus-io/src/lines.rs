@@ -61,9 +61,9 @@ impl<R: Read, T: DeserializeOwned> Iterator for JsonLines<R, T> {
             self.ended = line.is_empty();
             if !line.trim_ascii().is_empty() {
                 let record = serde_json::from_slice(&line);
-                return Some(record.map_err(|error| match line.ends_with(b"\n") {
-                    true => self.refuse(&error),
-                    false => self.cut(),
+                return Some(record.map_err(|error| match error.is_eof() && !line.ends_with(b"\n") {
+                    true => self.cut(),
+                    false => self.refuse(&error),
                 }));
             }
         }

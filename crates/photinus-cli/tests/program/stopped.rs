@@ -223,7 +223,9 @@ fn a_full_disk_is_told_and_leaves_no_half_file() {
     let room =
         (1..=64).rev().find(|kib| std::fs::write(stage.path("disk/filler"), vec![0; kib << 10]).is_ok());
     assert!(room.is_some());
-    stage.file("sizes.csv", "distance_m,area_px\n1,30\n2,9\n3,5\n4,3\n5,2\n6,2\n8,1\n");
+    let row = |n: u32| f64::from(n) / 5.0;
+    let rows = (5..45).map(|n| format!("{},{}\n", row(n), (1.3 + 31.5 / (row(n) * row(n))).floor()));
+    stage.file("sizes.csv", format!("distance_m,area_px\n{}", rows.collect::<String>()));
     for words in [
         "detect rec -q --out disk/s.jsonl",
         "convert hexa.toml disk/a.txt",

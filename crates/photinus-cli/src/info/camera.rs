@@ -37,10 +37,8 @@ pub(super) fn report(path: &Path) -> Result<Report> {
         report.fact(
             "inverse polynomial",
             format!(
-                "degree {}, up to {:.2} px from the direct one (rms {:.3} px), worst {:.0}° off the axis; not used",
+                "degree {}, {inverse}, worst {:.0}° off the axis; not used",
                 inverse.degree,
-                inverse.max_px,
-                inverse.rms_px,
                 inverse.worst_rad.to_degrees()
             ),
         );

@@ -18,6 +18,18 @@ pub struct InverseReport {
     pub worst_rad: f64,
 }
 
+/// Farther off than any image is wide, px: the polynomial is none of this lens, or overflows.
+const NOWHERE_PX: f64 = 1e4;
+
+impl std::fmt::Display for InverseReport {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self.max_px <= NOWHERE_PX {
+            true => write!(f, "up to {:.2} px from the direct one (rms {:.3} px)", self.max_px, self.rms_px),
+            false => write!(f, "more than {NOWHERE_PX} px from the direct one"),
+        }
+    }
+}
+
 /// Places along a radius of the field: (radius in px, the toolbox's theta in rad, -pi/2 on the axis).
 pub(super) struct Curve(Vec<(f64, f64)>);
 

@@ -5,6 +5,8 @@ use std::path::PathBuf;
 use std::process::{Child, Command, Stdio};
 use std::time::Duration;
 
+use photinus_testing::Skipped;
+
 use crate::stage::{Stage, video};
 
 const LOCATE: &str = "locate - --camera camera.toml --airframe hexa.toml";
@@ -167,7 +169,7 @@ impl Disk {
         if mounted.is_ok_and(|mounted| mounted.status.success()) {
             return Some(Self(folder));
         }
-        println!("skipped: a file system cannot be mounted here");
+        Skipped::current_test("a file system cannot be mounted here");
         None
     }
 }

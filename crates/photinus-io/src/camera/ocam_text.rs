@@ -305,7 +305,11 @@ mod tests {
         let odd = read(&FILE.replace("388.557547", "389.557547")).unwrap();
         assert!(odd.oddities[0].contains("is up to 1.0"), "{:?}", odd.oddities);
         let wild = read(&FILE.replace("388.557547", "1e308")).unwrap();
-        assert!(wild.oddities[0].contains("is more than 10000 px from the direct one"), "{:?}", wild.oddities);
+        assert!(
+            wild.oddities[0].contains("is more than 10000 px from the direct one"),
+            "{:?}",
+            wild.oddities
+        );
         let centre = read(&FILE.replace("229.581672", "29.581672").replace("6.601777e-09", "4e-09")).unwrap();
         assert!(centre.oddities[0].contains("far from the middle"), "{:?}", centre.oddities);
     }

@@ -77,7 +77,7 @@ impl CameraFile {
         // in total order NaN, from a polynomial that overflows, is the largest
         if report.max_px.total_cmp(&0.05).is_gt() {
             self.oddities.push(format!(
-                "the inverse polynomial is {report}, most at {:.1} deg off the axis: Photinus uses the direct one",
+                "the inverse polynomial disagrees: it is {report}, most at {:.1} deg off the axis; Photinus uses the direct one",
                 report.worst_rad.to_degrees()
             ));
         }

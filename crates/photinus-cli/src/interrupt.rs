@@ -54,7 +54,10 @@ pub(crate) fn listen() {
             }
             std::thread::spawn(|| {
                 std::thread::sleep(PATIENCE);
-                end("interrupted while waiting; what was written is kept");
+                // A loop that has ended is keeping what is whole: that takes as long as it takes.
+                if LOOKED_AT.load(Ordering::Relaxed) {
+                    end("interrupted while waiting; what was written is kept");
+                }
             });
         }
     });

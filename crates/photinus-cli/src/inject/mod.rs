@@ -73,6 +73,8 @@ type Truth = HashMap<(Option<String>, u64), TruthFrame>;
 /// Runs the command.
 pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> std::result::Result<(), Failure> {
     let dataset = Dataset::read(&args.dataset).map_err(Failure::input)?;
+    let advice = "copy it first, with photinus convert --allow-outside";
+    dataset.check_inside().map_err(|error| Failure::input(error.advise(advice)))?;
     let truth = dataset.truth().map_err(Failure::input)?;
     if let (None, Some(fault)) = (&truth, args.faults.iter().find(|fault| fault.needs_truth())) {
         return Err(Failure::Input(format!(

@@ -187,6 +187,7 @@ fn a_dataset_names_no_file_of_somebody_else() {
             );
         }
     }
+    stage.refuses("inject rec0 --fault noise=3 --out noisy", &["frames.csv, line 2: ", "--allow-outside"]);
     assert_eq!(stage.run("locate rec0 -q --allow-outside").code, 0);
     assert_eq!(stage.run("convert rec0 copy --allow-outside").code, 0);
     assert_eq!(stage.run("locate copy -q").code, 0, "a copy holds its images");

@@ -14,6 +14,7 @@ pub mod camera;
 pub mod frame;
 mod lanes;
 pub mod locator;
+pub mod optics;
 pub mod pose;
 pub mod ranging;
 pub mod spots;

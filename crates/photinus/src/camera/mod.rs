@@ -25,6 +25,8 @@ mod radial;
 mod tests;
 mod watched;
 
+use std::sync::Arc;
+
 use nalgebra::{Matrix2, Matrix2x3, Matrix3, Matrix3x2};
 
 pub use bearing::{Bearing, Pixel};
@@ -37,6 +39,7 @@ pub use pinhole::Pinhole;
 pub use watched::Watched;
 
 use crate::frame::FrameView;
+use crate::optics::Optics;
 use calibration::Calibration;
 use field::Field;
 
@@ -61,6 +64,7 @@ pub struct Camera {
     stated_limit_rad: Option<f64>,
     field: Field,
     calibration: Option<Calibration>,
+    optics: Option<Arc<Optics>>,
 }
 
 impl Camera {
@@ -92,7 +96,15 @@ impl Camera {
         let corners =
             [(-0.5, -0.5), (right, -0.5), (-0.5, bottom), (right, bottom)].map(|(u, v)| Pixel::new(u, v));
         let field = model.field(&corners, field_limit_rad)?;
-        Ok(Self { model, width_px, height_px, stated_limit_rad: field_limit_rad, field, calibration: None })
+        Ok(Self {
+            model,
+            width_px,
+            height_px,
+            stated_limit_rad: field_limit_rad,
+            field,
+            calibration: None,
+            optics: None,
+        })
     }
 
     /// The direction seen at a place; `None` outside the image or the field.
@@ -166,6 +178,17 @@ impl Camera {
     /// Rows of the image.
     pub fn height(&self) -> usize {
         self.height_px
+    }
+
+    /// The same camera with the optics that were measured of it.
+    #[must_use]
+    pub fn with_optics(self, optics: Optics) -> Self {
+        Self { optics: Some(Arc::new(optics)), ..self }
+    }
+
+    /// What was measured of its lens and sensor, if anything.
+    pub fn optics(&self) -> Option<&Arc<Optics>> {
+        self.optics.as_ref()
     }
 
     /// The model.

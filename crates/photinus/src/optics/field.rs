@@ -1,0 +1,70 @@
+//! The point spread all over the image: a grid of zones.
+
+use super::{OpticsError, PointSpread, check};
+use crate::camera::Pixel;
+
+/// Point spreads of a grid of zones that share the image evenly.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SpreadField {
+    columns: usize,
+    rows: usize,
+    zones: Vec<PointSpread>,
+    per_zone: [f64; 2],
+    shape_error: f64,
+}
+
+impl SpreadField {
+    /// The same spread all over the image, wrong by `shape_error` of the light in a pixel (its standard deviation).
+    ///
+    /// # Errors
+    /// [`OpticsError`] for an error that is not 0 to 1.
+    pub fn even(spread: PointSpread, shape_error: f64) -> Result<Self, OpticsError> {
+        Self::new(vec![spread], 1, 1.0, 1.0, shape_error)
+    }
+
+    /// A grid of zones, row by row, over an image of `width_px` by `height_px`.
+    ///
+    /// # Errors
+    /// [`OpticsError`] when zones do not fill their rows, or for an error that is not 0 to 1.
+    pub fn new(
+        zones: Vec<PointSpread>,
+        columns: usize,
+        width_px: f64,
+        height_px: f64,
+        shape_error: f64,
+    ) -> Result<Self, OpticsError> {
+        let columns = columns.max(1);
+        let rows = zones.len().div_ceil(columns).max(1);
+        if zones.len() != rows * columns {
+            return Err(OpticsError::Samples { samples: zones.len(), needed: rows * columns });
+        }
+        let is_legal = (0.0..=1.0).contains(&shape_error);
+        check("the error of the point spread", shape_error, is_legal, "a share, 0 to 1")?;
+        let per_zone = [columns as f64 / width_px, rows as f64 / height_px];
+        Ok(Self { columns, rows, zones, per_zone, shape_error })
+    }
+
+    /// The spread at a place.
+    pub fn at(&self, place: Pixel) -> &PointSpread {
+        let index =
+            |px: f64, per_px: f64, count: usize| (((px + 0.5) * per_px).max(0.0) as usize).min(count - 1);
+        let column = index(place.u, self.per_zone[0], self.columns);
+        let row = index(place.v, self.per_zone[1], self.rows);
+        &self.zones[row * self.columns + column]
+    }
+
+    /// The zones, row by row.
+    pub fn zones(&self) -> &[PointSpread] {
+        &self.zones
+    }
+
+    /// Zones per row.
+    pub fn columns(&self) -> usize {
+        self.columns
+    }
+
+    /// How wrong the spread is: standard deviation of a pixel's light over that light.
+    pub fn shape_error(&self) -> f64 {
+        self.shape_error
+    }
+}

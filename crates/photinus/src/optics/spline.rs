@@ -1,0 +1,61 @@
+//! Cubic B-splines: smooth to the second derivative, and through every sample.
+
+/// Turns samples into the coefficients of the spline through them (M. Unser, IEEE SPM 16, 1999): c[k-1] + 4 c[k] + c[k+1] = 6 s[k],
+/// nothing outside. `room` is as long as the samples.
+pub(super) fn coefficients(samples: &mut [f64], room: &mut [f64]) {
+    let mut factor = 0.0;
+    let mut before = 0.0;
+    for (sample, room) in samples.iter_mut().zip(room.iter_mut()) {
+        factor = 1.0 / (4.0 - factor);
+        before = (6.0 * *sample - before) * factor;
+        (*sample, *room) = (before, factor);
+    }
+    let mut after = 0.0;
+    for (sample, factor) in samples.iter_mut().zip(room.iter()).rev() {
+        *sample -= factor * after;
+        after = *sample;
+    }
+}
+
+/// Weights of four coefficients at a share `t` of the way from the second to the third, and their slopes by t.
+pub(super) fn weights(t: f32) -> ([f32; 4], [f32; 4]) {
+    let s = 1.0 - t;
+    let sixth = 1.0 / 6.0;
+    let values = [
+        s * s * s * sixth,
+        (4.0 - 6.0 * t * t + 3.0 * t * t * t) * sixth,
+        (4.0 - 6.0 * s * s + 3.0 * s * s * s) * sixth,
+        t * t * t * sixth,
+    ];
+    let slopes = [-0.5 * s * s, 1.5 * t * t - 2.0 * t, 2.0 * s - 1.5 * s * s, 0.5 * t * t];
+    (values, slopes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn the_spline_passes_through_its_samples(samples in prop::collection::vec(-1.0..1.0f64, 1..40)) {
+            let (mut spline, mut room) = (samples.clone(), samples.clone());
+            coefficients(&mut spline, &mut room);
+            let at = |k: isize| usize::try_from(k).ok().and_then(|k| spline.get(k)).copied().unwrap_or(0.0);
+            for (k, sample) in (0isize..).zip(&samples) {
+                let value = (at(k - 1) + 4.0 * at(k) + at(k + 1)) / 6.0;
+                prop_assert!((value - sample).abs() < 1e-12);
+            }
+        }
+
+        #[test]
+        fn weights_are_a_share_and_slopes_their_derivatives(t in 0.01..0.99f32) {
+            let (values, slopes) = weights(t);
+            prop_assert!((values.iter().sum::<f32>() - 1.0).abs() < 1e-6);
+            let (after, before) = (weights(t + 4e-3).0, weights(t - 4e-3).0);
+            for i in 0..4 {
+                prop_assert!((slopes[i] - (after[i] - before[i]) / 8e-3).abs() < 1e-3);
+            }
+        }
+    }
+}

@@ -56,6 +56,7 @@ pub(crate) fn spot(u_px: f64, v_px: f64, area_px: u32) -> SpotRecord {
         peak: 255,
         saturated_px: 0,
         flux: 500.0,
+        light: None,
         sigma_px: DEFAULT_SIGMA_PX,
         covariance_px2: [[variance_px2, 0.0], [0.0, variance_px2]],
         middle_px: [u_px.round() as u32, v_px.round() as u32],

@@ -19,6 +19,7 @@ fn spot(u_px: f64, v_px: f64) -> SpotRecord {
         peak: 255,
         saturated_px: 0,
         flux: 700.0,
+        light: None,
         sigma_px: 0.1,
         covariance_px2: [[0.01, 0.0], [0.0, 0.01]],
         middle_px: [u_px as u32, v_px as u32],

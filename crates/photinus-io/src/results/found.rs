@@ -5,6 +5,7 @@ use nalgebra::{Matrix2, Matrix3, Rotation3, UnitQuaternion};
 use photinus::camera::Pixel;
 use photinus::locator::{self, Located, Neighbour, Sighting};
 use photinus::pose::Mode;
+use photinus::optics::Measured;
 use photinus::spots::{Extent, Rejected, Spot};
 
 use super::record::Mode as ModeRecord;
@@ -88,6 +89,7 @@ impl From<&Spot> for SpotRecord {
             peak: spot.peak,
             saturated_px: spot.saturated_px,
             flux: spot.flux,
+            light: spot.light.map(|light| [light.value, light.sigma]),
             sigma_px: spot.sigma_px(),
             covariance_px2: [[c.m11, c.m12], [c.m21, c.m22]],
             middle_px: [spot.middle.0, spot.middle.1],
@@ -118,6 +120,7 @@ impl From<&SpotRecord> for Spot {
             peak: record.peak,
             saturated_px: record.saturated_px,
             flux: record.flux,
+            light: record.light.map(|[value, sigma]| Measured { value, sigma }),
             background: record.background,
             middle: (u, v),
             extent,
@@ -206,6 +209,7 @@ mod tests {
             peak: 255,
             saturated_px: 2,
             flux: 812.5,
+            light: Some(Measured { value: 1030.0, sigma: 40.0 }),
             background: 3.5,
             middle: (100, 51),
             extent: Extent { left: 99, top: 50, right: 101, bottom: 52 },

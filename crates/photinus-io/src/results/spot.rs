@@ -27,6 +27,9 @@ pub struct SpotRecord {
     pub saturated_px: u32,
     /// Sum of its pixels above the background, grey levels; 0 where it is not known.
     pub flux: f64,
+    /// All of its light and the sigma of that, grey levels: with what full pixels hide; nothing where no point spread told it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub light: Option<[f64; 2]>,
     /// Root of the mean variance of the centre over the two axes, px.
     pub sigma_px: f64,
     /// Covariance of the centre, u then v, px^2.
@@ -64,6 +67,7 @@ struct Given {
     peak: Option<u8>,
     saturated_px: Option<u32>,
     flux: Option<f64>,
+    light: Option<[f64; 2]>,
     sigma_px: Option<Sigma>,
     covariance_px2: Option<[[f64; 2]; 2]>,
     middle_px: Option<[u32; 2]>,
@@ -124,6 +128,9 @@ impl TryFrom<Given> for SpotRecord {
         let is_box = |[left, top, right, bottom]: [u32; 4]| {
             left <= right && top <= bottom && right.max(bottom) as usize <= FrameView::MAX_SIDE_PX
         };
+        if given.light.is_some_and(|[light, sigma]| !(light > 0.0 && sigma > 0.0)) {
+            return Err("light is two numbers above 0: the light and its sigma".to_owned());
+        }
         if given.extent_px.is_some_and(|extent| !is_box(extent)) {
             return Err(
                 "extent_px is no box of an image: first column, first row, last column, last row".to_owned()
@@ -138,6 +145,7 @@ impl TryFrom<Given> for SpotRecord {
             peak: given.peak.unwrap_or(255),
             saturated_px: given.saturated_px.unwrap_or(0),
             flux: given.flux.unwrap_or(0.0),
+            light: given.light,
             sigma_px,
             covariance_px2,
             middle_px: given.middle_px.unwrap_or([nearest(u_px), nearest(v_px)]),

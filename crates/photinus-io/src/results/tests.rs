@@ -11,6 +11,7 @@ fn spot() -> SpotRecord {
         peak: 255,
         saturated_px: 2,
         flux: 812.5,
+        light: None,
         sigma_px: 0.2,
         covariance_px2: [[0.05, 0.01], [0.01, 0.03]],
         middle_px: [100, 51],

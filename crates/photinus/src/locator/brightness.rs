@@ -66,6 +66,9 @@ pub(super) fn tell(sightings: &mut [Sighting], rejected: &[Rejected], order: &mu
 
 /// A spot by itself; `None` where a detector measures no light.
 fn alone(spot: &Spot) -> Option<LogLight> {
+    if let Some(light) = spot.light.filter(|light| light.value > 0.0) {
+        return Some(LogLight { value: libm::log(light.value), sigma: light.sigma / light.value });
+    }
     let hidden = HIDDEN_LOG * f64::from(spot.saturated_px.min(MOST_HIDING_PX));
     let beyond = HIDDEN_LOG * f64::from(spot.saturated_px.saturating_sub(MOST_HIDING_PX));
     let unsure = if spot.saturated_px > 0 { HIDDEN_SIGMA + beyond } else { 0.0 };
@@ -78,6 +81,9 @@ fn alone(spot: &Spot) -> Option<LogLight> {
 /// What another spot of this light adds to the error of one.
 fn disturb(own: &mut Sighting, other: Option<LogLight>, gap_px: f64) {
     let Some(LogLight { value, sigma }) = &mut own.log_light else { return };
+    if own.spot.light.is_some() {
+        return;
+    }
     let share = gap_px / NARROWED_PX;
     let narrowed = NARROWED * libm::exp(-(share * share) * (share * share));
     let within = other.map_or(0.0, |other| OTHERS * libm::exp(other.value - *value - gap_px / FALL_PX));

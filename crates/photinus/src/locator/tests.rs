@@ -77,6 +77,7 @@ fn spot(centre: Pixel, intensity: f64, distance_m: f64) -> Spot {
         peak: 200,
         saturated_px: 0,
         flux: 4000.0 * intensity / (distance_m * distance_m),
+        light: None,
         background: 5.0,
         middle: (within(centre.u), within(centre.v)),
         extent: Extent {

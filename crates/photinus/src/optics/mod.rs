@@ -11,6 +11,8 @@ mod spline;
 mod spread;
 mod vignetting;
 
+pub(crate) use spread::{Placed, Profile, Shares};
+
 pub use field::SpreadField;
 pub use sensor::{Measured, Saturation, Sensor};
 pub use spread::{Gaussian, PointSpread};

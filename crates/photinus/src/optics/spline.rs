@@ -17,8 +17,16 @@ pub(super) fn coefficients(samples: &mut [f64], room: &mut [f64]) {
     }
 }
 
-/// Weights of four coefficients at a share `t` of the way from the second to the third, and their slopes by t.
-pub(super) fn weights(t: f32) -> ([f32; 4], [f32; 4]) {
+/// What four coefficients count for at a place between the second and the third: for the value, for its slope, for its curvature.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Weights {
+    pub(super) values: [f32; 4],
+    pub(super) slopes: [f32; 4],
+    pub(super) curvatures: [f32; 4],
+}
+
+/// Weights at a share `t` of the way from the second coefficient to the third; derivatives are by t.
+pub(super) fn weights(t: f32) -> Weights {
     let s = 1.0 - t;
     let sixth = 1.0 / 6.0;
     let values = [
@@ -28,7 +36,7 @@ pub(super) fn weights(t: f32) -> ([f32; 4], [f32; 4]) {
         t * t * t * sixth,
     ];
     let slopes = [-0.5 * s * s, 1.5 * t * t - 2.0 * t, 2.0 * s - 1.5 * s * s, 0.5 * t * t];
-    (values, slopes)
+    Weights { values, slopes, curvatures: [s, 3.0 * t - 2.0, 3.0 * s - 2.0, t] }
 }
 
 #[cfg(test)]
@@ -50,11 +58,12 @@ mod tests {
 
         #[test]
         fn weights_are_a_share_and_slopes_their_derivatives(t in 0.01..0.99f32) {
-            let (values, slopes) = weights(t);
-            prop_assert!((values.iter().sum::<f32>() - 1.0).abs() < 1e-6);
-            let (after, before) = (weights(t + 4e-3).0, weights(t - 4e-3).0);
+            let here = weights(t);
+            prop_assert!((here.values.iter().sum::<f32>() - 1.0).abs() < 1e-6);
+            let (after, before) = (weights(t + 4e-3), weights(t - 4e-3));
             for i in 0..4 {
-                prop_assert!((slopes[i] - (after[i] - before[i]) / 8e-3).abs() < 1e-3);
+                prop_assert!((here.slopes[i] - (after.values[i] - before.values[i]) / 8e-3).abs() < 1e-3);
+                prop_assert!((here.curvatures[i] - (after.slopes[i] - before.slopes[i]) / 8e-3).abs() < 1e-3);
             }
         }
     }

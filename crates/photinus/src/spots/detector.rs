@@ -1,24 +1,20 @@
 //! The stages in order: read this first.
 
+use std::sync::Arc;
+
 use super::background::Background;
-use super::centring::Beside;
 use super::grouping::Components;
 use super::measuring::Meter;
 use super::neighbourhood::Neighbourhood;
 use super::part::{Part, outline};
-use super::parting;
 use super::reflections;
-use super::rejection::{Outline, Reason};
+use super::rejection::Reason;
 use super::runs::{self, Run};
 use super::settings::{Brightness, Settings, SettingsError};
 use super::splitting::Splitter;
 use super::{Detections, Extent, Rejected};
 use crate::frame::{FrameError, FrameView, Mask};
-
-/// A lens scatters noticeable light about so far from the edge of a spot, px ...
-const SCATTERED_PX: f64 = 8.0;
-/// ... which falls by e about every so much.
-const SCATTER_FALLS_PX: f64 = 2.0;
+use crate::optics::Optics;
 
 /// Finds spots in frames. Keeps its room from frame to frame, so that a warm detector allocates nothing.
 #[derive(Debug)]
@@ -42,6 +38,14 @@ impl Detector {
     /// # Errors
     /// [`SettingsError`] when one of them has no meaning.
     pub fn new(settings: Settings) -> Result<Self, SettingsError> {
+        Self::with_optics(settings, None)
+    }
+
+    /// The same for a camera whose optics were measured.
+    ///
+    /// # Errors
+    /// [`SettingsError`] when a setting has no meaning.
+    pub fn with_optics(settings: Settings, optics: Option<Arc<Optics>>) -> Result<Self, SettingsError> {
         settings.check()?;
         Ok(Self {
             settings,
@@ -53,7 +57,7 @@ impl Detector {
             part_runs: Vec::new(),
             parts: Vec::new(),
             neighbourhood: Neighbourhood::default(),
-            meter: Meter::default(),
+            meter: Meter::new(&settings, optics),
             detections: Detections::default(),
         })
     }
@@ -80,7 +84,6 @@ impl Detector {
         if let Brightness::Contrast(_) = self.settings.brightness {
             reflections::reject(&mut self.detections, &self.settings.shape);
         }
-        parting::widen(&mut self.detections.spots);
         self.detections.rejected.sort_unstable_by_key(|rejected| {
             let Extent { top, left, bottom, right } = rejected.extent;
             (top, left, bottom, right, rejected.area_px)
@@ -119,33 +122,18 @@ impl Detector {
         }
     }
 
-    /// The part that scatters most light onto part `i`; `None` when there is none near.
-    fn scatterer(&self, i: usize) -> Option<Beside> {
-        let light = |Outline { area_px, peak, .. }: &Outline| f64::from(*area_px) * f64::from(*peak);
-        let own = light(&self.parts[i].outline);
-        let mut found: Option<Beside> = None;
-        self.neighbourhood.each_near(i, SCATTERED_PX, |other, edge_px| {
-            let Part { outline, guess: place, .. } = &self.parts[other];
-            let share = light(outline) / own * libm::exp(-edge_px.max(0.0) / SCATTER_FALLS_PX);
-            if edge_px < SCATTERED_PX && found.is_none_or(|beside| share > beside.share) {
-                found = Some(Beside { place: *place, share });
-            }
-        });
-        found
-    }
-
     fn measure_parts(&mut self, frame: &FrameView<'_>) {
         self.neighbourhood.arrange(frame, self.parts.iter().map(|part| (part.guess, part.radius_px)));
         self.detections.spots.clear();
         self.detections.rejected.clear();
+        self.meter.fit(frame, &self.parts, &self.neighbourhood);
         for i in 0..self.parts.len() {
             let part = self.parts[i];
             let measured = match part.reason {
                 Some(reason) => Err(reason),
                 None => {
                     let room_px = self.neighbourhood.room_px(i, part.most_room_px());
-                    let beside = self.scatterer(i);
-                    self.meter.measure(frame, &part, room_px, beside, &self.settings)
+                    self.meter.measure(frame, i, &part, room_px, &self.settings)
                 }
             };
             match measured {

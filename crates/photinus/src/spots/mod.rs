@@ -20,27 +20,28 @@
 //! [`Rejected`] with its [`Reason`]; nothing is dropped in silence.
 
 mod background;
-mod centring;
 mod centroid;
 mod detector;
+mod fit;
+mod full_level;
 mod grouping;
-mod halo;
+mod learning;
 mod ledge;
 mod measuring;
 mod neighbourhood;
 mod part;
-mod parting;
 mod patch;
 mod reflections;
 mod rejection;
 mod runs;
 mod settings;
-mod skirt;
 mod splitting;
+mod window;
 
 use nalgebra::Matrix2;
 
 use crate::camera::Pixel;
+use crate::optics::Measured;
 
 pub use detector::Detector;
 pub use rejection::Reason;
@@ -61,6 +62,8 @@ pub struct Spot {
     pub saturated_px: u32,
     /// Signal above the background in the window around the spot, grey levels; a lower limit when saturated.
     pub flux: f64,
+    /// All of its light, grey levels, with what full pixels hide and what falls outside the window, where the point spread tells it.
+    pub light: Option<Measured>,
     /// Level of the surroundings, grey levels.
     pub background: f64,
     /// The paper's position: the middle pixel (column, row) in the order of a scan-line fill.

@@ -99,6 +99,7 @@ mod tests {
             peak,
             saturated_px: 0,
             flux: f64::from(peak),
+            light: None,
             background: 0.0,
             middle: (column, row),
             extent: Extent { left: column, top: row, right: column, bottom: row },

@@ -189,6 +189,7 @@ fn spots_all_in_one_place_tell_numbers_or_nothing() {
         peak: 0,
         saturated_px: 0,
         flux: 10.0,
+        light: None,
         background: 0.0,
         middle: (453, 476),
         extent: Extent { left: 453, top: 476, right: 453, bottom: 480 },

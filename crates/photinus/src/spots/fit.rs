@@ -1,0 +1,342 @@
+//! Where the light of a spot fell, and how much of it: the camera's point spread, fitted to the pixels.
+//!
+//! In: the pixels around a spot, the point spread there, the noise of a pixel. Out: place, light and their covariances. The pixels are
+//!
+//! ```text
+//! I(p) = A (P(p - c) + w L(p - c)) + B + others(p),
+//! ```
+//!
+//! P the effective point spread, L half its Laplacian: a source that is no point widens it by its variance w. Unknown are c, A,
+//! B and w, or, where the point spread is not known yet, the numbers that make it instead of w. Gauss and Newton's steps on
+//! the squared residuals over the variance that the model itself gives each pixel. A full pixel says that its light is no less than
+//! what it reads: it counts where the model has less. What is believed of B and w before a pixel is seen counts like pixels.
+
+use nalgebra::{Matrix2, SMatrix, SVector};
+
+use super::window::{Four, Window};
+use crate::lanes::{self, Lanes};
+use crate::optics::{PointSpread, Shares};
+
+/// Steps of Gauss and Newton at most; of a spot with full pixels, whose set of pixels that count changes.
+const STEPS: usize = 5;
+const STEPS_OF_FULL: usize = 12;
+/// Longest step of the centre, px.
+const LONGEST_PX: f64 = 0.5;
+/// A step shorter than this is the last, px, if it changes the light by less than this share.
+const DONE_PX: f64 = 0.01;
+const DONE_SHARE: f64 = 0.01;
+/// A last step longer than this has not settled, px.
+const SETTLED_PX: f64 = 0.05;
+/// How far the level of the background is known beforehand, grey levels.
+const LEVEL_KNOWN_DN: f64 = 3.0;
+
+const U: usize = 0;
+const V: usize = 1;
+const LIGHT: usize = 2;
+const LEVEL: usize = 3;
+/// The first of the numbers that say how wide the light is.
+pub(super) const WIDTH: usize = 4;
+
+/// Noise of a pixel with signal s from a spot that gives a share m of it: `dark` + `shot` s + (`shape` m)^2, grey levels^2.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PixelNoise {
+    pub(super) dark: f32,
+    pub(super) shot: f32,
+    /// How wrong the point spread is, as a share of the light in a pixel.
+    pub(super) shape: f32,
+}
+
+/// What a spot is fitted with.
+pub(super) trait Shape<const N: usize> {
+    /// The point spread of light 1 with these numbers of width at four pixels, its derivatives by u, v and by each of them in the columns
+    /// from [`WIDTH`] on.
+    fn shares(&self, row: usize, column: usize, widths: &SVector<f64, N>) -> (Lanes, [Lanes; N]);
+
+    /// Places the spread `u`, `v` px from the middle of the window.
+    fn place(&mut self, u: f64, v: f64, widths: &SVector<f64, N>, reach: usize);
+
+    /// What is believed of the numbers of width: mean and one over the variance, each by itself.
+    fn believed(&self, number: usize) -> (f64, f64);
+
+    /// Share of the excess of full pixels that spills, its variance, and which number it is where it is unknown.
+    fn spill(&self, numbers: &SVector<f64, N>) -> Spill;
+}
+
+/// The share of the excess of full pixels that spills into their neighbours.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Spill {
+    pub(super) share: f64,
+    /// Of what spilled charge adds to a pixel, over that.
+    pub(super) relative_error: f64,
+    /// Which number it is, where it is unknown.
+    pub(super) number: Option<usize>,
+}
+
+/// Tells the window what spills over from pixels that the model makes full.
+fn overflow<const N: usize>(window: &mut Window, shape: &impl Shape<N>, numbers: &SVector<f64, N>) {
+    let Spill { share, relative_error, .. } = shape.spill(numbers);
+    let (light, level) = (Lanes::splat(numbers[LIGHT] as f32), Lanes::splat(numbers[LEVEL] as f32));
+    window.overflow(share, relative_error, |four| light * shape.shares(four.row, four.column, numbers).0 + level);
+}
+
+/// A spot as fitted.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Fitted<const N: usize> {
+    /// u, v, light, level, numbers of width, as seen from the middle of the window.
+    pub(super) numbers: SVector<f64, N>,
+    /// Their covariance where pixels are as noisy as they were taken to be.
+    pub(super) covariance: SMatrix<f64, N, N>,
+    /// Squared residuals over their variances.
+    pub(super) chi2: f64,
+    /// Pixels that counted, less the unknowns.
+    pub(super) freedom: f64,
+    /// Twice the negative log-likelihood, but for a constant: what is less fits better.
+    pub(super) cost: f64,
+}
+
+impl<const N: usize> Fitted<N> {
+    pub(super) fn centre_covariance_px2(&self) -> Matrix2<f64> {
+        self.covariance.fixed_view::<2, 2>(0, 0).into_owned()
+    }
+
+    pub(super) fn light(&self) -> f64 {
+        self.numbers[LIGHT]
+    }
+
+    pub(super) fn light_variance(&self) -> f64 {
+        self.covariance[(LIGHT, LIGHT)]
+    }
+}
+
+/// Sums of the products of slopes and residual, the residual beside.
+struct Sums<const N: usize> {
+    matrix: SMatrix<f64, N, N>,
+    right: SVector<f64, N>,
+    chi2: f64,
+    log_variances: f64,
+    pixels: f64,
+}
+
+/// Light of other first guesses over that of the first, where so many pixels are full that it may be far off.
+const BRIGHTER: [f64; 3] = [1.0, 3.0, 10.0];
+/// Fewer full pixels hide little.
+const HIDING_PX: u32 = 2;
+
+/// Fits `shape` from a first guess (u, v, light); `None` where it does not settle.
+pub(super) fn fit<const N: usize>(
+    window: &mut Window,
+    shape: &mut impl Shape<N>,
+    (u, v, light): (f64, f64, f64),
+    noise: PixelNoise,
+) -> Option<Fitted<N>> {
+    let guesses = if window.full_px >= HIDING_PX { &BRIGHTER[..] } else { &BRIGHTER[..1] };
+    let mut best: Option<Fitted<N>> = None;
+    for brighter in guesses {
+        let Some(fitted) = fit_from(window, shape, (u, v, brighter * light), noise) else { continue };
+        if best.is_none_or(|best| fitted.cost < best.cost) {
+            best = Some(fitted);
+        }
+    }
+    best
+}
+
+fn fit_from<const N: usize>(
+    window: &mut Window,
+    shape: &mut impl Shape<N>,
+    (u, v, light): (f64, f64, f64),
+    noise: PixelNoise,
+) -> Option<Fitted<N>> {
+    let mut numbers = SVector::<f64, N>::zeros();
+    (numbers[U], numbers[V], numbers[LIGHT]) = (u, v, light);
+    for number in WIDTH..N {
+        numbers[number] = shape.believed(number).0;
+    }
+    let steps = if window.full_px > 0 { STEPS_OF_FULL } else { STEPS };
+    let (mut last, mut previous, mut gain) = (None, SVector::<f64, N>::zeros(), 1.0_f64);
+    for step_number in 0..steps {
+        shape.place(numbers[U], numbers[V], &numbers, window.reach);
+        if window.full_px > 0 {
+            overflow(window, shape, &numbers);
+        }
+        let sums = sums(window, shape, &numbers, noise);
+        let mut matrix = sums.matrix;
+        let mut right = sums.right;
+        let level = 1.0 / (LEVEL_KNOWN_DN * LEVEL_KNOWN_DN);
+        matrix[(LEVEL, LEVEL)] += level;
+        right[LEVEL] -= level * numbers[LEVEL];
+        for number in WIDTH..N {
+            let (mean, weight) = shape.believed(number);
+            matrix[(number, number)] += weight;
+            right[number] += weight * (mean - numbers[number]);
+        }
+        if std::env::var("DBG2").is_ok() { eprintln!("   try {} {:?} diag {:?}", step_number, numbers.as_slice(), matrix.diagonal().as_slice()); }
+        let factor = matrix.cholesky()?;
+        let mut step = factor.solve(&right);
+        for number in [U, V] {
+            step[number] = step[number].clamp(-LONGEST_PX, LONGEST_PX);
+        }
+        let before = numbers[LIGHT];
+        // Light neither vanishes nor explodes in a step: far from the answer slopes say little.
+        step[LIGHT] = step[LIGHT].clamp(-0.6 * before, 4.0 * before);
+        let step_px = libm::hypot(step[U], step[V]);
+        // Weights follow the model: what overshoots once goes half as far from then on.
+        if (0..N).any(|number| step[number] * previous[number] < -0.25 * previous[number] * previous[number]) {
+            gain *= 0.5;
+        }
+        step *= gain;
+        numbers += step;
+        previous = step;
+        if std::env::var("DBG2").is_ok() { eprintln!("     fit N{N} {step_number} full {} n {:.3?} step {:.3?} chi2 {:.1} px {}", window.full_px, numbers.as_slice(), step.as_slice(), sums.chi2, sums.pixels); }
+        let is_done = step_px < DONE_PX && step[LIGHT].abs() < DONE_SHARE * before;
+        let mut cost = sums.chi2 + sums.log_variances;
+        for number in WIDTH..N {
+            let (mean, weight) = shape.believed(number);
+            cost += weight * (numbers[number] - mean) * (numbers[number] - mean);
+        }
+        last = Some((factor, sums.chi2, sums.pixels, step_px, cost));
+        if is_done && step_number > 0 {
+            break;
+        }
+    }
+    let (factor, chi2, pixels, step_px, cost) = last?;
+    let freedom = pixels - N as f64;
+    let off_px = libm::hypot(numbers[U] - u, numbers[V] - v);
+    let settled = step_px < SETTLED_PX && off_px < 0.5 * window.reach as f64 && numbers[LIGHT] > 0.0;
+    (settled && freedom >= 1.0).then(|| Fitted { numbers, covariance: factor.inverse(), chi2, freedom, cost })
+}
+
+fn sums<const N: usize>(
+    window: &Window,
+    shape: &impl Shape<N>,
+    numbers: &SVector<f64, N>,
+    noise: PixelNoise,
+) -> Sums<N> {
+    let (light, level) = (Lanes::splat(numbers[LIGHT] as f32), Lanes::splat(numbers[LEVEL] as f32));
+    let spilling = shape.spill(numbers).number;
+    let [mut chi2, mut pixels, mut log_variances] = [Lanes::ZERO; 3];
+    let mut products = [[Lanes::ZERO; N]; N];
+    let mut right = [Lanes::ZERO; N];
+    for four in &window.fours {
+        let (columns, residual, weight) = weighed(four, shape, numbers, light, level, noise, spilling);
+        let counts = lanes::less(Lanes::ZERO, weight);
+        pixels += counts;
+        if window.full_px > 0 {
+            log_variances -= counts * lanes::ln(weight + (Lanes::ONE - counts));
+        }
+        let weighted = weight * residual;
+        chi2 += weighted * residual;
+        for i in 0..N {
+            right[i] += weighted * columns[i];
+            let scaled = weight * columns[i];
+            for j in 0..=i {
+                products[i][j] += scaled * columns[j];
+            }
+        }
+    }
+    let sum = |lanes_of: Lanes| f64::from(lanes::sum(lanes_of));
+    let matrix = SMatrix::from_fn(|i, j| sum(products[i.max(j)][i.min(j)]));
+    Sums { matrix, right: SVector::from_fn(|i, _| sum(right[i])), chi2: sum(chi2), log_variances: sum(log_variances), pixels: sum(pixels) }
+}
+
+/// Slopes, residual and weight of four pixels.
+#[inline(always)]
+fn weighed<const N: usize>(
+    four: &Four,
+    shape: &impl Shape<N>,
+    numbers: &SVector<f64, N>,
+    light: Lanes,
+    level: Lanes,
+    noise: PixelNoise,
+    spilling: Option<usize>,
+) -> ([Lanes; N], Lanes, Lanes) {
+    let (share, mut columns) = shape.shares(four.row, four.column, numbers);
+    let own = light * share;
+    for column in &mut columns {
+        *column *= light;
+    }
+    columns[LIGHT] = share;
+    columns[LEVEL] = Lanes::ONE;
+    if let Some(number) = spilling {
+        columns[number] = four.by_spill;
+    }
+    let model = own + level + four.others + four.spilled;
+    let wrong = Lanes::splat(noise.shape) * own;
+    let variance = Lanes::splat(noise.dark)
+        + Lanes::splat(noise.shot) * lanes::positive(own + four.others)
+        + wrong * wrong
+        + four.others_variance
+        + four.spilled_variance;
+    let residual = four.signal - model;
+    // A full pixel counts where the model has less than it reads.
+    let tells = Lanes::ONE - four.full * lanes::less(residual, Lanes::ZERO);
+    (columns, residual, four.counts * tells / variance)
+}
+
+/// Residuals, what their variance should be without that of the shape, and the own light of each pixel that counts, once a spot is
+/// fitted; each residual squared is over 1 less the share of it that the fit took away.
+pub(super) fn residuals<const N: usize>(
+    window: &Window,
+    shape: &mut impl Shape<N>,
+    fitted: &Fitted<N>,
+    noise: PixelNoise,
+    mut with: impl FnMut(f32, f32),
+) {
+    let numbers = &fitted.numbers;
+    shape.place(numbers[U], numbers[V], numbers, window.reach);
+    let (light, level) = (Lanes::splat(numbers[LIGHT] as f32), Lanes::splat(numbers[LEVEL] as f32));
+    let spilling = shape.spill(numbers).number;
+    for four in &window.fours {
+        let (columns, residual, weight) = weighed(four, shape, numbers, light, level, noise, spilling);
+        let own = (light * columns[LIGHT]).to_array();
+        let columns = columns.map(Lanes::to_array);
+        let (residual, weight) = (residual.to_array(), weight.to_array());
+        let full = four.full.to_array();
+        for lane in 0..lanes::LANES {
+            if weight[lane] <= 0.0 || full[lane] > 0.0 {
+                continue;
+            }
+            let slopes = SVector::<f64, N>::from_fn(|i, _| f64::from(columns[i][lane]));
+            let taken = (slopes.transpose() * fitted.covariance * slopes)[0] * f64::from(weight[lane]);
+            if taken < 0.7 {
+                with(own[lane], (f64::from(residual[lane] * residual[lane]) / (1.0 - taken)) as f32);
+            }
+        }
+    }
+}
+
+/// A point, or a source of some size.
+pub(super) struct PointSource<'a> {
+    pub(super) spread: &'a PointSpread,
+    /// Standard deviation that a source's own variance is believed to have, px^2.
+    pub(super) size_px2: f64,
+    spill: Spill,
+    placed: Option<crate::optics::Placed<'a>>,
+}
+
+impl<'a> PointSource<'a> {
+    pub(super) fn new(spread: &'a PointSpread, size_px2: f64, spill: Spill) -> Self {
+        Self { spread, size_px2, spill, placed: None }
+    }
+}
+
+impl Shape<5> for PointSource<'_> {
+    #[inline(always)]
+    fn shares(&self, row: usize, column: usize, numbers: &SVector<f64, 5>) -> (Lanes, [Lanes; 5]) {
+        let Some(placed) = &self.placed else { return (Lanes::ZERO, [Lanes::ZERO; 5]) };
+        let Shares { share, by_u, by_v, by_variance } = placed.four(row, column);
+        let share = share + Lanes::splat(numbers[WIDTH] as f32) * by_variance;
+        (share, [by_u, by_v, Lanes::ZERO, Lanes::ZERO, by_variance])
+    }
+
+    fn place(&mut self, u: f64, v: f64, _: &SVector<f64, 5>, reach: usize) {
+        self.placed = Some(self.spread.placed(u as f32, v as f32, reach));
+    }
+
+    fn believed(&self, _: usize) -> (f64, f64) {
+        (0.0, 1.0 / (self.size_px2 * self.size_px2))
+    }
+
+    fn spill(&self, _: &SVector<f64, 5>) -> Spill {
+        self.spill
+    }
+}

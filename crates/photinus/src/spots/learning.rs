@@ -1,0 +1,288 @@
+//! What the frames themselves tell of the camera, where nobody measured it.
+//!
+//! In: spots as fitted, frame after frame. Out: the point spread (a core and a halo around it, both Gaussians), the noise of a
+//! pixel by its light, how wrong the point spread is, and the level at which pixels are full. All begin with what is believed of
+//! any camera, and each frame's spots count like more pixels of one great fit: the same frames in the same order
+//! give the same belief.
+
+use nalgebra::{Matrix3, Matrix4, SVector, Vector3, Vector4};
+
+use super::fit::{PixelNoise, Shape, Spill, WIDTH};
+use super::settings::Noise;
+use crate::lanes::Lanes;
+use crate::optics::{Placed, PointSpread, Profile, Shares};
+
+/// Logarithm of the core's sigma, share of the halo, logarithm of the halo's sigma, share of the excess that spills: what is believed of any lens, and how far.
+const BELIEVED: [f64; 4] = [-0.6, 0.2, 0.9, 0.3];
+const KNOWN: [f64; 4] = [0.6, 0.25, 0.4, 0.4];
+/// Each of them is no less and no more.
+const LEAST: [f64; 4] = [-1.6, 0.0, 0.2, 0.0];
+const MOST: [f64; 4] = [1.1, 0.9, 1.9, 1.0];
+/// A belief this sure, per number, is good enough to fit spots with alone.
+const SURE: [f64; 4] = [0.03, 0.03, 0.3, 0.1];
+
+/// The number that says how much spills, and how wrong the charge is that spills into a pixel, as a share of it.
+const SPILL: usize = WIDTH + 3;
+const SPILL_ERROR: f64 = 0.3;
+
+/// What is believed of the variance of a pixel: the share of its light by which the point spread is wrong ...
+const SHAPE: f64 = 0.08;
+/// ... and the sigma of the logarithm of each of its parts.
+const PARTS_KNOWN: [f64; 3] = [1.0, 1.0, 1.5];
+/// Bins of pixels by their light: from 1 grey level on, an octave each.
+const BINS: usize = 9;
+
+/// What is believed of a camera's optics.
+#[derive(Debug)]
+pub(super) struct Belief {
+    numbers: Vector4<f64>,
+    /// Information on the numbers and its product with them, from all frames.
+    information: Matrix4<f64>,
+    weighted: Vector4<f64>,
+    spread: PointSpread,
+    by_number: [PointSpread; 3],
+    noise: NoiseBins,
+}
+
+impl Belief {
+    pub(super) fn new(noise: Noise) -> Self {
+        let weights = KNOWN.map(|sigma| 1.0 / (sigma * sigma));
+        let information = Matrix4::from_diagonal(&Vector4::from(weights));
+        let numbers = Vector4::from(BELIEVED);
+        let mut belief = Self {
+            numbers,
+            information,
+            weighted: information * numbers,
+            spread: PointSpread::dark(),
+            by_number: std::array::from_fn(|_| PointSpread::dark()),
+            noise: NoiseBins::new(noise),
+        };
+        belief.draw();
+        belief
+    }
+
+    pub(super) fn spread(&self) -> &PointSpread {
+        &self.spread
+    }
+
+    /// The share of the excess of full pixels that spills.
+    pub(super) fn spill(&self) -> Spill {
+        Spill { share: self.numbers[3], relative_error: SPILL_ERROR, number: None }
+    }
+
+    pub(super) fn noise(&self) -> PixelNoise {
+        self.noise.noise
+    }
+
+    /// Width (sigma) of the core, px.
+    pub(super) fn core_px(&self) -> f64 {
+        libm::exp(self.numbers[0])
+    }
+
+    /// Whether spots can be fitted with the spread as it stands.
+    pub(super) fn is_sure(&self) -> bool {
+        self.sigmas().iter().zip(SURE).all(|(sigma, sure)| *sigma < sure)
+    }
+
+    pub(super) fn debug(&self) -> String { format!("core {:.3} q {:.3} halo {:.3} sig {:.3?} noise {:?}", self.core_px(), self.numbers[1], libm::exp(self.numbers[2]), self.sigmas(), self.noise.noise) }
+    fn sigmas(&self) -> [f64; 4] {
+        let covariance = self.information.try_inverse().unwrap_or_else(Matrix4::zeros);
+        std::array::from_fn(|i| covariance[(i, i)].max(0.0).sqrt())
+    }
+
+    /// The spread with its numbers free.
+    pub(super) fn free(&self) -> FreeSpread<'_> {
+        let weights = self.sigmas().map(|sigma| 1.0 / (sigma * sigma));
+        FreeSpread { belief: self, weights, placed: None }
+    }
+
+    /// Takes in what a frame's spots say: their information on the numbers and its product with them, differences from the numbers of
+    /// now. Says whether the spread has moved by more than its sigma allows.
+    pub(super) fn take(&mut self, told: &Told) -> bool {
+        let information = self.information + told.information;
+        let weighted = self.weighted + told.weighted + told.information * self.numbers;
+        let Some(covariance) = information.try_inverse() else { return false };
+        let mut numbers = covariance * weighted;
+        for i in 0..4 {
+            numbers[i] = numbers[i].clamp(LEAST[i], MOST[i]).clamp(self.numbers[i] - 0.5, self.numbers[i] + 0.5);
+        }
+        let moved = (0..4).any(|i| {
+            let sigma = covariance[(i, i)].max(0.0).sqrt();
+            (numbers[i] - self.numbers[i]).abs() > (0.5 * sigma).max(0.002)
+        });
+        if moved {
+            self.numbers = numbers;
+            self.draw();
+        }
+        moved
+    }
+
+    /// Keeps what a frame's spots said for good.
+    pub(super) fn keep(&mut self, told: &Told, numbers: Vector4<f64>) {
+        self.information += told.information;
+        self.weighted += told.weighted + told.information * numbers;
+    }
+
+    pub(super) fn numbers(&self) -> Vector4<f64> {
+        self.numbers
+    }
+
+    pub(super) fn noise_bins(&mut self) -> &mut NoiseBins {
+        &mut self.noise
+    }
+
+    fn draw(&mut self) {
+        let [core_px, share, halo_px] = [libm::exp(self.numbers[0]), self.numbers[1], libm::exp(self.numbers[2])];
+        let (core, halo) = (Profile::new(core_px), Profile::new(halo_px.max(1.3 * core_px)));
+        let mut add = |of: usize, terms: &[(f64, &Profile, bool)]| {
+            let spread = if of == 3 { &mut self.spread } else { &mut self.by_number[of] };
+            spread.clear();
+            for &(weight, profile, is_slope) in terms {
+                if is_slope {
+                    spread.add_product(weight, &profile.by_ln_sigma, &profile.shares);
+                    spread.add_product(weight, &profile.shares, &profile.by_ln_sigma);
+                } else {
+                    spread.add_product(weight, &profile.shares, &profile.shares);
+                }
+            }
+            spread.sort_coefficients();
+        };
+        add(3, &[(1.0 - share, &core, false), (share, &halo, false)]);
+        add(0, &[(1.0 - share, &core, true)]);
+        add(1, &[(1.0, &halo, false), (-1.0, &core, false)]);
+        add(2, &[(share.max(0.02), &halo, true)]);
+    }
+}
+
+/// What the spots of a frame say of the numbers.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Told {
+    information: Matrix4<f64>,
+    weighted: Vector4<f64>,
+}
+
+impl Told {
+    /// Adds a spot that was fitted with the numbers free: its answer and covariance, with what was believed beforehand taken out.
+    pub(super) fn add(&mut self, answer: &SVector<f64, 8>, covariance: &Matrix4<f64>, weights: [f64; 4], trust: f64) {
+        let Some(information) = covariance.try_inverse() else { return };
+        let own = (information - Matrix4::from_diagonal(&Vector4::from(weights))) * trust;
+        // Rounding must not take away what was known.
+        if (0..4).any(|i| own[(i, i)] < 0.0) {
+            return;
+        }
+        let answer = Vector4::from_fn(|i, _| answer[WIDTH + i]);
+        self.information += own;
+        self.weighted += information * answer * trust;
+    }
+}
+
+/// A point whose spread is not known yet: differences of the three numbers from what is believed are free.
+pub(super) struct FreeSpread<'a> {
+    belief: &'a Belief,
+    pub(super) weights: [f64; 4],
+    placed: Option<[Placed<'a>; 4]>,
+}
+
+impl Shape<8> for FreeSpread<'_> {
+    #[inline(always)]
+    fn shares(&self, row: usize, column: usize, numbers: &SVector<f64, 8>) -> (Lanes, [Lanes; 8]) {
+        let Some([spread, by_number @ ..]) = &self.placed else { return (Lanes::ZERO, [Lanes::ZERO; 8]) };
+        let Shares { mut share, by_u, by_v, .. } = spread.four(row, column);
+        let mut columns = [Lanes::ZERO; 8];
+        (columns[0], columns[1]) = (by_u, by_v);
+        for (i, by_number) in by_number.iter().enumerate() {
+            columns[WIDTH + i] = by_number.four(row, column).share;
+            share += Lanes::splat(numbers[WIDTH + i] as f32) * columns[WIDTH + i];
+        }
+        (share, columns)
+    }
+
+    fn place(&mut self, u: f64, v: f64, _: &SVector<f64, 8>, reach: usize) {
+        let [a, b, c] = &self.belief.by_number;
+        let spreads = [&self.belief.spread, a, b, c];
+        self.placed = Some(spreads.map(|spread| spread.placed(u as f32, v as f32, reach)));
+    }
+
+    fn believed(&self, number: usize) -> (f64, f64) {
+        (0.0, self.weights[number - WIDTH])
+    }
+
+    fn spill(&self, numbers: &SVector<f64, 8>) -> Spill {
+        let share = self.belief.numbers[3] + numbers[SPILL];
+        Spill { share, relative_error: SPILL_ERROR, number: Some(SPILL) }
+    }
+}
+
+/// Squared residuals of pixels by their light, and the noise that explains them.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct NoiseBins {
+    pub(super) noise: PixelNoise,
+    believed: [f64; 3],
+    bins: [Bin; BINS],
+    pixels: f64,
+    solved_at: f64,
+}
+
+#[derive(Clone, Copy, Debug, Default)]
+struct Bin {
+    count: f64,
+    squares: f64,
+    light: f64,
+    light2: f64,
+}
+
+impl NoiseBins {
+    fn new(noise: Noise) -> Self {
+        let dark = noise.read_dn * noise.read_dn + 1.0 / 12.0;
+        let believed = [dark, noise.shot.max(1e-4), SHAPE * SHAPE];
+        let noise = PixelNoise { dark: dark as f32, shot: noise.shot as f32, shape: SHAPE as f32 };
+        Self { noise, believed, bins: [Bin::default(); BINS], pixels: 0.0, solved_at: 0.0 }
+    }
+
+    /// Adds a pixel with this much of a spot's light and this squared residual.
+    pub(super) fn add(&mut self, light: f32, square: f32) {
+        let light = f64::from(light.max(0.0));
+        let octave = (light as u32 + 1).ilog2() as usize;
+        let bin = &mut self.bins[octave.min(BINS - 1)];
+        bin.count += 1.0;
+        bin.squares += f64::from(square);
+        bin.light += light;
+        bin.light2 += light * light;
+        self.pixels += 1.0;
+    }
+
+    /// Solves for the three parts of the noise, once a tenth more pixels are known: Fisher's scoring on their logarithms.
+    pub(super) fn solve(&mut self) {
+        if self.pixels < 1.1 * self.solved_at || self.pixels <= 0.0 {
+            return;
+        }
+        self.solved_at = self.pixels;
+        let believed = self.believed.map(libm::log);
+        let mut logs = Vector3::new(f64::from(self.noise.dark), f64::from(self.noise.shot), {
+            f64::from(self.noise.shape) * f64::from(self.noise.shape)
+        })
+        .map(libm::log);
+        for _ in 0..6 {
+            let parts = logs.map(libm::exp);
+            let (mut matrix, mut right) = (Matrix3::zeros(), Vector3::zeros());
+            for i in 0..3 {
+                let weight = 1.0 / (PARTS_KNOWN[i] * PARTS_KNOWN[i]);
+                matrix[(i, i)] += weight;
+                right[i] += weight * (believed[i] - logs[i]);
+            }
+            for bin in self.bins.iter().filter(|bin| bin.count > 0.0) {
+                let by = Vector3::new(1.0, bin.light / bin.count, bin.light2 / bin.count).component_mul(&parts);
+                let variance = by.sum();
+                let slope = by / variance;
+                let ratio = bin.squares / (bin.count * variance);
+                matrix += slope * slope.transpose() * (0.5 * bin.count);
+                right += slope * (0.5 * bin.count * (ratio - 1.0));
+            }
+            let Some(factor) = matrix.cholesky() else { return };
+            logs += factor.solve(&right).map(|step| step.clamp(-1.0, 1.0));
+        }
+        let parts = logs.map(libm::exp);
+        self.noise =
+            PixelNoise { dark: parts[0] as f32, shot: parts[1] as f32, shape: parts[2].sqrt().min(0.5) as f32 };
+    }
+}

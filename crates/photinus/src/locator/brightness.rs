@@ -21,11 +21,10 @@ const FAR_PX: f64 = 15.0;
 /// Error where another spot, or a reflection, makes the window narrow, at no distance, and how far away that is, px.
 const NARROWED: f64 = 0.25;
 const NARROWED_PX: f64 = 4.2;
-/// Light that a saturated pixel hides, as a logarithm, up to so many pixels; beyond them that is unsure. Error of what a core
-/// hides.
-const HIDDEN_LOG: f64 = 0.037;
-const MOST_HIDING_PX: u32 = 7;
-const HIDDEN_SIGMA: f64 = 0.06;
+/// Logarithm of the light of a saturated spot over what its pixels show, where no point spread told it, and its error: several times as much
+/// may be hidden.
+const HIDDEN_LOG: f64 = 0.3;
+const HIDDEN_SIGMA: f64 = 0.6;
 
 /// Tells the light of all sightings. `order` is room to work in.
 pub(super) fn tell(sightings: &mut [Sighting], rejected: &[Rejected], order: &mut Vec<usize>) {
@@ -69,9 +68,7 @@ fn alone(spot: &Spot) -> Option<LogLight> {
     if let Some(light) = spot.light.filter(|light| light.value > 0.0) {
         return Some(LogLight { value: libm::log(light.value), sigma: light.sigma / light.value });
     }
-    let hidden = HIDDEN_LOG * f64::from(spot.saturated_px.min(MOST_HIDING_PX));
-    let beyond = HIDDEN_LOG * f64::from(spot.saturated_px.saturating_sub(MOST_HIDING_PX));
-    let unsure = if spot.saturated_px > 0 { HIDDEN_SIGMA + beyond } else { 0.0 };
+    let (hidden, unsure) = if spot.saturated_px > 0 { (HIDDEN_LOG, HIDDEN_SIGMA) } else { (0.0, 0.0) };
     (spot.flux > 0.0).then(|| LogLight {
         value: libm::log(spot.flux) + hidden,
         sigma: (SIGMA * SIGMA + NOISE * NOISE / spot.flux + unsure * unsure).sqrt(),

@@ -13,7 +13,7 @@
 
 use nalgebra::{Matrix2, SMatrix, SVector};
 
-use super::window::{Four, Window};
+use super::window::{Four, Spill, Window};
 use crate::lanes::{self, Lanes};
 use crate::optics::{PointSpread, Shares};
 
@@ -58,25 +58,15 @@ pub(super) trait Shape<const N: usize> {
     /// What is believed of the numbers of width: mean and one over the variance, each by itself.
     fn believed(&self, number: usize) -> (f64, f64);
 
-    /// Share of the excess of full pixels that spills, its variance, and which number it is where it is unknown.
+    /// What becomes of charge above a full well.
     fn spill(&self, numbers: &SVector<f64, N>) -> Spill;
-}
-
-/// The share of the excess of full pixels that spills into their neighbours.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Spill {
-    pub(super) share: f64,
-    /// Of what spilled charge adds to a pixel, over that.
-    pub(super) relative_error: f64,
-    /// Which number it is, where it is unknown.
-    pub(super) number: Option<usize>,
 }
 
 /// Tells the window what spills over from pixels that the model makes full.
 fn overflow<const N: usize>(window: &mut Window, shape: &impl Shape<N>, numbers: &SVector<f64, N>) {
-    let Spill { share, relative_error, .. } = shape.spill(numbers);
     let (light, level) = (Lanes::splat(numbers[LIGHT] as f32), Lanes::splat(numbers[LEVEL] as f32));
-    window.overflow(share, relative_error, |four| light * shape.shares(four.row, four.column, numbers).0 + level);
+    let spill = shape.spill(numbers);
+    window.overflow(&spill, |four| light * shape.shares(four.row, four.column, numbers).0 + level);
 }
 
 /// A spot as fitted.
@@ -90,8 +80,8 @@ pub(super) struct Fitted<const N: usize> {
     pub(super) chi2: f64,
     /// Pixels that counted, less the unknowns.
     pub(super) freedom: f64,
-    /// Twice the negative log-likelihood, but for a constant: what is less fits better.
-    pub(super) cost: f64,
+    /// Twice the negative log-likelihood, but for a constant and the squared residuals.
+    rest_of_cost: f64,
 }
 
 impl<const N: usize> Fitted<N> {
@@ -119,6 +109,8 @@ struct Sums<const N: usize> {
 
 /// Light of other first guesses over that of the first, where so many pixels are full that it may be far off.
 const BRIGHTER: [f64; 3] = [1.0, 3.0, 10.0];
+/// Lights spread evenly in space are as many per light as light^-5/2: what that adds to the cost per logarithm of light.
+const COUNTS: f64 = 5.0;
 /// Fewer full pixels hide little.
 const HIDING_PX: u32 = 2;
 
@@ -130,14 +122,15 @@ pub(super) fn fit<const N: usize>(
     noise: PixelNoise,
 ) -> Option<Fitted<N>> {
     let guesses = if window.full_px >= HIDING_PX { &BRIGHTER[..] } else { &BRIGHTER[..1] };
-    let mut best: Option<Fitted<N>> = None;
-    for brighter in guesses {
-        let Some(fitted) = fit_from(window, shape, (u, v, brighter * light), noise) else { continue };
-        if best.is_none_or(|best| fitted.cost < best.cost) {
-            best = Some(fitted);
-        }
+    let mut found: [Option<Fitted<N>>; BRIGHTER.len()] = [None; BRIGHTER.len()];
+    for (found, brighter) in found.iter_mut().zip(guesses) {
+        *found = fit_from(window, shape, (u, v, brighter * light), noise);
     }
-    best
+    // Where nothing fits well, misfits count for less.
+    let misfits = found.iter().flatten().map(|fitted| fitted.chi2 / fitted.freedom);
+    let least = misfits.fold(f64::INFINITY, f64::min).max(1.0);
+    let cost = |fitted: &Fitted<N>| fitted.chi2 / least + fitted.rest_of_cost + COUNTS * libm::log(fitted.light());
+    found.into_iter().flatten().min_by(|a, b| cost(a).total_cmp(&cost(b)))
 }
 
 fn fit_from<const N: usize>(
@@ -188,7 +181,7 @@ fn fit_from<const N: usize>(
         previous = step;
         if std::env::var("DBG2").is_ok() { eprintln!("     fit N{N} {step_number} full {} n {:.3?} step {:.3?} chi2 {:.1} px {}", window.full_px, numbers.as_slice(), step.as_slice(), sums.chi2, sums.pixels); }
         let is_done = step_px < DONE_PX && step[LIGHT].abs() < DONE_SHARE * before;
-        let mut cost = sums.chi2 + sums.log_variances;
+        let mut cost = sums.log_variances;
         for number in WIDTH..N {
             let (mean, weight) = shape.believed(number);
             cost += weight * (numbers[number] - mean) * (numbers[number] - mean);
@@ -202,7 +195,7 @@ fn fit_from<const N: usize>(
     let freedom = pixels - N as f64;
     let off_px = libm::hypot(numbers[U] - u, numbers[V] - v);
     let settled = step_px < SETTLED_PX && off_px < 0.5 * window.reach as f64 && numbers[LIGHT] > 0.0;
-    (settled && freedom >= 1.0).then(|| Fitted { numbers, covariance: factor.inverse(), chi2, freedom, cost })
+    (settled && freedom >= 1.0).then(|| Fitted { numbers, covariance: factor.inverse(), chi2, freedom, rest_of_cost: cost })
 }
 
 fn sums<const N: usize>(
@@ -212,7 +205,7 @@ fn sums<const N: usize>(
     noise: PixelNoise,
 ) -> Sums<N> {
     let (light, level) = (Lanes::splat(numbers[LIGHT] as f32), Lanes::splat(numbers[LEVEL] as f32));
-    let spilling = shape.spill(numbers).number;
+    let spilling = shape.spill(numbers).numbers;
     let [mut chi2, mut pixels, mut log_variances] = [Lanes::ZERO; 3];
     let mut products = [[Lanes::ZERO; N]; N];
     let mut right = [Lanes::ZERO; N];
@@ -247,7 +240,7 @@ fn weighed<const N: usize>(
     light: Lanes,
     level: Lanes,
     noise: PixelNoise,
-    spilling: Option<usize>,
+    spilling: Option<[usize; 2]>,
 ) -> ([Lanes; N], Lanes, Lanes) {
     let (share, mut columns) = shape.shares(four.row, four.column, numbers);
     let own = light * share;
@@ -256,8 +249,10 @@ fn weighed<const N: usize>(
     }
     columns[LIGHT] = share;
     columns[LEVEL] = Lanes::ONE;
-    if let Some(number) = spilling {
-        columns[number] = four.by_spill;
+    if let Some(spilling) = spilling {
+        for (number, by_spill) in spilling.into_iter().zip(four.by_spill) {
+            columns[number] = by_spill;
+        }
     }
     let model = own + level + four.others + four.spilled;
     let wrong = Lanes::splat(noise.shape) * own;
@@ -284,7 +279,7 @@ pub(super) fn residuals<const N: usize>(
     let numbers = &fitted.numbers;
     shape.place(numbers[U], numbers[V], numbers, window.reach);
     let (light, level) = (Lanes::splat(numbers[LIGHT] as f32), Lanes::splat(numbers[LEVEL] as f32));
-    let spilling = shape.spill(numbers).number;
+    let spilling = shape.spill(numbers).numbers;
     for four in &window.fours {
         let (columns, residual, weight) = weighed(four, shape, numbers, light, level, noise, spilling);
         let own = (light * columns[LIGHT]).to_array();

@@ -5,24 +5,33 @@
 //! any camera, and each frame's spots count like more pixels of one great fit: the same frames in the same order
 //! give the same belief.
 
-use nalgebra::{Matrix3, Matrix4, SVector, Vector3, Vector4};
+use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 
-use super::fit::{PixelNoise, Shape, Spill, WIDTH};
+use super::fit::{PixelNoise, Shape, WIDTH};
 use super::settings::Noise;
+use super::window::Spill;
 use crate::lanes::Lanes;
 use crate::optics::{Placed, PointSpread, Profile, Shares};
 
-/// Logarithm of the core's sigma, share of the halo, logarithm of the halo's sigma, share of the excess that spills: what is believed of any lens, and how far.
-const BELIEVED: [f64; 4] = [-0.6, 0.2, 0.9, 0.3];
-const KNOWN: [f64; 4] = [0.6, 0.25, 0.4, 0.4];
+/// Numbers that are learnt ...
+pub(super) const NUMBERS: usize = 5;
+/// ... and the unknowns of a spot with them.
+pub(super) const UNKNOWNS: usize = WIDTH + NUMBERS;
+/// Logarithm of the core's sigma, share of the halo, logarithm of the halo's sigma, share of the excess that spills, logarithm of
+/// the full well over what reads as full: what is believed of any lens, and how far.
+const BELIEVED: [f64; NUMBERS] = [-0.6, 0.2, 0.9, 0.3, 0.7];
+const KNOWN: [f64; NUMBERS] = [0.6, 0.2, 0.4, 0.4, 0.7];
+/// Sigma of the logarithm of a full well over what reads as full where these are one.
+const SAME_WELL: f64 = 0.03;
 /// Each of them is no less and no more.
-const LEAST: [f64; 4] = [-1.6, 0.0, 0.2, 0.0];
-const MOST: [f64; 4] = [1.1, 0.9, 1.9, 1.0];
+const LEAST: [f64; NUMBERS] = [-1.6, 0.0, 0.2, 0.0, 0.0];
+const MOST: [f64; NUMBERS] = [1.1, 0.9, 1.9, 1.0, 3.0];
 /// A belief this sure, per number, is good enough to fit spots with alone.
-const SURE: [f64; 4] = [0.03, 0.03, 0.3, 0.1];
+const SURE: [f64; NUMBERS] = [0.03, 0.03, 0.3, f64::INFINITY, f64::INFINITY];
 
 /// The number that says how much spills, and how wrong the charge is that spills into a pixel, as a share of it.
 const SPILL: usize = WIDTH + 3;
+const WELL: usize = WIDTH + 4;
 const SPILL_ERROR: f64 = 0.3;
 
 /// What is believed of the variance of a pixel: the share of its light by which the point spread is wrong ...
@@ -32,23 +41,31 @@ const PARTS_KNOWN: [f64; 3] = [1.0, 1.0, 1.5];
 /// Bins of pixels by their light: from 1 grey level on, an octave each.
 const BINS: usize = 9;
 
+type Numbers = SVector<f64, NUMBERS>;
+type Information = SMatrix<f64, NUMBERS, NUMBERS>;
+
 /// What is believed of a camera's optics.
 #[derive(Debug)]
 pub(super) struct Belief {
-    numbers: Vector4<f64>,
+    numbers: Numbers,
     /// Information on the numbers and its product with them, from all frames.
-    information: Matrix4<f64>,
-    weighted: Vector4<f64>,
+    information: Information,
+    weighted: Numbers,
     spread: PointSpread,
     by_number: [PointSpread; 3],
     noise: NoiseBins,
 }
 
 impl Belief {
-    pub(super) fn new(noise: Noise) -> Self {
-        let weights = KNOWN.map(|sigma| 1.0 / (sigma * sigma));
-        let information = Matrix4::from_diagonal(&Vector4::from(weights));
-        let numbers = Vector4::from(BELIEVED);
+    /// What is believed before a frame is seen of a camera whose full pixels read `full_from` or more: where that is less than the
+    /// converter's end, it is the well that is full.
+    pub(super) fn new(noise: Noise, full_from: u8) -> Self {
+        let (mut numbers, mut known) = (Numbers::from(BELIEVED), KNOWN);
+        if full_from < u8::MAX {
+            (numbers[NUMBERS - 1], known[NUMBERS - 1]) = (0.0, SAME_WELL);
+        }
+        let weights = known.map(|sigma| 1.0 / (sigma * sigma));
+        let information = Information::from_diagonal(&Numbers::from(weights));
         let mut belief = Self {
             numbers,
             information,
@@ -67,7 +84,7 @@ impl Belief {
 
     /// The share of the excess of full pixels that spills.
     pub(super) fn spill(&self) -> Spill {
-        Spill { share: self.numbers[3], relative_error: SPILL_ERROR, number: None }
+        Spill { share: self.numbers[3], ln_well: self.numbers[4], relative_error: SPILL_ERROR, numbers: None }
     }
 
     pub(super) fn noise(&self) -> PixelNoise {
@@ -84,9 +101,9 @@ impl Belief {
         self.sigmas().iter().zip(SURE).all(|(sigma, sure)| *sigma < sure)
     }
 
-    pub(super) fn debug(&self) -> String { format!("core {:.3} q {:.3} halo {:.3} sig {:.3?} noise {:?}", self.core_px(), self.numbers[1], libm::exp(self.numbers[2]), self.sigmas(), self.noise.noise) }
-    fn sigmas(&self) -> [f64; 4] {
-        let covariance = self.information.try_inverse().unwrap_or_else(Matrix4::zeros);
+    pub(super) fn debug(&self) -> String { format!("spill {:.3} well {:.3} core {:.3} q {:.3} halo {:.3} sig {:.3?} noise {:?}", self.numbers[3], self.numbers[4], self.core_px(), self.numbers[1], libm::exp(self.numbers[2]), self.sigmas(), self.noise.noise) }
+    fn sigmas(&self) -> [f64; NUMBERS] {
+        let covariance = self.information.try_inverse().unwrap_or_else(Information::zeros);
         std::array::from_fn(|i| covariance[(i, i)].max(0.0).sqrt())
     }
 
@@ -103,10 +120,10 @@ impl Belief {
         let weighted = self.weighted + told.weighted + told.information * self.numbers;
         let Some(covariance) = information.try_inverse() else { return false };
         let mut numbers = covariance * weighted;
-        for i in 0..4 {
+        for i in 0..NUMBERS {
             numbers[i] = numbers[i].clamp(LEAST[i], MOST[i]).clamp(self.numbers[i] - 0.5, self.numbers[i] + 0.5);
         }
-        let moved = (0..4).any(|i| {
+        let moved = (0..NUMBERS).any(|i| {
             let sigma = covariance[(i, i)].max(0.0).sqrt();
             (numbers[i] - self.numbers[i]).abs() > (0.5 * sigma).max(0.002)
         });
@@ -118,12 +135,12 @@ impl Belief {
     }
 
     /// Keeps what a frame's spots said for good.
-    pub(super) fn keep(&mut self, told: &Told, numbers: Vector4<f64>) {
+    pub(super) fn keep(&mut self, told: &Told, numbers: Numbers) {
         self.information += told.information;
         self.weighted += told.weighted + told.information * numbers;
     }
 
-    pub(super) fn numbers(&self) -> Vector4<f64> {
+    pub(super) fn numbers(&self) -> Numbers {
         self.numbers
     }
 
@@ -157,20 +174,20 @@ impl Belief {
 /// What the spots of a frame say of the numbers.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Told {
-    information: Matrix4<f64>,
-    weighted: Vector4<f64>,
+    information: Information,
+    weighted: Numbers,
 }
 
 impl Told {
     /// Adds a spot that was fitted with the numbers free: its answer and covariance, with what was believed beforehand taken out.
-    pub(super) fn add(&mut self, answer: &SVector<f64, 8>, covariance: &Matrix4<f64>, weights: [f64; 4], trust: f64) {
+    pub(super) fn add(&mut self, answer: &SVector<f64, UNKNOWNS>, covariance: &Information, weights: [f64; NUMBERS], trust: f64) {
         let Some(information) = covariance.try_inverse() else { return };
-        let own = (information - Matrix4::from_diagonal(&Vector4::from(weights))) * trust;
+        let own = (information - Information::from_diagonal(&Numbers::from(weights))) * trust;
         // Rounding must not take away what was known.
-        if (0..4).any(|i| own[(i, i)] < 0.0) {
+        if (0..NUMBERS).any(|i| own[(i, i)] < 0.0) {
             return;
         }
-        let answer = Vector4::from_fn(|i, _| answer[WIDTH + i]);
+        let answer = Numbers::from_fn(|i, _| answer[WIDTH + i]);
         self.information += own;
         self.weighted += information * answer * trust;
     }
@@ -179,16 +196,16 @@ impl Told {
 /// A point whose spread is not known yet: differences of the three numbers from what is believed are free.
 pub(super) struct FreeSpread<'a> {
     belief: &'a Belief,
-    pub(super) weights: [f64; 4],
+    pub(super) weights: [f64; NUMBERS],
     placed: Option<[Placed<'a>; 4]>,
 }
 
-impl Shape<8> for FreeSpread<'_> {
+impl Shape<UNKNOWNS> for FreeSpread<'_> {
     #[inline(always)]
-    fn shares(&self, row: usize, column: usize, numbers: &SVector<f64, 8>) -> (Lanes, [Lanes; 8]) {
-        let Some([spread, by_number @ ..]) = &self.placed else { return (Lanes::ZERO, [Lanes::ZERO; 8]) };
+    fn shares(&self, row: usize, column: usize, numbers: &SVector<f64, UNKNOWNS>) -> (Lanes, [Lanes; UNKNOWNS]) {
+        let Some([spread, by_number @ ..]) = &self.placed else { return (Lanes::ZERO, [Lanes::ZERO; UNKNOWNS]) };
         let Shares { mut share, by_u, by_v, .. } = spread.four(row, column);
-        let mut columns = [Lanes::ZERO; 8];
+        let mut columns = [Lanes::ZERO; UNKNOWNS];
         (columns[0], columns[1]) = (by_u, by_v);
         for (i, by_number) in by_number.iter().enumerate() {
             columns[WIDTH + i] = by_number.four(row, column).share;
@@ -197,7 +214,7 @@ impl Shape<8> for FreeSpread<'_> {
         (share, columns)
     }
 
-    fn place(&mut self, u: f64, v: f64, _: &SVector<f64, 8>, reach: usize) {
+    fn place(&mut self, u: f64, v: f64, _: &SVector<f64, UNKNOWNS>, reach: usize) {
         let [a, b, c] = &self.belief.by_number;
         let spreads = [&self.belief.spread, a, b, c];
         self.placed = Some(spreads.map(|spread| spread.placed(u as f32, v as f32, reach)));
@@ -207,9 +224,13 @@ impl Shape<8> for FreeSpread<'_> {
         (0.0, self.weights[number - WIDTH])
     }
 
-    fn spill(&self, numbers: &SVector<f64, 8>) -> Spill {
-        let share = self.belief.numbers[3] + numbers[SPILL];
-        Spill { share, relative_error: SPILL_ERROR, number: Some(SPILL) }
+    fn spill(&self, numbers: &SVector<f64, UNKNOWNS>) -> Spill {
+        Spill {
+            share: self.belief.numbers[3] + numbers[SPILL],
+            ln_well: (self.belief.numbers[4] + numbers[WELL]).max(0.0),
+            relative_error: SPILL_ERROR,
+            numbers: Some([SPILL, WELL]),
+        }
     }
 }
 

@@ -10,19 +10,21 @@ use nalgebra::{Matrix2, SVector};
 
 use super::Spot;
 use super::centroid::{self, PixelVariance};
-use super::fit::{self, Fitted, PixelNoise, PointSource, Spill, WIDTH};
+use super::fit::{self, Fitted, PixelNoise, PointSource, WIDTH};
 use super::full_level::FullLevel;
-use super::learning::{Belief, Told};
+use super::learning::{Belief, NUMBERS, Told};
 use super::neighbourhood::Neighbourhood;
 use super::part::Part;
 use super::patch::{self, Patch, Surroundings};
 use super::rejection::Reason;
-use super::settings::{Brightness, Settings};
-use super::window::{WIDEST_PX, Window, nearest_pixel};
+use super::settings::{Brightness, Noise, Settings};
+use super::window::{Spill, WIDEST_PX, Window, nearest_pixel};
 use crate::camera::Pixel;
 use crate::frame::FrameView;
-use crate::optics::{Measured, Optics, PointSpread};
+use crate::optics::{Measured, Optics, PointSpread, Sensor};
 
+/// Error of measured charge that spills into a pixel, over that.
+const SPILL_ERROR: f64 = 0.1;
 /// Standard deviation of a place known to lie somewhere in one pixel, px.
 const WITHIN_A_PIXEL: f64 = 0.288_675_134_594_812_9;
 /// A part whose disc is wider than this is no point's light, px.
@@ -41,6 +43,17 @@ const PIXELS_OF_ALL: f64 = 30.0;
 const NO_POINT: f64 = 25.0;
 /// Error of the centre of a saturated core of no pixels at all, px; it falls with the root of their number.
 const SATURATION_BLUR_PX: f64 = 0.13;
+/// Levels of full pixels that differ by no more are one, grey levels.
+const SAME_LEVEL_DN: u8 = 4;
+/// Error of light over that of the shape: of a spot that is seen whole, of one of which only the wings are.
+const WHOLE: f64 = 0.5;
+const WINGS: f64 = 1.0;
+/// Error of a centre that a wrong shape makes, px; it grows with the square of the shape's error.
+const MISSHAPEN_PX: f64 = 1.0;
+/// Share of the light of its brightest pixel that the eight around it get of a point, at least.
+const LEAST_AROUND: f32 = 0.12;
+/// Error of the light of a spot whose charge spills, over the light and the share that spills.
+const SPILT_LIGHT: f64 = 0.3;
 /// Rounds in which a frame's spots and the point spread are fitted to each other.
 const ROUNDS: usize = 5;
 /// Frames after which a belief that is sure of itself learns no more of the spread.
@@ -61,6 +74,7 @@ struct Model {
 #[derive(Debug)]
 pub(super) struct Meter {
     optics: Option<Arc<Optics>>,
+    noise: Noise,
     belief: Belief,
     full_level: FullLevel,
     frames: u32,
@@ -73,7 +87,8 @@ impl Meter {
     pub(super) fn new(settings: &Settings, optics: Option<Arc<Optics>>) -> Self {
         Self {
             optics,
-            belief: Belief::new(settings.noise),
+            noise: settings.noise,
+            belief: Belief::new(settings.noise, u8::MAX),
             full_level: FullLevel::default(),
             frames: 0,
             window: Window::default(),
@@ -109,7 +124,7 @@ impl Meter {
                         }
                     });
                 }
-                let model = self.model(part, around, others);
+                let model = self.model(part, around);
                 if model.is_some() || !others {
                     self.models[index] = model;
                 }
@@ -126,7 +141,13 @@ impl Meter {
             for part in parts.iter().filter(|part| part.reason.is_none() && part.outline.area_px > 2) {
                 self.full_level.add(frame, &part.outline.extent, part.outline.peak);
             }
+            let before = self.full_level.lowest();
             self.full_level.settle();
+            // What was learnt of spots whose tops were cut off unnoticed was wrong.
+            if self.full_level.lowest().abs_diff(before) > SAME_LEVEL_DN {
+                self.belief = Belief::new(self.noise, self.full_level.lowest());
+                self.frames = 0;
+            }
         }
         self.full_level.lowest()
     }
@@ -173,7 +194,7 @@ impl Meter {
 
     /// By a balanced window: what is no point's light.
     fn balanced(&self, part: &Part, window_px: f64, around: Surroundings) -> (Pixel, Matrix2<f64>) {
-        let noise = self.noise(around);
+        let noise = self.pixel_noise(around);
         let variance = PixelVariance { dark: noise.dark, shot: noise.shot };
         let anywhere = Matrix2::from_diagonal_element(WITHIN_A_PIXEL * WITHIN_A_PIXEL);
         let balanced = centroid::balance(&self.patch, part.guess, window_px as f32, variance);
@@ -196,7 +217,7 @@ impl Meter {
     }
 
     /// Noise of a pixel, the frame's own where that is more.
-    fn noise(&self, around: Surroundings) -> PixelNoise {
+    fn pixel_noise(&self, around: Surroundings) -> PixelNoise {
         let noise = match &self.optics {
             None => self.belief.noise(),
             Some(optics) => {
@@ -211,31 +232,40 @@ impl Meter {
         PixelNoise { dark: noise.dark.max(around.variance), ..noise }
     }
 
+    /// What becomes of charge above a full well.
+    fn spill(&self) -> Spill {
+        self.optics.as_ref().map_or_else(|| self.belief.spill(), |optics| measured_spill(&optics.sensor))
+    }
+
     fn guess(&self, part: &Part) -> (f64, f64, f64) {
         let (u, v) = self.window.local(part.guess);
         (u, v, self.window.flux().max(1.0))
     }
 
-    fn model(&mut self, part: &Part, around: Surroundings, others: bool) -> Option<Model> {
-        let noise = self.noise(around);
+    fn model(&mut self, part: &Part, around: Surroundings) -> Option<Model> {
+        let noise = self.pixel_noise(around);
         let guess = self.guess(part);
         let is_sure = self.optics.is_some() || self.belief.is_sure();
         if is_sure {
             let spread = spread(self.optics.as_deref(), &self.belief, part.guess);
-            let spill = self.optics.as_ref().map_or_else(
-                || self.belief.spill(),
-                |optics| Spill { share: optics.sensor.spill.value, relative_error: 0.2, number: None },
-            );
+            let spill = self.spill();
             let fitted = fit::fit(&mut self.window, &mut PointSource::new(spread, SIZE_PX2, spill), guess, noise)?;
-            self.told(&fitted, others)
+            self.told(&fitted, noise)
         } else {
             let fitted = fit::fit(&mut self.window, &mut self.belief.free(), guess, noise)?;
-            self.told(&fitted, others)
+            self.told(&fitted, noise)
         }
     }
 
+    /// Whether light fell on the window: no lens is so sharp that, wherever in a pixel a point's light falls, the eight pixels around the
+    /// brightest get less than [`LEAST_AROUND`] of what it gets. What is sharper is a hot pixel.
+    fn is_light(&self, noise: PixelNoise) -> bool {
+        let (peak, around) = self.window.peak_and_around();
+        around > LEAST_AROUND * peak + 3.0 * (8.0 * noise.dark).sqrt()
+    }
+
     /// What a fit says of a spot.
-    fn told<const N: usize>(&self, fitted: &Fitted<N>, _others: bool) -> Option<Model> {
+    fn told<const N: usize>(&self, fitted: &Fitted<N>, noise: PixelNoise) -> Option<Model> {
         let misfit = fitted.chi2 / fitted.freedom;
         if std::env::var("DBG").is_ok() { eprintln!("   N{N} full {} reach {} chi2 {:.1} free {} n {:?} sig {:?}", self.window.full_px, self.window.reach, fitted.chi2, fitted.freedom, fitted.numbers.as_slice(), fitted.covariance.diagonal().map(|v| v.sqrt()).as_slice()); }
         if misfit > NO_POINT {
@@ -243,10 +273,18 @@ impl Meter {
         }
         let noisier = (fitted.chi2 + PIXELS_OF_ALL) / (fitted.freedom + PIXELS_OF_ALL);
         let noisier = if misfit > 2.0 { misfit } else { noisier };
+        // How much of its light falls where it is seen is as unsure as the shape is, more so where only its wings are.
+        let shape = f64::from(noise.shape);
+        let is_full = self.window.full_px > 0;
+        let spills = if is_full { self.window.spilled_share() } else { 0.0 };
+        let unsure = fitted.light() * (shape * if is_full { WINGS } else { WHOLE } + SPILT_LIGHT * spills);
+        let full_px = f64::from(self.window.full_px);
+        let blur_px2 = spills * SATURATION_BLUR_PX * SATURATION_BLUR_PX / (full_px + 4.0)
+            + (MISSHAPEN_PX * shape * shape) * (MISSHAPEN_PX * shape * shape);
         Some(Model {
             centre: self.window.place(fitted.numbers[0], fitted.numbers[1]),
-            covariance_px2: fitted.centre_covariance_px2() * noisier,
-            light: Measured { value: fitted.light(), sigma: (fitted.light_variance() * noisier).sqrt() },
+            covariance_px2: fitted.centre_covariance_px2() * noisier + Matrix2::from_diagonal_element(blur_px2),
+            light: Measured { value: fitted.light(), sigma: (fitted.light_variance() * noisier + unsure * unsure).sqrt() },
             misfit,
         })
     }
@@ -271,13 +309,16 @@ impl Meter {
                     continue;
                 }
                 let (_, around) = self.open(frame, part, f64::INFINITY, full_from);
-                let (noise, guess) = (self.noise(around), self.guess(part));
+                let (noise, guess) = (self.pixel_noise(around), self.guess(part));
+                if !self.is_light(noise) {
+                    continue;
+                }
                 let mut shape = self.belief.free();
                 let weights = shape.weights;
                 let Some(fitted) = fit::fit(&mut self.window, &mut shape, guess, noise) else { continue };
                 let misfit = fitted.chi2 / fitted.freedom;
                 if misfit < NO_POINT {
-                    let widths = fitted.covariance.fixed_view::<4, 4>(WIDTH, WIDTH).into_owned();
+                    let widths = fitted.covariance.fixed_view::<NUMBERS, NUMBERS>(WIDTH, WIDTH).into_owned();
                     told.add(&fitted.numbers, &widths, weights, 1.0 / misfit.max(1.0));
                     any = true;
                 }
@@ -307,12 +348,11 @@ impl Meter {
                 continue;
             }
             let (_, around) = self.open(frame, part, f64::INFINITY, full_from);
-            if self.window.full_px > 0 {
+            if self.window.full_px > 0 || !self.is_light(self.pixel_noise(around)) {
                 continue;
             }
             let (noise, guess) = (self.belief.noise(), self.guess(part));
             let mut bins = *self.belief.noise_bins();
-            let _ = around;
             let mut shape = PointSource::new(self.belief.spread(), SIZE_PX2, self.belief.spill());
             if let Some(fitted) = fit::fit(&mut self.window, &mut shape, guess, noise) {
                 if fitted.chi2 / fitted.freedom < NO_POINT {
@@ -328,6 +368,13 @@ impl Meter {
 /// The point spread at a place.
 fn spread<'a>(optics: Option<&'a Optics>, belief: &'a Belief, place: Pixel) -> &'a PointSpread {
     optics.map_or_else(|| belief.spread(), |optics| optics.spread.at(place))
+}
+
+/// What spills, as measured.
+fn measured_spill(sensor: &Sensor) -> Spill {
+    let over = sensor.full_well_dn.map_or(1.0, |well| well.value / sensor.saturation.level_dn);
+    let ln_well = libm::log(over.max(1.0));
+    Spill { share: sensor.spill.value, ln_well, relative_error: SPILL_ERROR, numbers: None }
 }
 
 /// How far the window on a part reaches, px.

@@ -27,10 +27,11 @@ pub(super) struct Four {
     /// Light that is not this spot's, grey levels, and its variance.
     pub(super) others: Lanes,
     pub(super) others_variance: Lanes,
-    /// Charge that spills over from full pixels, grey levels, its variance, and how it grows with the share that spills.
+    /// Charge that spills over from full pixels, grey levels, its variance, and how it grows with the share that
+    /// spills and with the logarithm of the well.
     pub(super) spilled: Lanes,
     pub(super) spilled_variance: Lanes,
-    pub(super) by_spill: Lanes,
+    pub(super) by_spill: [Lanes; 2],
 }
 
 /// The pixels around a spot.
@@ -46,13 +47,28 @@ pub(super) struct Window {
     /// Signal of a full pixel in the middle of the window, grey levels.
     full_dn: f32,
     charge: Vec<f32>,
-    spilled: Vec<f32>,
-    room: Vec<f32>,
+    /// What each pixel gives on.
+    given: Vec<f32>,
 }
 
-/// Rounds in which charge spills on, at most.
-const ROUNDS: usize = 24;
-/// Step of the share of charge that spills, for its derivative.
+/// What becomes of charge above a full well.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Spill {
+    /// Share of it that spills into the neighbours.
+    pub(super) share: f64,
+    /// Logarithm of the charge of a full well over that of a pixel that reads as full.
+    pub(super) ln_well: f64,
+    /// Error of the charge that spills into a pixel, over that.
+    pub(super) relative_error: f64,
+    /// Which of the unknowns share and logarithm are, where they are unknown.
+    pub(super) numbers: Option<[usize; 2]>,
+}
+
+/// Rounds in which charge spills on, at most; how far each goes past its answer; a change by which all is done, grey levels.
+const ROUNDS: usize = 40;
+const OVER_RELAXED: f32 = 1.5;
+const DONE_DN: f32 = 0.5;
+/// Step of the share of charge that spills and of the logarithm of the well, for slopes.
 const SPILL_STEP: f64 = 0.05;
 
 impl Window {
@@ -71,6 +87,7 @@ impl Window {
         (self.middle, self.reach, self.full_px) = ((u, v), reach as usize, 0);
         self.full_dn = f32::from(full_from) - around.level;
         self.fours.clear();
+        self.given.clear();
         let side = 2 * reach + 1;
         let room_px2 = (radius_px * radius_px) as f32;
         let width = frame.width() as i32;
@@ -108,9 +125,9 @@ impl Window {
         }
     }
 
-    /// Lets charge above that of a full pixel spill, `share` of it into the four neighbours and the rest away, until no pixel has more;
-    /// `model` is the light of a pixel without that.
-    pub(super) fn overflow(&mut self, share: f64, relative_error: f64, model: impl Fn(&Four) -> Lanes) {
+    /// Lets charge above a full well spill: a share of it into the four neighbours and the rest away, until no pixel has more; `model` is
+    /// the light of a pixel without that. Slopes by the share and by the logarithm of the well are worked out on demand.
+    pub(super) fn overflow(&mut self, spill: &Spill, model: impl Fn(&Four) -> Lanes) {
         let side = 2 * self.reach + 1;
         let stride = side + LANES + 1;
         self.charge.clear();
@@ -119,49 +136,62 @@ impl Window {
             let at = (four.row + 1) * stride + four.column + 1;
             self.charge[at..at + LANES].copy_from_slice(&(model(four) + four.others).to_array());
         }
-        let full_dn = self.full_dn;
-        let spill = |share: f64, charge: &[f32], spilled: &mut Vec<f32>| {
-            let quarter = 0.25 * share.clamp(0.0, 1.0) as f32;
-            spilled.clear();
-            spilled.resize(charge.len(), 0.0);
-            if quarter <= 0.0 {
-                return;
+        let well_dn = self.full_dn * libm::exp(spill.ln_well) as f32;
+        let relative_error = Lanes::splat(spill.relative_error as f32);
+        // What pixels gave on in the step before is where to begin, unless it was of another window.
+        if self.given.len() != self.charge.len() {
+            self.given.clear();
+            self.given.resize(self.charge.len(), 0.0);
+        }
+        self.spill(spill.share, well_dn, stride);
+        self.told(spill.share, stride, |four, spilled| {
+            four.spilled = spilled;
+            four.spilled_variance = (spilled * relative_error) * (spilled * relative_error);
+            four.by_spill = [Lanes::ZERO; 2];
+        });
+        if spill.numbers.is_none() {
+            return;
+        }
+        let per_step = Lanes::splat((1.0 / SPILL_STEP) as f32);
+        self.spill(spill.share + SPILL_STEP, well_dn, stride);
+        self.told(spill.share + SPILL_STEP, stride, |four, spilled| {
+            four.by_spill[0] = (spilled - four.spilled) * per_step;
+        });
+        self.spill(spill.share, well_dn * (1.0 + SPILL_STEP as f32), stride);
+        self.told(spill.share, stride, |four, spilled| four.by_spill[1] = (spilled - four.spilled) * per_step);
+    }
+
+    /// Works out what each pixel gives on so that none holds more than a well: given = max(0, charge - well + what the neighbours
+    /// give), by over-relaxation, there and back, so that no side is preferred.
+    fn spill(&mut self, share: f64, well_dn: f32, stride: usize) {
+        let quarter = 0.25 * share.clamp(0.0, 1.0) as f32;
+        let (first, last) = (stride + 1, self.charge.len() - stride - 1);
+        let given = &mut self.given;
+        for round in 0..ROUNDS {
+            let mut most = 0.0_f32;
+            for step in 0..last - first {
+                let at = if round % 2 == 0 { first + step } else { last - 1 - step };
+                let received = quarter * (given[at - 1] + given[at + 1] + given[at - stride] + given[at + stride]);
+                let wanted = self.charge[at] - well_dn + received;
+                let new = (given[at] + OVER_RELAXED * (wanted - given[at])).max(0.0);
+                most = most.max((new - given[at]).abs());
+                given[at] = new;
             }
-            // What a pixel has given on so far: it gives on all above the full well.
-            for _ in 0..ROUNDS {
-                let mut most = 0.0_f32;
-                for row in 1..=side {
-                    for at in row * stride + 1..row * stride + 1 + side {
-                        let excess = charge[at] + spilled[at] - full_dn;
-                        if excess > 0.5 {
-                            most = most.max(excess);
-                            spilled[at] -= excess;
-                            for neighbour in [at - 1, at + 1, at - stride, at + stride] {
-                                spilled[neighbour] += quarter * excess;
-                            }
-                        }
-                    }
-                }
-                if most < 1.0 {
-                    break;
-                }
+            if most < DONE_DN {
+                break;
             }
-        };
-        let mut further = std::mem::take(&mut self.spilled);
-        let mut spilled = std::mem::take(&mut self.room);
-        spill(share, &self.charge, &mut spilled);
-        spill(share + SPILL_STEP, &self.charge, &mut further);
+        }
+    }
+
+    /// Tells every four pixels what they have been given; what is full reads as full whatever it gives on.
+    fn told(&mut self, share: f64, stride: usize, with: impl Fn(&mut Four, Lanes)) {
+        let quarter = Lanes::splat(0.25 * share.clamp(0.0, 1.0) as f32);
         for four in &mut self.fours {
             let at = (four.row + 1) * stride + four.column + 1;
-            let read = |from: &[f32]| from[at..].first_chunk::<LANES>().map_or(Lanes::ZERO, |&four| Lanes::new(four));
-            // What is full reads as full whatever it gives on.
-            let (now, then) = (lanes::positive(read(&spilled)), lanes::positive(read(&further)));
-            four.spilled = now;
-            four.by_spill = (then - now) * Lanes::splat((1.0 / SPILL_STEP) as f32);
-            let wrong = now * Lanes::splat(relative_error as f32);
-            four.spilled_variance = wrong * wrong;
+            let read = |at: usize| self.given[at..].first_chunk::<LANES>().map_or(Lanes::ZERO, |&four| Lanes::new(four));
+            let received = read(at - 1) + read(at + 1) + read(at - stride) + read(at + stride);
+            with(four, lanes::positive(quarter * received - read(at)));
         }
-        (self.spilled, self.room) = (further, spilled);
     }
 
     /// A place in the image as seen from the middle of the window.
@@ -197,6 +227,36 @@ impl Window {
         for four in &mut self.fours {
             (four.others, four.others_variance) = (Lanes::ZERO, Lanes::ZERO);
         }
+    }
+
+    /// How much of what is seen has spilled over from full pixels, 0 to 1.
+    pub(super) fn spilled_share(&self) -> f64 {
+        let sum = |of: &dyn Fn(&Four) -> Lanes| {
+            f64::from(lanes::sum(self.fours.iter().fold(Lanes::ZERO, |sum, four| sum + of(four) * four.counts)))
+        };
+        let spilled = sum(&|four| four.spilled * (Lanes::ONE - four.full));
+        let seen = sum(&|four| lanes::positive(four.signal) * (Lanes::ONE - four.full));
+        (spilled / seen.max(spilled).max(1.0)).clamp(0.0, 1.0)
+    }
+
+    /// The signal of the brightest pixel, and that of the eight around it, grey levels.
+    pub(super) fn peak_and_around(&self) -> (f32, f32) {
+        let mut peak = (f32::NEG_INFINITY, 0, 0);
+        let lanes_of = |four: &Four| (four.signal * four.counts).to_array();
+        for four in &self.fours {
+            for (lane, signal) in lanes_of(four).into_iter().enumerate() {
+                if signal > peak.0 {
+                    peak = (signal, four.row, four.column + lane);
+                }
+            }
+        }
+        let mut around = -peak.0;
+        for four in self.fours.iter().filter(|four| four.row.abs_diff(peak.1) <= 1) {
+            for (lane, signal) in lanes_of(four).into_iter().enumerate() {
+                around += if (four.column + lane).abs_diff(peak.2) <= 1 { signal } else { 0.0 };
+            }
+        }
+        (peak.0, around)
     }
 
     /// All signal that counts, grey levels.

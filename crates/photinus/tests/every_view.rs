@@ -93,6 +93,7 @@ fn spot(place: Pixel, flux: f64, rng: &mut Pcg64) -> Spot {
         peak: 200,
         saturated_px: 0,
         flux,
+        light: None,
         background: 5.0,
         middle,
         extent: Extent { left: middle.0 - 1, top: middle.1 - 1, right: middle.0 + 1, bottom: middle.1 + 1 },

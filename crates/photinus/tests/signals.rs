@@ -103,6 +103,7 @@ fn spot(centre: Pixel, flux: f64) -> Spot {
         peak: 200,
         saturated_px: 0,
         flux,
+        light: None,
         background: 5.0,
         middle,
         extent: Extent { left: middle.0 - 1, top: middle.1 - 1, right: middle.0 + 1, bottom: middle.1 + 1 },

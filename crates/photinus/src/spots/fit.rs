@@ -18,8 +18,10 @@ use crate::lanes::{self, Lanes};
 use crate::optics::{PointSpread, Shares};
 
 /// Steps of Gauss and Newton at most; of a spot with full pixels, whose set of pixels that count changes.
-const STEPS: usize = 5;
+const STEPS: usize = 8;
 const STEPS_OF_FULL: usize = 12;
+/// Steps that are never damped.
+const UNDAMPED: usize = 3;
 /// Longest step of the centre, px.
 const LONGEST_PX: f64 = 0.5;
 /// A step shorter than this is the last, px, if it changes the light by less than this share.
@@ -27,6 +29,8 @@ const DONE_PX: f64 = 0.01;
 const DONE_SHARE: f64 = 0.01;
 /// A last step longer than this has not settled, px.
 const SETTLED_PX: f64 = 0.05;
+/// How far light is taken to change in a step, over the light.
+const LIGHT_STEP: f64 = 3.0;
 /// How far the level of the background is known beforehand, grey levels.
 const LEVEL_KNOWN_DN: f64 = 3.0;
 
@@ -157,6 +161,8 @@ fn fit_from<const N: usize>(
         let level = 1.0 / (LEVEL_KNOWN_DN * LEVEL_KNOWN_DN);
         matrix[(LEVEL, LEVEL)] += level;
         right[LEVEL] -= level * numbers[LEVEL];
+        // A step changes the light by no more than so much: where light, level and widths tell little apart, sums in 32 bits do not.
+        matrix[(LIGHT, LIGHT)] += 1.0 / (LIGHT_STEP * LIGHT_STEP * numbers[LIGHT] * numbers[LIGHT]);
         for number in WIDTH..N {
             let (mean, weight) = shape.believed(number);
             matrix[(number, number)] += weight;
@@ -173,7 +179,7 @@ fn fit_from<const N: usize>(
         step[LIGHT] = step[LIGHT].clamp(-0.6 * before, 4.0 * before);
         let step_px = libm::hypot(step[U], step[V]);
         // Weights follow the model: what overshoots once goes half as far from then on.
-        if (0..N).any(|number| step[number] * previous[number] < -0.25 * previous[number] * previous[number]) {
+        if step_number >= UNDAMPED && (0..N).any(|number| step[number] * previous[number] < -0.25 * previous[number] * previous[number]) {
             gain *= 0.5;
         }
         step *= gain;

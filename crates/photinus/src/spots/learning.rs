@@ -17,22 +17,25 @@ use crate::optics::{Placed, PointSpread, Profile, Shares};
 pub(super) const NUMBERS: usize = 5;
 /// ... and the unknowns of a spot with them.
 pub(super) const UNKNOWNS: usize = WIDTH + NUMBERS;
-/// Logarithm of the core's sigma, share of the halo, logarithm of the halo's sigma, share of the excess that spills, logarithm of
+/// Logarithm of the core's sigma, share of the halo, logarithm of the halo's sigma over the core's, share of the excess that spills, logarithm of
 /// the full well over what reads as full: what is believed of any lens, and how far.
-const BELIEVED: [f64; NUMBERS] = [-0.6, 0.2, 0.9, 0.3, 0.7];
-const KNOWN: [f64; NUMBERS] = [0.6, 0.2, 0.4, 0.4, 0.7];
+const BELIEVED: [f64; NUMBERS] = [-0.6, 0.1, 1.3, 0.3, 0.7];
+const KNOWN: [f64; NUMBERS] = [0.6, 0.2, 0.5, 0.4, 0.7];
 /// Sigma of the logarithm of a full well over what reads as full where these are one.
 const SAME_WELL: f64 = 0.03;
 /// Each of them is no less and no more.
-const LEAST: [f64; NUMBERS] = [-1.6, 0.0, 0.2, 0.0, 0.0];
-const MOST: [f64; NUMBERS] = [1.1, 0.9, 1.9, 1.0, 3.0];
+const LEAST: [f64; NUMBERS] = [-1.6, 0.0, 0.5, 0.0, 0.0];
+const MOST: [f64; NUMBERS] = [1.1, 0.9, 2.5, 1.0, 3.0];
 /// A belief this sure, per number, is good enough to fit spots with alone.
-const SURE: [f64; NUMBERS] = [0.03, 0.03, 0.3, f64::INFINITY, f64::INFINITY];
+const SURE: [f64; NUMBERS] = [0.03, 0.1, 0.5, f64::INFINITY, f64::INFINITY];
 
 /// The number that says how much spills, and how wrong the charge is that spills into a pixel, as a share of it.
 const SPILL: usize = WIDTH + 3;
 const WELL: usize = WIDTH + 4;
 const SPILL_ERROR: f64 = 0.3;
+
+/// How far windows see, about, px.
+const SEEN_PX: f64 = 3.5;
 
 /// What is believed of the variance of a pixel: the share of its light by which the point spread is wrong ...
 const SHAPE: f64 = 0.08;
@@ -82,6 +85,13 @@ impl Belief {
         &self.spread
     }
 
+    /// Share of a point's light that falls where windows see it: how wide and strong a halo is beyond them is not known, and changes as it
+    /// is learnt.
+    pub(super) fn seen_share(&self) -> f64 {
+        let sigmas = SEEN_PX / (self.core_px() * libm::exp(self.numbers[2]));
+        1.0 - self.numbers[1] * libm::exp(-0.5 * sigmas * sigmas)
+    }
+
     /// The share of the excess of full pixels that spills.
     pub(super) fn spill(&self) -> Spill {
         Spill { share: self.numbers[3], ln_well: self.numbers[4], relative_error: SPILL_ERROR, numbers: None }
@@ -101,7 +111,7 @@ impl Belief {
         self.sigmas().iter().zip(SURE).all(|(sigma, sure)| *sigma < sure)
     }
 
-    pub(super) fn debug(&self) -> String { format!("spill {:.3} well {:.3} core {:.3} q {:.3} halo {:.3} sig {:.3?} noise {:?}", self.numbers[3], self.numbers[4], self.core_px(), self.numbers[1], libm::exp(self.numbers[2]), self.sigmas(), self.noise.noise) }
+    pub(super) fn debug(&self) -> String { format!("spill {:.3} well {:.3} core {:.3} q {:.3} halo {:.3} sig {:.3?} noise {:?}", self.numbers[3], self.numbers[4], self.core_px(), self.numbers[1], libm::exp(self.numbers[2]) * self.core_px(), self.sigmas(), self.noise.noise) }
     fn sigmas(&self) -> [f64; NUMBERS] {
         let covariance = self.information.try_inverse().unwrap_or_else(Information::zeros);
         std::array::from_fn(|i| covariance[(i, i)].max(0.0).sqrt())
@@ -111,6 +121,12 @@ impl Belief {
     pub(super) fn free(&self) -> FreeSpread<'_> {
         let weights = self.sigmas().map(|sigma| 1.0 / (sigma * sigma));
         FreeSpread { belief: self, weights, placed: None }
+    }
+
+    /// Begins to look for the core's sigma at `width_px`, before a frame has told anything.
+    pub(super) fn begin(&mut self, width_px: f64) {
+        self.numbers[0] = libm::log(width_px.clamp(0.3, 2.5));
+        self.draw();
     }
 
     /// Takes in what a frame's spots say: their information on the numbers and its product with them, differences from the numbers of
@@ -149,8 +165,8 @@ impl Belief {
     }
 
     fn draw(&mut self) {
-        let [core_px, share, halo_px] = [libm::exp(self.numbers[0]), self.numbers[1], libm::exp(self.numbers[2])];
-        let (core, halo) = (Profile::new(core_px), Profile::new(halo_px.max(1.3 * core_px)));
+        let [core_px, share, wider] = [libm::exp(self.numbers[0]), self.numbers[1], libm::exp(self.numbers[2])];
+        let (core, halo) = (Profile::new(core_px), Profile::new(core_px * wider));
         let mut add = |of: usize, terms: &[(f64, &Profile, bool)]| {
             let spread = if of == 3 { &mut self.spread } else { &mut self.by_number[of] };
             spread.clear();
@@ -165,7 +181,7 @@ impl Belief {
             spread.sort_coefficients();
         };
         add(3, &[(1.0 - share, &core, false), (share, &halo, false)]);
-        add(0, &[(1.0 - share, &core, true)]);
+        add(0, &[(1.0 - share, &core, true), (share, &halo, true)]);
         add(1, &[(1.0, &halo, false), (-1.0, &core, false)]);
         add(2, &[(share.max(0.02), &halo, true)]);
     }

@@ -54,6 +54,8 @@ const MISSHAPEN_PX: f64 = 1.0;
 const LEAST_AROUND: f32 = 0.12;
 /// Error of the light of a spot whose charge spills, over the light and the share that spills.
 const SPILT_LIGHT: f64 = 0.3;
+/// Share of spilled charge in a spot from which its residuals say nothing of noise.
+const LEAST_SPILT: f64 = 0.02;
 /// Rounds in which a frame's spots and the point spread are fitted to each other.
 const ROUNDS: usize = 5;
 /// Frames after which a belief that is sure of itself learns no more of the spread.
@@ -66,8 +68,9 @@ const TELLING_DN: f64 = 30.0;
 struct Model {
     centre: Pixel,
     covariance_px2: Matrix2<f64>,
+    /// Light that windows see, and all of it.
     light: Measured,
-    misfit: f64,
+    all_light: f64,
 }
 
 /// Measures the light of the parts of one frame.
@@ -81,6 +84,7 @@ pub(super) struct Meter {
     window: Window,
     patch: Patch,
     models: Vec<Option<Model>>,
+    widths: Vec<f64>,
 }
 
 impl Meter {
@@ -94,6 +98,7 @@ impl Meter {
             window: Window::default(),
             patch: Patch::default(),
             models: Vec::new(),
+            widths: Vec::new(),
         }
     }
 
@@ -120,7 +125,7 @@ impl Meter {
                     near.each_near(index, window_px + OTHERS_PX, |other, _| {
                         if let Some(model) = self.models[other] {
                             let spread = spread(self.optics.as_deref(), &self.belief, middle);
-                            self.window.add_other(spread, model.centre, model.light.value, OTHERS_KNOWN);
+                            self.window.add_other(spread, model.centre, model.all_light, OTHERS_KNOWN);
                         }
                     });
                 }
@@ -173,6 +178,7 @@ impl Meter {
         self.patch.read(frame, nearest_pixel(part.guess), reach_px(window_px), &around);
         let flux = self.patch.flux(part.guess, window_px as f32);
         let model = self.models[index];
+        if std::env::var("DBG").is_ok() && model.is_none() { eprintln!("NONE {:?}", part.guess); }
         let (centre, covariance_px2) = match model {
             Some(model) => (model.centre, model.covariance_px2),
             None => self.balanced(part, window_px, around),
@@ -278,14 +284,18 @@ impl Meter {
         let is_full = self.window.full_px > 0;
         let spills = if is_full { self.window.spilled_share() } else { 0.0 };
         let unsure = fitted.light() * (shape * if is_full { WINGS } else { WHOLE } + SPILT_LIGHT * spills);
+        let seen = if self.optics.is_some() { 1.0 } else { self.belief.seen_share() };
         let full_px = f64::from(self.window.full_px);
         let blur_px2 = spills * SATURATION_BLUR_PX * SATURATION_BLUR_PX / (full_px + 4.0)
             + (MISSHAPEN_PX * shape * shape) * (MISSHAPEN_PX * shape * shape);
         Some(Model {
             centre: self.window.place(fitted.numbers[0], fitted.numbers[1]),
             covariance_px2: fitted.centre_covariance_px2() * noisier + Matrix2::from_diagonal_element(blur_px2),
-            light: Measured { value: fitted.light(), sigma: (fitted.light_variance() * noisier + unsure * unsure).sqrt() },
-            misfit,
+            light: Measured {
+                value: seen * fitted.light(),
+                sigma: seen * (fitted.light_variance() * noisier + unsure * unsure).sqrt(),
+            },
+            all_light: fitted.light(),
         })
     }
 
@@ -296,9 +306,18 @@ impl Meter {
         }
         let tells = |index: usize, part: &Part| {
             let height = f64::from(part.outline.peak) - f64::from(part.level);
-            let is_plain = part.reason.is_none() && !part.outline.cut && part.radius_px < 5.0;
+            let is_plain = part.reason.is_none() && !part.outline.cut && part.radius_px < 6.5;
             is_plain && height > TELLING_DN && near.room_px(index, 9.0) >= 9.0
         };
+        if self.frames == 0 {
+            let widths = parts.iter().enumerate().filter(|(index, part)| tells(*index, part));
+            self.widths.clear();
+            self.widths.extend(widths.map(|(_, part)| part.width_px(f32::from(part.level))));
+            self.widths.sort_unstable_by(f64::total_cmp);
+            if let Some(&width_px) = self.widths.get(self.widths.len() / 2) {
+                self.belief.begin(width_px);
+            }
+        }
         let mut any = false;
         for round in 0..ROUNDS {
             let mut told = Told::default();
@@ -348,14 +367,15 @@ impl Meter {
                 continue;
             }
             let (_, around) = self.open(frame, part, f64::INFINITY, full_from);
-            if self.window.full_px > 0 || !self.is_light(self.pixel_noise(around)) {
+            if !self.is_light(self.pixel_noise(around)) {
                 continue;
             }
             let (noise, guess) = (self.belief.noise(), self.guess(part));
             let mut bins = *self.belief.noise_bins();
             let mut shape = PointSource::new(self.belief.spread(), SIZE_PX2, self.belief.spill());
             if let Some(fitted) = fit::fit(&mut self.window, &mut shape, guess, noise) {
-                if fitted.chi2 / fitted.freedom < NO_POINT {
+                let spills = self.window.full_px > 0 && self.window.spilled_share() > LEAST_SPILT;
+                if fitted.chi2 / fitted.freedom < NO_POINT && !spills {
                     fit::residuals(&self.window, &mut shape, &fitted, noise, |light, square| bins.add(light, square));
                 }
             }

@@ -3,7 +3,7 @@
 //! In: the runs of a part, in raster order. Out: its outline, a first guess of its centre, the paper's middle pixel.
 
 use super::Extent;
-use super::background::{Background, TILE_PX};
+use super::background::Background;
 use super::ledge;
 use super::rejection::{Outline, Reason};
 use super::runs::Run;
@@ -81,7 +81,8 @@ pub(super) fn outline(
         area_px += run.len();
     }
     let light = light.max(1) as f64;
-    let bright = background.row(usize::from(first.v) / TILE_PX).0[usize::from(first.start) / TILE_PX] as u8;
+    let (u, v) = (usize::from(first.start), usize::from(first.v));
+    let bright = background.threshold(u, v) as u8;
     let cut = touches_border(&extent, frame);
     let goes_on = ledge::goes_on(frame, background, runs, &extent, peak.midpoint(bright));
     let outline = Outline { extent, area_px, peak, saturated_px, masked_px, cut, goes_on, moments };
@@ -92,7 +93,7 @@ pub(super) fn outline(
         guess: Pixel::new(light_u as f64 / light, light_v as f64 / light),
         middle: middle_pixel(runs, area_px),
         bright,
-        level: background.level(usize::from(first.start), usize::from(first.v)),
+        level: background.level(u, v),
         reason: None,
     }
 }

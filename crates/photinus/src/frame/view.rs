@@ -65,7 +65,7 @@ impl<'a> FrameView<'a> {
 
     /// The pixels from row `v` on, with the padding between rows, and how far rows start from each other.
     #[inline]
-    pub(crate) fn from_row(&self, v: usize) -> (&'a [u8], usize) {
+    pub(crate) fn rows_from(&self, v: usize) -> (&'a [u8], usize) {
         (&self.data[v * self.stride..], self.stride)
     }
 }

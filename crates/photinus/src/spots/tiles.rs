@@ -91,7 +91,7 @@ impl Tiles {
 /// The highest pixel of each column of sixteen rows and, if asked for, the lowest of every fourth row; a register per tile.
 fn band_extremes<const LOW: bool>(frame: &FrameView<'_>, top: usize, high: &mut [u8x16], low: &mut [u8x16]) {
     let whole = frame.width() / TILE_PX;
-    let (pixels, stride) = frame.from_row(top);
+    let (pixels, stride) = frame.rows_from(top);
     whole_tiles::<LOW>(pixels, stride, &mut high[..whole], &mut low[..whole]);
     if whole < high.len() {
         high[whole] = highest(|v| last_columns(frame.row(top + v)));

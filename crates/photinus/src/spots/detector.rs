@@ -11,7 +11,7 @@ use super::reflections;
 use super::rejection::Reason;
 use super::runs::{Run, Runs};
 use super::settings::{Brightness, Settings, SettingsError};
-use super::splitting::Splitter;
+use super::splitting::{Ground, Splitter};
 use super::{Detections, Extent, Rejected};
 use crate::frame::{FrameError, FrameView, Mask};
 use crate::optics::Optics;
@@ -92,7 +92,9 @@ impl Detector {
         self.parts.clear();
         for component in 0..self.components.len() {
             let runs = self.components.runs(component);
-            let Some(split) = self.splitter.split(frame, runs, self.settings.noise) else {
+            let level = self.background.level(usize::from(runs[0].start), usize::from(runs[0].v));
+            let ground = Ground { level, noise: self.settings.noise };
+            let Some(split) = self.splitter.split(frame, runs, ground) else {
                 self.parts.push(outline(frame, &self.background, runs, mask));
                 continue;
             };

@@ -74,7 +74,8 @@ impl FullLevel {
         }
         let moment = |about: f64, power: i32| {
             let levels = (pile..).zip(&self.pixels[pile..=highest]);
-            levels.map(|(level, &count)| f64::from(count) * (level as f64 - about).powi(power)).sum::<f64>() / total
+            levels.map(|(level, &count)| f64::from(count) * (level as f64 - about).powi(power)).sum::<f64>()
+                / total
         };
         let mean = moment(0.0, 1);
         let spread = moment(mean, 2).sqrt();

@@ -30,6 +30,9 @@ impl Neighbourhood {
         let cell = |place: Pixel| cell_of(place.v, rows) * columns + cell_of(place.u, columns);
         self.parts.clear();
         self.parts.extend(parts);
+        if self.parts.is_empty() {
+            return;
+        }
         self.starts.clear();
         self.starts.resize(self.columns * self.rows + 1, 0);
         self.large.clear();

@@ -67,17 +67,19 @@ impl Runs {
     /// Takes in the bright rows of the tile whose first pixel is (`left`, `top`).
     fn look_into(&mut self, frame: &FrameView<'_>, background: &Background, left: usize, top: usize) {
         let threshold = u8x16::splat(background.threshold(left, top) as u8);
-        for (row, v) in self.rows.iter_mut().zip(top..frame.height()) {
-            let pixels = &frame.row(v)[left..];
-            // Past the end of a row nothing is bright: no threshold is 0.
-            let tile = pixels
-                .first_chunk()
-                .copied()
-                .unwrap_or_else(|| std::array::from_fn(|i| pixels.get(i).copied().unwrap_or(0)));
+        let (pixels, stride) = frame.rows_from(top);
+        // Past the end of a row lie other pixels, or none.
+        let own = u32::MAX >> (32 - (frame.width() - left).min(TILE_PX));
+        let lines = pixels[left..].chunks(stride).take(frame.height() - top);
+        for (row, line) in self.rows.iter_mut().zip(lines) {
+            let tile = line.first_chunk().copied().unwrap_or_else(|| {
+                let pixel = |i: usize| line.get(i).copied().unwrap_or(0);
+                std::array::from_fn(pixel)
+            });
             let tile = u8x16::new(tile);
-            let bright = tile.max(threshold).simd_eq(tile).to_bitmask() as u16;
+            let bright = tile.max(threshold).simd_eq(tile).to_bitmask() & own;
             if bright != 0 {
-                row.push(Piece { start: left as u16, bright });
+                row.push(Piece { start: left as u16, bright: bright as u16 });
             }
         }
     }

@@ -218,12 +218,14 @@ fn summits(frame: &FrameView<'_>, u: usize, v: usize) -> u32 {
 }
 
 /// Sixteen pixels of a row from the one left of column `u` on, from `u` on, and from the one right of it on; 0 outside.
+#[inline(always)]
 fn beside(row: &[u8], u: usize) -> [u8x16; 3] {
-    let inside = u.checked_sub(1).and_then(|left| row[left..].first_chunk::<{ LANES + 2 }>());
-    let pixels = inside.copied().unwrap_or_else(|| {
-        std::array::from_fn(|i| (u + i).checked_sub(1).and_then(|u| row.get(u)).copied().unwrap_or(0))
-    });
-    [0, 1, 2].map(|from| u8x16::new(std::array::from_fn(|i| pixels[from + i])))
+    let sixteen = |pixels: &[u8]| pixels.first_chunk().map_or(u8x16::ZERO, |&pixels| u8x16::new(pixels));
+    if let Some(pixels) = u.checked_sub(1).and_then(|left| row[left..].first_chunk::<{ LANES + 2 }>()) {
+        return [sixteen(pixels), sixteen(&pixels[1..]), sixteen(&pixels[2..])];
+    }
+    let pixel = |u: usize| u.checked_sub(1).and_then(|u| row.get(u)).copied().unwrap_or(0);
+    [0, 1, 2].map(|from| u8x16::new(std::array::from_fn(|i| pixel(u + from + i))))
 }
 
 /// All bits below one.

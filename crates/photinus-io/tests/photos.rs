@@ -8,7 +8,7 @@
 use std::path::PathBuf;
 
 use photinus::frame::FrameView;
-use photinus::spots::{Detections, Detector, Settings, Spot};
+use photinus::spots::{Brightness, Detections, Detector, Settings, Spot};
 use photinus_io::image::read_image;
 use photinus_testing::real_data;
 use rand_distr::{Distribution, StandardNormal};
@@ -38,8 +38,13 @@ impl Picture {
     }
 
     fn detect(&self) -> Detections {
+        self.detect_by(Brightness::default())
+    }
+
+    fn detect_by(&self, brightness: Brightness) -> Detections {
         let frame = FrameView::packed(&self.pixels, self.width, self.height).unwrap();
-        Detector::new(Settings::default()).unwrap().detect(&frame, None).unwrap().clone()
+        let settings = Settings { brightness, ..Settings::default() };
+        Detector::new(settings).unwrap().detect(&frame, None).unwrap().clone()
     }
 
     /// Without the first columns and rows: everything moves on the grid of tiles.
@@ -90,6 +95,10 @@ fn photos() -> Vec<Photo> {
     photos
 }
 
+fn apart_px(a: &Spot, b: &Spot) -> f64 {
+    libm::hypot(a.centre.u - b.centre.u, a.centre.v - b.centre.v)
+}
+
 #[test]
 fn every_led_is_a_spot_and_nothing_else_is() {
     for Photo { name, leds, picture } in photos() {
@@ -98,9 +107,7 @@ fn every_led_is_a_spot_and_nothing_else_is() {
         for (i, spot) in found.spots.iter().enumerate() {
             assert!((0.0..picture.width as f64).contains(&spot.centre.u), "{name}: {spot:?}");
             assert!((0.0..picture.height as f64).contains(&spot.centre.v), "{name}: {spot:?}");
-            let apart =
-                |other: &Spot| libm::hypot(spot.centre.u - other.centre.u, spot.centre.v - other.centre.v);
-            assert!(found.spots[i + 1..].iter().all(|other| apart(other) > 2.0), "{name}: {spot:?}");
+            assert!(found.spots[i + 1..].iter().all(|other| apart_px(spot, other) > 2.0), "{name}: {spot:?}");
         }
     }
 }
@@ -121,6 +128,21 @@ fn moved_turned_dimmed_and_noisy_photos_have_the_same_spots() {
         }
         for sigma in [1.0, 2.0, 3.0] {
             see(&format!("noise {sigma}"), picture.noisy(sigma, 3));
+        }
+    }
+}
+
+/// The pixels of one of the cameras answer by a few percent more and less in turn. No two LEDs are as near as 5 px.
+#[test]
+fn wherever_the_threshold_lies_no_led_is_two_spots() {
+    for Photo { name, picture, .. } in photos() {
+        let contrasts = [30, 40, 60, 80].map(Brightness::Contrast);
+        for rule in contrasts.into_iter().chain([60, 100, 140, 180].map(Brightness::Threshold)) {
+            let found = picture.detect_by(rule).spots;
+            for (i, spot) in found.iter().enumerate() {
+                let alone = found[i + 1..].iter().all(|other| apart_px(spot, other) > 5.0);
+                assert!(alone, "{name}, {rule:?}: {spot:?}");
+            }
         }
     }
 }

@@ -4,8 +4,8 @@ use nalgebra::{Matrix2, Matrix3, Rotation3, UnitQuaternion};
 
 use photinus::camera::Pixel;
 use photinus::locator::{self, Located, Neighbour, Sighting};
-use photinus::pose::Mode;
 use photinus::optics::Measured;
+use photinus::pose::Mode;
 use photinus::spots::{Extent, Rejected, Spot};
 
 use super::record::Mode as ModeRecord;

@@ -8,36 +8,58 @@ use photinus::spots::{Extent, Spot};
 use rand_distr::{Distribution, Normal, Uniform};
 use rand_pcg::Pcg64;
 
-pub(crate) const WIDTH: usize = 752;
-pub(crate) const HEIGHT: usize = 480;
-const FRAMES: u64 = 8;
+/// The camera of the paper.
+pub(crate) const PAPER: Size = Size { width: 752, height: 480 };
+/// Frames of each scene.
+pub(crate) const FRAMES: usize = 8;
 
-/// Eight frames of `count` spots of 1 to 30 px (log-uniform), at least 16 px apart, with the sun on demand.
-pub(crate) fn markers(count: usize, sun: bool) -> Vec<Vec<u8>> {
-    (0..FRAMES).map(|seed| frame(count, sun, &mut Pcg64::new(seed.into(), 5))).collect()
+/// Sides of a frame, px.
+#[derive(Clone, Copy)]
+pub(crate) struct Size {
+    pub(crate) width: usize,
+    pub(crate) height: usize,
 }
 
-fn frame(count: usize, sun: bool, rng: &mut Pcg64) -> Vec<u8> {
+impl Size {
+    pub(crate) fn pixels(self) -> usize {
+        self.width * self.height
+    }
+}
+
+/// So many spots of 1 to 30 px (log-uniform), at least 16 px apart, with the sun on demand.
+pub(crate) struct Scene {
+    pub(crate) size: Size,
+    pub(crate) markers: usize,
+    pub(crate) sun: bool,
+}
+
+/// Frames of a scene, each with its own places and noise.
+pub(crate) fn markers(scene: &Scene) -> Vec<Vec<u8>> {
+    (0..FRAMES as u64).map(|seed| frame(scene, &mut Pcg64::new(seed.into(), 5))).collect()
+}
+
+fn frame(&Scene { size, markers, sun }: &Scene, rng: &mut Pcg64) -> Vec<u8> {
     let background = Normal::new(5.0, 2.0).expect("a distribution");
-    let mut light: Vec<f64> = (0..WIDTH * HEIGHT).map(|_| background.sample(rng)).collect();
+    let mut light: Vec<f64> = (0..size.pixels()).map(|_| background.sample(rng)).collect();
     let (across, down) = (
-        Uniform::new(20.0, WIDTH as f64 - 20.0).expect("a distribution"),
-        Uniform::new(20.0, HEIGHT as f64 - 20.0).expect("a distribution"),
+        Uniform::new(20.0, size.width as f64 - 20.0).expect("a distribution"),
+        Uniform::new(20.0, size.height as f64 - 20.0).expect("a distribution"),
     );
     let log_area = Uniform::new(0.0, libm::log(30.0)).expect("a distribution");
     let mut places: Vec<(f64, f64)> = Vec::new();
     if sun {
         places.push((560.0, 120.0));
-        add_sun(&mut light, places[0]);
+        add_sun(&mut light, size.width, places[0]);
     }
-    while places.len() < count + usize::from(sun) {
+    while places.len() < markers + usize::from(sun) {
         let place = (across.sample(rng), down.sample(rng));
         let clear = if sun { 120.0 } else { 16.0 };
         let free = places.iter().enumerate().all(|(i, other)| {
             libm::hypot(place.0 - other.0, place.1 - other.1) > if i == 0 { clear } else { 16.0 }
         });
         if free {
-            add_disc(&mut light, place, (libm::exp(log_area.sample(rng)) / std::f64::consts::PI).sqrt(), 1.0);
+            let radius = (libm::exp(log_area.sample(rng)) / std::f64::consts::PI).sqrt();
+            add_disc(&mut light, size.width, place, radius, 1.0);
             places.push(place);
         }
     }
@@ -45,21 +67,21 @@ fn frame(count: usize, sun: bool, rng: &mut Pcg64) -> Vec<u8> {
 }
 
 /// A saturated disc whose edge falls off over `edge` px.
-fn add_disc(light: &mut [f64], (u, v): (f64, f64), radius: f64, edge: f64) {
+fn add_disc(light: &mut [f64], width: usize, (u, v): (f64, f64), radius: f64, edge: f64) {
     let reach = (radius + 4.0 * edge).ceil() as usize;
-    for row in (v as usize).saturating_sub(reach)..(v as usize + reach + 1).min(HEIGHT) {
-        for column in (u as usize).saturating_sub(reach)..(u as usize + reach + 1).min(WIDTH) {
+    for row in (v as usize).saturating_sub(reach)..(v as usize + reach + 1).min(light.len() / width) {
+        for column in (u as usize).saturating_sub(reach)..(u as usize + reach + 1).min(width) {
             let beyond = libm::hypot(column as f64 - u, row as f64 - v) - radius;
-            light[row * WIDTH + column] += 300.0 / (1.0 + libm::exp(beyond / (0.35 * edge)));
+            light[row * width + column] += 300.0 / (1.0 + libm::exp(beyond / (0.35 * edge)));
         }
     }
 }
 
 /// A saturated disc of 20 px, a halo, and six streaks.
-fn add_sun(light: &mut [f64], (u, v): (f64, f64)) {
-    add_disc(light, (u, v), 20.0, 2.0);
+fn add_sun(light: &mut [f64], width: usize, (u, v): (f64, f64)) {
+    add_disc(light, width, (u, v), 20.0, 2.0);
     for (i, light) in light.iter_mut().enumerate() {
-        let (du, dv) = ((i % WIDTH) as f64 - u, (i / WIDTH) as f64 - v);
+        let (du, dv) = ((i % width) as f64 - u, (i / width) as f64 - v);
         let distance = libm::hypot(du, dv);
         *light += 120.0 * libm::exp(-distance / 25.0);
         let angle = libm::atan2(dv, du) * 6.0 / std::f64::consts::TAU;
@@ -71,11 +93,12 @@ fn add_sun(light: &mut [f64], (u, v): (f64, f64)) {
 /// Eight frames of `count` level hexarotors at random yaws, 2 to 8 m away (more than a dozen 5 to 10 m), spread over the
 /// field.
 pub(crate) fn hexarotors(count: usize, camera: &Camera, airframe: &Airframe) -> Vec<Vec<u8>> {
-    (0..FRAMES).map(|seed| hexarotors_of(count, camera, airframe, &mut Pcg64::new(seed.into(), 9))).collect()
+    let frame = |seed: u64| hexarotors_of(count, camera, airframe, &mut Pcg64::new(seed.into(), 9));
+    (0..FRAMES as u64).map(frame).collect()
 }
 
 fn hexarotors_of(count: usize, camera: &Camera, airframe: &Airframe, rng: &mut Pcg64) -> Vec<u8> {
-    let mut light = vec![5.0; WIDTH * HEIGHT];
+    let mut light = vec![5.0; PAPER.pixels()];
     let uniform = |low: f64, high: f64| Uniform::new(low, high).expect("a range");
     for index in 0..count {
         let few = count <= 12;
@@ -112,7 +135,8 @@ fn add_airframe(
         let pixel = Bearing::new(marker_m).and_then(|bearing| camera.pixel(&bearing));
         if let Some(pixel) = pixel.filter(|_| intensity > 0.05) {
             let area_px = intensity * f64::from(SpotCurve::paper_1000_us().max_area_px(marker_m.norm()));
-            add_disc(light, (pixel.u, pixel.v), (area_px.max(1.0) / std::f64::consts::PI).sqrt(), 1.0);
+            let radius = (area_px.max(1.0) / std::f64::consts::PI).sqrt();
+            add_disc(light, PAPER.width, (pixel.u, pixel.v), radius, 1.0);
         }
     }
 }

@@ -1,67 +1,39 @@
 //! Time of a frame on one core, beside floors measured in the same run: `cargo bench -p photinus`.
 //!
-//! Times differ from machine to machine and from run to run; the ratios to the floor, a pass that only takes the maximum
-//! of the frame, are what to compare. Every contender runs in turn within each round, medians are over the rounds.
+//! Times differ from machine to machine and from run to run; the ratios to the floors, above all to a pass that only takes
+//! the maximum of the frame, are what to compare. Every contender runs in turn within each round, medians are over the
+//! rounds. Run only some tables with `cargo bench -p photinus -- detection` (or `locating`, `posing`).
 
 #![expect(clippy::print_stdout, reason = "a benchmark prints its table")]
 
 mod contest;
+mod detection;
 mod frames;
 
 use std::hint::black_box;
 
 use contest::Contest;
+use frames::{PAPER, Scene};
 use nalgebra::Vector3;
 use photinus::airframe::{Airframe, Ring};
 use photinus::camera::{Camera, Ideal, IdealLaw, Model, Pixel};
 use photinus::frame::FrameView;
 use photinus::locator::{self, Locator};
-use photinus::spots::{Brightness, Detector, Settings};
 
 fn main() {
-    detection();
-    locating();
-    posing();
-}
-
-fn detection() {
-    let mut contest = Contest::new("Detection, 752x480", "maximum of the frame");
-    let dark = frames::markers(0, false);
-    contest.add("maximum of the frame", {
-        let frames = dark.clone();
-        move |i| {
-            let frame = &frames[i % frames.len()];
-            black_box(frame.iter().fold(0, |high: u8, &pixel| high.max(pixel)));
-        }
-    });
-    contest.add("memcpy of the frame", {
-        let frames = dark;
-        let mut copy = vec![0; frames[0].len()];
-        move |i| {
-            copy.copy_from_slice(&frames[i % frames.len()]);
-            black_box(&copy);
-        }
-    });
-    for (rule, brightness) in [("fixed", Brightness::Threshold(200)), ("contrast", Brightness::default())] {
-        for (count, sun) in [(0, false), (6, false), (30, false), (120, false), (30, true)] {
-            let frames = frames::markers(count, sun);
-            let mut detector =
-                Detector::new(Settings { brightness, ..Settings::default() }).expect("settings");
-            let name = format!("{rule}, {count} markers{}", if sun { " and the sun" } else { "" });
-            contest.add(&name, move |i| {
-                let frame = FrameView::packed(&frames[i % frames.len()], frames::WIDTH, frames::HEIGHT);
-                black_box(detector.detect(&frame.expect("a frame"), None).expect("no mask"));
-            });
+    let asked = std::env::args().skip(1).find(|argument| !argument.starts_with('-'));
+    for (name, run) in [("detection", detection::run as fn()), ("locating", locating), ("posing", posing)] {
+        if asked.as_ref().is_none_or(|asked| asked == name) {
+            run();
         }
     }
-    contest.run();
 }
 
 /// The camera of the paper, by its linear law.
 fn camera() -> Camera {
     let centre = Pixel::new(375.5, 239.5);
     let lens = Ideal::new(IdealLaw::Equidistant, [1.0 / 3.7673e-3; 2], centre).expect("a lens");
-    Camera::new(Model::Ideal(lens), frames::WIDTH, frames::HEIGHT, None).expect("a camera")
+    Camera::new(Model::Ideal(lens), PAPER.width, PAPER.height, None).expect("a camera")
 }
 
 fn hexarotor() -> Airframe {
@@ -71,7 +43,7 @@ fn hexarotor() -> Airframe {
 
 fn locating() {
     let mut contest = Contest::new("Locating, 752x480", "maximum of the frame");
-    let empty = frames::markers(0, false);
+    let empty = frames::markers(&Scene { size: PAPER, markers: 0, sun: false });
     contest.add("maximum of the frame", move |i| {
         let frame = &empty[i % empty.len()];
         black_box(frame.iter().fold(0, |high: u8, &pixel| high.max(pixel)));
@@ -85,8 +57,8 @@ fn locating() {
             let mut locator =
                 Locator::new(camera, &airframe, None, locator::Settings::default()).expect("a locator");
             contest.add(&format!("locate, {count} hexarotors{known}"), move |i| {
-                let frame = FrameView::packed(&frames[i % frames.len()], frames::WIDTH, frames::HEIGHT)
-                    .expect("a frame");
+                let frame =
+                    FrameView::packed(&frames[i % frames.len()], PAPER.width, PAPER.height).expect("a frame");
                 let located = locator.locate(&frame, gravity.as_ref(), &mut |_| ());
                 black_box(located.expect("the camera's size"));
             });

@@ -62,4 +62,10 @@ impl<'a> FrameView<'a> {
         assert!(v < self.height, "row {v} of a frame of {} rows", self.height);
         &self.data[v * self.stride..][..self.width]
     }
+
+    /// The pixels from row `v` on, with the padding between rows, and how far rows start from each other.
+    #[inline]
+    pub(crate) fn rows_from(&self, v: usize) -> (&'a [u8], usize) {
+        (&self.data[v * self.stride..], self.stride)
+    }
 }

@@ -1,7 +1,7 @@
 //! What is bright: a threshold for every tile of the frame.
 //!
-//! In: the frame. Out: for every tile of 16 x 16 pixels the lowest value that counts as bright, and whether any pixel of
-//! the tile reaches it, so that dark tiles, nearly all of them, are never looked at again.
+//! In: what the tiles of a frame hold. Out: for every tile the lowest value that counts as bright, and which tiles hold such a
+//! pixel, so that dark tiles, nearly all of them, are never looked at again.
 //!
 //! With a contrast the level of a tile's surroundings is the median over 5 x 5 tiles (rows of columns) of each tile's
 //! darkest pixel. A marker raises the darkest pixel of no tile, so dense markers leave it alone; the sun covers less
@@ -9,145 +9,113 @@
 //! three quarters of all tiles exceed, each without its brightest columns, so that even a marker in every tile does not
 //! count as noise.
 
+use wide::u8x16;
+
 use super::settings::Brightness;
+use super::tiles::{Block, TILE_PX, Tiles};
 use crate::frame::FrameView;
-
-/// Side of a tile, px.
-pub(super) const TILE_PX: usize = 16;
-
-/// Rows of a tile that its darkest pixel is taken from: every fourth is enough for a level, at a quarter of the cost.
-const ROWS_PER_DARKEST: usize = 4;
 
 /// Thresholds of one frame, tile by tile, and the room to compute them in.
 #[derive(Debug, Default)]
 pub(super) struct Background {
-    columns: usize,
-    rows: usize,
-    brightest: Vec<u8>,
-    darkest: Vec<u8>,
-    tiles_by_spread: Vec<u32>,
-    level: Vec<u8>,
-    scratch: Vec<u8>,
-    threshold: Vec<u16>,
+    tiles: Tiles,
+    /// The level around each tile; 0 where the threshold is a fixed one.
+    level: Vec<Block>,
+    scratch: Vec<Block>,
+    /// What is bright stands at least this far above the level.
+    step: u8,
 }
 
 impl Background {
     /// Measures `frame` and sets the thresholds.
     pub(super) fn measure(&mut self, frame: &FrameView<'_>, brightness: Brightness) {
-        self.columns = frame.width().div_ceil(TILE_PX);
-        self.rows = frame.height().div_ceil(TILE_PX);
-        let tiles = self.columns * self.rows;
-        for room in [&mut self.brightest, &mut self.darkest, &mut self.level, &mut self.scratch] {
-            room.resize(tiles, 0);
-        }
-        self.threshold.resize(tiles, 0);
-        self.tiles_by_spread.clear();
-        self.tiles_by_spread.resize(256, 0);
         match brightness {
             Brightness::Threshold(level) => {
-                self.summarise::<false>(frame);
-                self.threshold.fill(u16::from(level));
-                self.level.fill(0);
+                self.tiles.summarise::<false>(frame);
+                self.level.clear();
+                self.level.resize(self.tiles.brightest.len(), Block::default());
+                self.step = level;
             }
             Brightness::Contrast(step) => {
-                self.summarise::<true>(frame);
-                let step = self.step_above_noise(step);
-                self.level_of_surroundings();
-                for (threshold, level) in self.threshold.iter_mut().zip(&self.level) {
-                    *threshold = u16::from(*level) + u16::from(step);
+                self.tiles.summarise::<true>(frame);
+                for room in [&mut self.level, &mut self.scratch] {
+                    room.resize(self.tiles.brightest.len(), Block::default());
                 }
+                self.step = self.step_above_noise(step);
+                self.level_of_surroundings();
             }
         }
-    }
-
-    /// Tiles per row.
-    pub(super) fn columns(&self) -> usize {
-        self.columns
     }
 
     /// Rows of tiles.
     pub(super) fn rows(&self) -> usize {
-        self.rows
+        self.tiles.rows
     }
 
-    /// The level around the tile of column `u` and row `v`; 0 where the threshold is a fixed one.
+    /// The level around the tile that pixel (`u`, `v`) lies in; 0 where the threshold is a fixed one.
     pub(super) fn level(&self, u: usize, v: usize) -> u8 {
-        self.level[v / TILE_PX * self.columns + u / TILE_PX]
+        self.level.as_flattened()[v / TILE_PX * self.pitch() + u / TILE_PX]
     }
 
-    /// The lowest bright value of each tile in a row of tiles (past 255 nothing is), and the tile's brightest pixel.
-    pub(super) fn row(&self, row: usize) -> (&[u16], &[u8]) {
-        let tiles = row * self.columns..(row + 1) * self.columns;
-        (&self.threshold[tiles.clone()], &self.brightest[tiles])
+    /// The lowest bright value of the tile that pixel (`u`, `v`) lies in; past 255 nothing is.
+    pub(super) fn threshold(&self, u: usize, v: usize) -> u16 {
+        u16::from(self.level(u, v)) + u16::from(self.step)
     }
 
-    /// The brightest pixel of every tile and, if asked for, the darkest and the spread of the whole tiles.
-    fn summarise<const DARKEST: bool>(&mut self, frame: &FrameView<'_>) {
-        let tile_rows = self.brightest.chunks_exact_mut(self.columns);
-        for ((row, brightest), darkest) in
-            tile_rows.enumerate().zip(self.darkest.chunks_exact_mut(self.columns))
-        {
-            let top = row * TILE_PX;
-            let bottom = (top + TILE_PX).min(frame.height());
-            let whole = frame.width() / TILE_PX;
-            let band: [&[u8]; TILE_PX] = std::array::from_fn(|v| frame.row((top + v).min(bottom - 1)));
-            // A tile cut by the frame reaches back inside: a marker would fill a narrow one.
-            let inside = bottom.saturating_sub(TILE_PX);
-            let thin: [&[u8]; TILE_PX / ROWS_PER_DARKEST] =
-                std::array::from_fn(|v| frame.row((inside + v * ROWS_PER_DARKEST).min(bottom - 1)));
-            for column in 0..whole {
-                let columns = column * TILE_PX..(column + 1) * TILE_PX;
-                let mut high = [0u8; TILE_PX];
-                for pixels in &band {
-                    for (high, &pixel) in high.iter_mut().zip(&pixels[columns.clone()]) {
-                        *high = (*high).max(pixel);
-                    }
-                }
-                brightest[column] = high.into_iter().fold(0, u8::max);
-                if DARKEST {
-                    let mut low = [u8::MAX; TILE_PX];
-                    for pixels in &thin {
-                        for (low, &pixel) in low.iter_mut().zip(&pixels[columns.clone()]) {
-                            *low = (*low).min(pixel);
-                        }
-                    }
-                    darkest[column] = low.into_iter().fold(u8::MAX, u8::min);
-                    let spread = spread(high, darkest[column]);
-                    self.tiles_by_spread[usize::from(spread)] += 1;
-                }
-            }
-            if whole < self.columns {
-                let rest = |pixels: &[u8]| pixels[whole * TILE_PX..].iter().copied().fold(0, u8::max);
-                brightest[whole] = band.iter().map(|pixels| rest(pixels)).fold(0, u8::max);
-                let inside = frame.width().saturating_sub(TILE_PX);
-                let last = thin.iter().flat_map(|pixels| &pixels[inside..]);
-                darkest[whole] = last.copied().fold(u8::MAX, u8::min);
-            }
-        }
+    /// The columns of the tiles that hold a bright pixel in a row of tiles, from left to right.
+    pub(super) fn bright_tiles(&self, row: usize) -> impl Iterator<Item = usize> {
+        let blocks = row * self.tiles.blocks..(row + 1) * self.tiles.blocks;
+        let step = u8x16::splat(self.step);
+        self.tiles.brightest[blocks.clone()].iter().zip(&self.level[blocks]).enumerate().flat_map(
+            move |(block, (&brightest, &level))| {
+                let above = u8x16::new(brightest).saturating_sub(u8x16::new(level));
+                let bright = above.max(step).simd_eq(above).to_bitmask();
+                set_bits(bright).map(move |tile| block * TILE_PX + tile)
+            },
+        )
+    }
+
+    /// Tiles from the start of a row of them to the start of the next.
+    fn pitch(&self) -> usize {
+        self.tiles.blocks * TILE_PX
     }
 
     /// The contrast, or more where the frame's own noise would reach it.
     ///
     /// The spread of a tile of Gaussian noise is about 3.6 sigma, 2.4 of it below the mean.
     fn step_above_noise(&self, step: u8) -> u8 {
-        let quarter = self.tiles_by_spread.iter().sum::<u32>() / 4;
-        let mut below = 0;
-        let spread = self.tiles_by_spread.iter().position(|&tiles| {
-            below += tiles;
-            below > quarter
-        });
-        let spread = spread.unwrap_or(0);
+        let spread = usize::from(self.spread_of_a_quarter());
         (usize::from(step) + spread * 3 / 4).max(spread * 5 / 2).min(255) as u8
+    }
+
+    /// The least spread that more than a quarter of the tiles do not exceed; 0 where none tells of noise.
+    fn spread_of_a_quarter(&self) -> u8 {
+        let spreads = &self.tiles.spread;
+        let telling = self.tiles.telling as u32;
+        if telling == 0 {
+            return 0;
+        }
+        // From the highest bit down: the greatest number that is more than what no more than a quarter exceeds.
+        let mut spread = 0;
+        for bit in (0..8).rev() {
+            let below = spread | ((1 << bit) - 1);
+            if count_up_to(spreads, below) <= telling / 4 {
+                spread |= 1 << bit;
+            }
+        }
+        spread
     }
 
     /// The median over five rows of the medians over five columns.
     fn level_of_surroundings(&mut self) {
-        let (columns, rows) = (self.columns, self.rows);
-        for row in 0..rows {
-            let near = near(row, rows).map(|row| &self.darkest[row * columns..][..columns]);
-            median_of_five(near, &mut self.scratch[row * columns..][..columns]);
+        let (columns, rows, pitch) = (self.tiles.columns, self.tiles.rows, self.pitch());
+        let darkest = self.tiles.darkest.as_flattened();
+        let medians = self.scratch.as_flattened_mut().chunks_exact_mut(pitch);
+        for (row, medians) in medians.enumerate() {
+            median_of_five(near(row, rows).map(|row| &darkest[row * pitch..][..pitch]), medians);
         }
-        for (medians, level) in self.scratch.chunks_exact(columns).zip(self.level.chunks_exact_mut(columns)) {
+        let levels = self.level.as_flattened_mut().chunks_exact_mut(pitch);
+        for (medians, level) in self.scratch.as_flattened().chunks_exact(pitch).zip(levels) {
             let inner = columns.saturating_sub(4);
             if inner > 0 {
                 let near: [&[u8]; 5] = std::array::from_fn(|offset| &medians[offset..][..inner]);
@@ -163,36 +131,44 @@ impl Background {
 
     /// A tile in a corner outvotes its surroundings, also when the sun fills it: its neighbours along the sides limit it.
     fn lower_corners(&mut self) {
-        let (right, bottom) = (self.columns - 1, self.rows - 1);
-        let at = |column: usize, row: usize| row * self.columns + column;
+        let (right, bottom, pitch) = (self.tiles.columns - 1, self.tiles.rows - 1, self.pitch());
+        let level = self.level.as_flattened_mut();
+        let at = |column: usize, row: usize| row * pitch + column;
         for (column, row) in [(0, 0), (right, 0), (0, bottom), (right, bottom)] {
-            let beside = self.level[at(column.abs_diff(1).min(right), row)];
-            let above = self.level[at(column, row.abs_diff(1).min(bottom))];
-            let level = &mut self.level[at(column, row)];
+            let beside = level[at(column.abs_diff(1).min(right), row)];
+            let above = level[at(column, row.abs_diff(1).min(bottom))];
+            let level = &mut level[at(column, row)];
             *level = beside.max(above).min(*level);
         }
     }
 }
 
+/// Where the bits of a number are set, from the lowest.
+fn set_bits(mut bits: u32) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        let lowest = (bits != 0).then(|| bits.trailing_zeros() as usize);
+        bits &= bits.wrapping_sub(1);
+        lowest
+    })
+}
+
+/// How many bytes are no more than `most`.
+fn count_up_to(blocks: &[Block], most: u8) -> u32 {
+    let most = u8x16::splat(most);
+    // A lane of a byte counts that far.
+    let parts = blocks.chunks(usize::from(u8::MAX)).map(|blocks| {
+        let count = blocks.iter().fold(u8x16::ZERO, |count, &block| {
+            let block = u8x16::new(block);
+            count - block.min(most).simd_eq(block)
+        });
+        count.to_array().into_iter().map(u32::from).sum::<u32>()
+    });
+    parts.sum()
+}
+
 /// Five neighbours of `at` among `count`, itself in the middle; the last repeat past the ends.
 fn near(at: usize, count: usize) -> [usize; 5] {
     std::array::from_fn(|offset| (at + offset).saturating_sub(2).min(count - 1))
-}
-
-/// How far a tile's noise spreads; more where the darkest pixel is at the sensor's floor, which hides the lower half.
-#[inline]
-fn spread(columns: [u8; TILE_PX], darkest: u8) -> u8 {
-    let spread = brightest_without_markers(columns).saturating_sub(darkest);
-    if darkest > 0 { spread } else { spread.saturating_add(spread / 3) }
-}
-
-/// From the highest pixel of each column: the lowest of every fourth column, and of those four the second lowest. One marker
-/// up to 12 px wide, or narrow ones in every other column, leave it as it was.
-#[inline]
-fn brightest_without_markers(columns: [u8; TILE_PX]) -> u8 {
-    let eight: [u8; 8] = std::array::from_fn(|i| columns[i].min(columns[i + 8]));
-    let [a, b, c, d] = std::array::from_fn(|i| eight[i].min(eight[i + 4]));
-    a.max(b).min(c.max(d)).min(a.min(b).max(c.min(d)))
 }
 
 fn median_of_five([a, b, c, d, e]: [&[u8]; 5], out: &mut [u8]) {
@@ -224,33 +200,62 @@ mod tests {
         }
 
         #[test]
-        fn a_tile_knows_its_brightest_pixel(width in 1usize..70, height in 1usize..70, seed in 0u64..) {
-            let pixels: Vec<u8> = (0..width * height)
-                .map(|i| (seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(i as u64 * i as u64 * 97) >> 7) as u8)
-                .collect();
+        fn the_spread_of_a_quarter_is_that_of_the_sorted_ones(
+            spreads in prop::collection::vec(0u8.., 1..700), narrow in 0u32..8,
+        ) {
+            let spreads: Vec<u8> = spreads.into_iter().map(|spread| spread >> narrow).collect();
+            let mut background = Background::default();
+            background.tiles.telling = spreads.len();
+            background.tiles.spread.resize(spreads.len().div_ceil(TILE_PX), [u8::MAX; TILE_PX]);
+            background.tiles.spread.as_flattened_mut()[..spreads.len()].copy_from_slice(&spreads);
+            let mut sorted = spreads;
+            sorted.sort_unstable();
+            prop_assert_eq!(background.spread_of_a_quarter(), sorted[sorted.len() / 4]);
+        }
+
+        #[test]
+        fn bright_tiles_are_those_with_a_pixel_at_their_threshold(
+            width in 1usize..300, height in 1usize..70, seed in 0u64.., contrast in 1u8..,
+        ) {
+            let value = |i: u64| ((seed.wrapping_add(i)).wrapping_mul(6_364_136_223_846_793_005) >> 57) as u8;
+            let pixels: Vec<u8> = (0..(width * height) as u64).map(value).collect();
             let frame = FrameView::packed(&pixels, width, height).unwrap();
-            for brightness in [Brightness::Threshold(9), Brightness::Contrast(20)] {
+            for brightness in [Brightness::Threshold(contrast / 2 + 1), Brightness::Contrast(contrast)] {
                 let mut background = Background::default();
                 background.measure(&frame, brightness);
-                for row in 0..background.rows() {
-                    for (column, &brightest) in background.row(row).1.iter().enumerate() {
-                        let rows = row * TILE_PX..((row + 1) * TILE_PX).min(height);
-                        let columns = column * TILE_PX..((column + 1) * TILE_PX).min(width);
-                        let expected = rows.flat_map(|v| frame.row(v)[columns.clone()].to_vec()).max().unwrap();
-                        prop_assert_eq!(brightest, expected);
+                let mut tiles = vec![Vec::new(); background.rows()];
+                for (i, &pixel) in pixels.iter().enumerate() {
+                    let (u, v) = (i % width, i / width);
+                    if u16::from(pixel) >= background.threshold(u, v) {
+                        tiles[v / TILE_PX].push(u / TILE_PX);
                     }
+                }
+                for (row, mut tiles) in tiles.into_iter().enumerate() {
+                    tiles.sort_unstable();
+                    tiles.dedup();
+                    prop_assert_eq!(background.bright_tiles(row).collect::<Vec<_>>(), tiles);
                 }
             }
         }
+    }
+
+    /// The threshold of every tile.
+    fn thresholds(frame: &FrameView<'_>, contrast: u8) -> Vec<u16> {
+        let mut background = Background::default();
+        background.measure(frame, Brightness::Contrast(contrast));
+        let at = |width: usize| (0..width).step_by(TILE_PX);
+        at(frame.height())
+            .flat_map(|v| at(frame.width()).map(move |u| (u, v)))
+            .map(|(u, v)| background.threshold(u, v))
+            .collect()
     }
 
     #[test]
     fn a_flat_frame_has_its_own_level_whatever_that_is() {
         for level in [0, 3, 23, 180, 240] {
             let pixels = vec![level; 100 * 60];
-            let mut background = Background::default();
-            background.measure(&FrameView::packed(&pixels, 100, 60).unwrap(), Brightness::Contrast(20));
-            assert!(background.threshold.iter().all(|&t| t == u16::from(level) + 20));
+            let thresholds = thresholds(&FrameView::packed(&pixels, 100, 60).unwrap(), 20);
+            assert!(thresholds.iter().all(|&threshold| threshold == u16::from(level) + 20));
         }
     }
 
@@ -258,9 +263,8 @@ mod tests {
     fn a_marker_in_every_tile_is_no_noise() {
         let pixels: Vec<u8> =
             (0..160 * 160).map(|i| if i % 16 < 5 && (i / 160) % 16 < 5 { 255 } else { 10 }).collect();
-        let mut background = Background::default();
-        background.measure(&FrameView::packed(&pixels, 160, 160).unwrap(), Brightness::Contrast(20));
-        assert!(background.threshold.iter().all(|&threshold| threshold == 30));
+        let thresholds = thresholds(&FrameView::packed(&pixels, 160, 160).unwrap(), 20);
+        assert!(thresholds.iter().all(|&threshold| threshold == 30));
     }
 
     #[test]
@@ -269,9 +273,8 @@ mod tests {
             let pixels: Vec<u8> = (0..width * height)
                 .map(|i| if i % width >= width - side && i / width >= height - side { 255 } else { 10 })
                 .collect();
-            let mut background = Background::default();
-            background.measure(&FrameView::packed(&pixels, width, height).unwrap(), Brightness::Contrast(20));
-            assert!(background.threshold.iter().all(|&threshold| threshold == 30), "{side} px");
+            let thresholds = thresholds(&FrameView::packed(&pixels, width, height).unwrap(), 20);
+            assert!(thresholds.iter().all(|&threshold| threshold == 30), "{side} px");
         }
     }
 
@@ -281,6 +284,6 @@ mod tests {
             (0..160 * 160).map(|i| if i % 8 == 0 && (i / 160) % 8 == 0 { 255 } else { 10 }).collect();
         let mut background = Background::default();
         background.measure(&FrameView::packed(&pixels, 160, 160).unwrap(), Brightness::Contrast(20));
-        assert!(background.level.iter().all(|&level| level == 10));
+        assert!((0..160).all(|at| background.level(at, 159 - at) == 10));
     }
 }

@@ -9,9 +9,9 @@ use super::neighbourhood::Neighbourhood;
 use super::part::{Part, outline};
 use super::reflections;
 use super::rejection::Reason;
-use super::runs::{self, Run};
+use super::runs::{Run, Runs};
 use super::settings::{Brightness, Settings, SettingsError};
-use super::splitting::Splitter;
+use super::splitting::{Ground, Splitter};
 use super::{Detections, Extent, Rejected};
 use crate::frame::{FrameError, FrameView, Mask};
 use crate::optics::Optics;
@@ -21,8 +21,7 @@ use crate::optics::Optics;
 pub struct Detector {
     settings: Settings,
     background: Background,
-    bright_tiles: Vec<u16>,
-    runs: Vec<Run>,
+    runs: Runs,
     components: Components,
     splitter: Splitter,
     part_runs: Vec<Run>,
@@ -50,8 +49,7 @@ impl Detector {
         Ok(Self {
             settings,
             background: Background::default(),
-            bright_tiles: Vec::new(),
-            runs: Vec::new(),
+            runs: Runs::default(),
             components: Components::default(),
             splitter: Splitter::default(),
             part_runs: Vec::new(),
@@ -76,8 +74,7 @@ impl Detector {
             mask.check_size(frame.width(), frame.height())?;
         }
         self.background.measure(frame, self.settings.brightness);
-        runs::find(frame, &self.background, &mut self.bright_tiles, &mut self.runs);
-        self.components.group(&self.runs);
+        self.components.group(self.runs.find(frame, &self.background));
         self.outline_parts(frame, mask);
         self.reject_by_outline();
         self.measure_parts(frame);
@@ -95,7 +92,9 @@ impl Detector {
         self.parts.clear();
         for component in 0..self.components.len() {
             let runs = self.components.runs(component);
-            let Some(split) = self.splitter.split(frame, runs, self.settings.noise) else {
+            let level = self.background.level(usize::from(runs[0].start), usize::from(runs[0].v));
+            let ground = Ground { level, noise: self.settings.noise };
+            let Some(split) = self.splitter.split(frame, runs, ground) else {
                 self.parts.push(outline(frame, &self.background, runs, mask));
                 continue;
             };

@@ -133,7 +133,8 @@ pub(super) fn fit<const N: usize>(
     // Where nothing fits well, misfits count for less.
     let misfits = found.iter().flatten().map(|fitted| fitted.chi2 / fitted.freedom);
     let least = misfits.fold(f64::INFINITY, f64::min).max(1.0);
-    let cost = |fitted: &Fitted<N>| fitted.chi2 / least + fitted.rest_of_cost + COUNTS * libm::log(fitted.light());
+    let cost =
+        |fitted: &Fitted<N>| fitted.chi2 / least + fitted.rest_of_cost + COUNTS * libm::log(fitted.light());
     found.into_iter().flatten().min_by(|a, b| cost(a).total_cmp(&cost(b)))
 }
 
@@ -168,7 +169,14 @@ fn fit_from<const N: usize>(
             matrix[(number, number)] += weight;
             right[number] += weight * (mean - numbers[number]);
         }
-        if std::env::var("DBG2").is_ok() { eprintln!("   try {} {:?} diag {:?}", step_number, numbers.as_slice(), matrix.diagonal().as_slice()); }
+        if std::env::var("DBG2").is_ok() {
+            eprintln!(
+                "   try {} {:?} diag {:?}",
+                step_number,
+                numbers.as_slice(),
+                matrix.diagonal().as_slice()
+            );
+        }
         let factor = matrix.cholesky()?;
         let mut step = factor.solve(&right);
         for number in [U, V] {
@@ -179,13 +187,25 @@ fn fit_from<const N: usize>(
         step[LIGHT] = step[LIGHT].clamp(-0.6 * before, 4.0 * before);
         let step_px = libm::hypot(step[U], step[V]);
         // Weights follow the model: what overshoots once goes half as far from then on.
-        if step_number >= UNDAMPED && (0..N).any(|number| step[number] * previous[number] < -0.25 * previous[number] * previous[number]) {
+        if step_number >= UNDAMPED
+            && (0..N)
+                .any(|number| step[number] * previous[number] < -0.25 * previous[number] * previous[number])
+        {
             gain *= 0.5;
         }
         step *= gain;
         numbers += step;
         previous = step;
-        if std::env::var("DBG2").is_ok() { eprintln!("     fit N{N} {step_number} full {} n {:.3?} step {:.3?} chi2 {:.1} px {}", window.full_px, numbers.as_slice(), step.as_slice(), sums.chi2, sums.pixels); }
+        if std::env::var("DBG2").is_ok() {
+            eprintln!(
+                "     fit N{N} {step_number} full {} n {:.3?} step {:.3?} chi2 {:.1} px {}",
+                window.full_px,
+                numbers.as_slice(),
+                step.as_slice(),
+                sums.chi2,
+                sums.pixels
+            );
+        }
         let is_done = step_px < DONE_PX && step[LIGHT].abs() < DONE_SHARE * before;
         let mut cost = sums.log_variances;
         for number in WIDTH..N {
@@ -201,7 +221,13 @@ fn fit_from<const N: usize>(
     let freedom = pixels - N as f64;
     let off_px = libm::hypot(numbers[U] - u, numbers[V] - v);
     let settled = step_px < SETTLED_PX && off_px < 0.5 * window.reach as f64 && numbers[LIGHT] > 0.0;
-    (settled && freedom >= 1.0).then(|| Fitted { numbers, covariance: factor.inverse(), chi2, freedom, rest_of_cost: cost })
+    (settled && freedom >= 1.0).then(|| Fitted {
+        numbers,
+        covariance: factor.inverse(),
+        chi2,
+        freedom,
+        rest_of_cost: cost,
+    })
 }
 
 fn sums<const N: usize>(
@@ -234,7 +260,13 @@ fn sums<const N: usize>(
     }
     let sum = |lanes_of: Lanes| f64::from(lanes::sum(lanes_of));
     let matrix = SMatrix::from_fn(|i, j| sum(products[i.max(j)][i.min(j)]));
-    Sums { matrix, right: SVector::from_fn(|i, _| sum(right[i])), chi2: sum(chi2), log_variances: sum(log_variances), pixels: sum(pixels) }
+    Sums {
+        matrix,
+        right: SVector::from_fn(|i, _| sum(right[i])),
+        chi2: sum(chi2),
+        log_variances: sum(log_variances),
+        pixels: sum(pixels),
+    }
 }
 
 /// Slopes, residual and weight of four pixels.

@@ -72,7 +72,10 @@ impl FullLevel {
         let count = |of: &[u32; 256], levels: std::ops::Range<usize>| of[levels].iter().sum::<u32>();
         let (piled, below) = (count(&self.tops, pile..highest + 1), count(&self.tops, highest / 2..pile));
         let as_high = count(&self.spots, pile..256);
-        if piled < FEWEST || piled < TIMES_MORE * below || f64::from(piled) < SHARE_OF_SPOTS * f64::from(as_high) {
+        if piled < FEWEST
+            || piled < TIMES_MORE * below
+            || f64::from(piled) < SHARE_OF_SPOTS * f64::from(as_high)
+        {
             return None;
         }
         let total = f64::from(count(&self.pixels, pile..highest + 1));
@@ -85,7 +88,8 @@ impl FullLevel {
         }
         let moment = |about: f64, power: i32| {
             let levels = (pile..).zip(&self.pixels[pile..=highest]);
-            levels.map(|(level, &count)| f64::from(count) * (level as f64 - about).powi(power)).sum::<f64>() / total
+            levels.map(|(level, &count)| f64::from(count) * (level as f64 - about).powi(power)).sum::<f64>()
+                / total
         };
         let mean = moment(0.0, 1);
         let spread = moment(mean, 2).sqrt();

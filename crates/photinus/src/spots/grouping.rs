@@ -103,7 +103,7 @@ mod tests {
     use super::*;
     use crate::frame::FrameView;
     use crate::spots::background::Background;
-    use crate::spots::runs;
+    use crate::spots::runs::Runs;
     use crate::spots::settings::Brightness;
     use proptest::prelude::*;
 
@@ -148,10 +148,8 @@ mod tests {
             let frame = FrameView::packed(pixels, width, height).unwrap();
             let mut background = Background::default();
             background.measure(&frame, Brightness::Threshold(threshold));
-            let (mut tiles, mut found) = (Vec::new(), Vec::new());
-            runs::find(&frame, &background, &mut tiles, &mut found);
             let mut components = Components::default();
-            components.group(&found);
+            components.group(Runs::default().find(&frame, &background));
             let ours: Vec<Vec<usize>> = (0..components.len())
                 .map(|c| {
                     let pixels = |run: &Run| {

@@ -111,7 +111,18 @@ impl Belief {
         self.sigmas().iter().zip(SURE).all(|(sigma, sure)| *sigma < sure)
     }
 
-    pub(super) fn debug(&self) -> String { format!("spill {:.3} well {:.3} core {:.3} q {:.3} halo {:.3} sig {:.3?} noise {:?}", self.numbers[3], self.numbers[4], self.core_px(), self.numbers[1], libm::exp(self.numbers[2]) * self.core_px(), self.sigmas(), self.noise.noise) }
+    pub(super) fn debug(&self) -> String {
+        format!(
+            "spill {:.3} well {:.3} core {:.3} q {:.3} halo {:.3} sig {:.3?} noise {:?}",
+            self.numbers[3],
+            self.numbers[4],
+            self.core_px(),
+            self.numbers[1],
+            libm::exp(self.numbers[2]) * self.core_px(),
+            self.sigmas(),
+            self.noise.noise
+        )
+    }
     fn sigmas(&self) -> [f64; NUMBERS] {
         let covariance = self.information.try_inverse().unwrap_or_else(Information::zeros);
         std::array::from_fn(|i| covariance[(i, i)].max(0.0).sqrt())
@@ -137,7 +148,8 @@ impl Belief {
         let Some(covariance) = information.try_inverse() else { return false };
         let mut numbers = covariance * weighted;
         for i in 0..NUMBERS {
-            numbers[i] = numbers[i].clamp(LEAST[i], MOST[i]).clamp(self.numbers[i] - 0.5, self.numbers[i] + 0.5);
+            numbers[i] =
+                numbers[i].clamp(LEAST[i], MOST[i]).clamp(self.numbers[i] - 0.5, self.numbers[i] + 0.5);
         }
         let moved = (0..NUMBERS).any(|i| {
             let sigma = covariance[(i, i)].max(0.0).sqrt();
@@ -165,7 +177,8 @@ impl Belief {
     }
 
     fn draw(&mut self) {
-        let [core_px, share, wider] = [libm::exp(self.numbers[0]), self.numbers[1], libm::exp(self.numbers[2])];
+        let [core_px, share, wider] =
+            [libm::exp(self.numbers[0]), self.numbers[1], libm::exp(self.numbers[2])];
         let (core, halo) = (Profile::new(core_px), Profile::new(core_px * wider));
         let mut add = |of: usize, terms: &[(f64, &Profile, bool)]| {
             let spread = if of == 3 { &mut self.spread } else { &mut self.by_number[of] };
@@ -196,7 +209,13 @@ pub(super) struct Told {
 
 impl Told {
     /// Adds a spot that was fitted with the numbers free: its answer and covariance, with what was believed beforehand taken out.
-    pub(super) fn add(&mut self, answer: &SVector<f64, UNKNOWNS>, covariance: &Information, weights: [f64; NUMBERS], trust: f64) {
+    pub(super) fn add(
+        &mut self,
+        answer: &SVector<f64, UNKNOWNS>,
+        covariance: &Information,
+        weights: [f64; NUMBERS],
+        trust: f64,
+    ) {
         let Some(information) = covariance.try_inverse() else { return };
         let own = (information - Information::from_diagonal(&Numbers::from(weights))) * trust;
         // Rounding must not take away what was known.
@@ -218,8 +237,15 @@ pub(super) struct FreeSpread<'a> {
 
 impl Shape<UNKNOWNS> for FreeSpread<'_> {
     #[inline(always)]
-    fn shares(&self, row: usize, column: usize, numbers: &SVector<f64, UNKNOWNS>) -> (Lanes, [Lanes; UNKNOWNS]) {
-        let Some([spread, by_number @ ..]) = &self.placed else { return (Lanes::ZERO, [Lanes::ZERO; UNKNOWNS]) };
+    fn shares(
+        &self,
+        row: usize,
+        column: usize,
+        numbers: &SVector<f64, UNKNOWNS>,
+    ) -> (Lanes, [Lanes; UNKNOWNS]) {
+        let Some([spread, by_number @ ..]) = &self.placed else {
+            return (Lanes::ZERO, [Lanes::ZERO; UNKNOWNS]);
+        };
         let Shares { mut share, by_u, by_v, .. } = spread.four(row, column);
         let mut columns = [Lanes::ZERO; UNKNOWNS];
         (columns[0], columns[1]) = (by_u, by_v);
@@ -308,7 +334,8 @@ impl NoiseBins {
                 right[i] += weight * (believed[i] - logs[i]);
             }
             for bin in self.bins.iter().filter(|bin| bin.count > 0.0) {
-                let by = Vector3::new(1.0, bin.light / bin.count, bin.light2 / bin.count).component_mul(&parts);
+                let by =
+                    Vector3::new(1.0, bin.light / bin.count, bin.light2 / bin.count).component_mul(&parts);
                 let variance = by.sum();
                 let slope = by / variance;
                 let ratio = bin.squares / (bin.count * variance);
@@ -319,7 +346,10 @@ impl NoiseBins {
             logs += factor.solve(&right).map(|step| step.clamp(-1.0, 1.0));
         }
         let parts = logs.map(libm::exp);
-        self.noise =
-            PixelNoise { dark: parts[0] as f32, shot: parts[1] as f32, shape: parts[2].sqrt().min(0.5) as f32 };
+        self.noise = PixelNoise {
+            dark: parts[0] as f32,
+            shot: parts[1] as f32,
+            shape: parts[2].sqrt().min(0.5) as f32,
+        };
     }
 }

@@ -5,8 +5,9 @@
 //! summit on every side.
 
 use super::Extent;
-use super::background::{Background, TILE_PX};
+use super::background::Background;
 use super::runs::Run;
+use super::tiles::TILE_PX;
 use crate::frame::FrameView;
 
 /// Whether some pixel that touches the part is higher than `half`, yet below the threshold of its own tile.
@@ -18,23 +19,26 @@ pub(super) fn goes_on(
     half: u8,
 ) -> bool {
     let (right, bottom) = (frame.width() - 1, frame.height() - 1);
-    let tile = |pixel: u32, most: usize| (pixel as usize).min(most) / TILE_PX;
-    let rows = tile(extent.top.saturating_sub(1), bottom)..=tile(extent.bottom + 1, bottom);
-    let columns = tile(extent.left.saturating_sub(1), right)..=tile(extent.right + 1, right);
-    let is_high = |&threshold: &u16| threshold > u16::from(half);
-    if !rows.into_iter().any(|row| background.row(row).0[columns.clone()].iter().any(is_high)) {
+    let is_low = |u: usize, v: usize| background.threshold(u, v) <= u16::from(half);
+    let across = tiles(extent.left, extent.right, right);
+    if tiles(extent.top, extent.bottom, bottom).all(|v| across.clone().all(|u| is_low(u, v))) {
         return false;
     }
     runs.iter().any(|run| {
         let (first, last) = (usize::from(run.start).saturating_sub(1), usize::from(run.end).min(right));
         let rows = usize::from(run.v).saturating_sub(1)..=(usize::from(run.v) + 1).min(bottom);
         rows.into_iter().any(|v| {
-            let thresholds = background.row(v / TILE_PX).0;
             let pixels = &frame.row(v)[first..=last];
             pixels
                 .iter()
                 .zip(first..)
-                .any(|(&pixel, u)| pixel > half && u16::from(pixel) < thresholds[u / TILE_PX])
+                .any(|(&pixel, u)| pixel > half && u16::from(pixel) < background.threshold(u, v))
         })
     })
+}
+
+/// A coordinate in each tile that a stretch of pixels, and those that touch it, lies in.
+fn tiles(first: u32, last: u32, most: usize) -> impl Iterator<Item = usize> + Clone {
+    let [first, last] = [first.saturating_sub(1), last + 1].map(|at| (at as usize).min(most) / TILE_PX);
+    (first..=last).map(|tile| tile * TILE_PX)
 }

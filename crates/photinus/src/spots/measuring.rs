@@ -106,7 +106,9 @@ impl Meter {
     pub(super) fn fit(&mut self, frame: &FrameView<'_>, parts: &[Part], near: &Neighbourhood) {
         let full_from = self.full_from(frame, parts);
         self.learn(frame, parts, near, full_from);
-        if std::env::var("DBG").is_ok() { eprintln!("{} sure {} {:?}", self.frames, self.belief.is_sure(), self.belief.debug()); }
+        if std::env::var("DBG").is_ok() {
+            eprintln!("{} sure {} {:?}", self.frames, self.belief.is_sure(), self.belief.debug());
+        }
         self.models.clear();
         self.models.resize(parts.len(), None);
         for others in [false, true] {
@@ -119,7 +121,8 @@ impl Meter {
                 if others && is_alone {
                     continue;
                 }
-                let (window_px, around) = self.open(frame, part, if others { f64::INFINITY } else { room_px }, full_from);
+                let (window_px, around) =
+                    self.open(frame, part, if others { f64::INFINITY } else { room_px }, full_from);
                 if others {
                     let middle = self.window.place(0.0, 0.0);
                     near.each_near(index, window_px + OTHERS_PX, |other, _| {
@@ -178,7 +181,9 @@ impl Meter {
         self.patch.read(frame, nearest_pixel(part.guess), reach_px(window_px), &around);
         let flux = self.patch.flux(part.guess, window_px as f32);
         let model = self.models[index];
-        if std::env::var("DBG").is_ok() && model.is_none() { eprintln!("NONE {:?}", part.guess); }
+        if std::env::var("DBG").is_ok() && model.is_none() {
+            eprintln!("NONE {:?}", part.guess);
+        }
         let (centre, covariance_px2) = match model {
             Some(model) => (model.centre, model.covariance_px2),
             None => self.balanced(part, window_px, around),
@@ -215,7 +220,13 @@ impl Meter {
     }
 
     /// Opens the window on a part.
-    fn open(&mut self, frame: &FrameView<'_>, part: &Part, room_px: f64, full_from: u8) -> (f64, Surroundings) {
+    fn open(
+        &mut self,
+        frame: &FrameView<'_>,
+        part: &Part,
+        room_px: f64,
+        full_from: u8,
+    ) -> (f64, Surroundings) {
         let window_px = radius_px(part).min(room_px.max(part.radius_px + 0.8).max(1.9));
         let around = surroundings(frame, part, window_px);
         self.window.read(frame, part.guess, window_px, &around, full_from);
@@ -255,7 +266,8 @@ impl Meter {
         if is_sure {
             let spread = spread(self.optics.as_deref(), &self.belief, part.guess);
             let spill = self.spill();
-            let fitted = fit::fit(&mut self.window, &mut PointSource::new(spread, SIZE_PX2, spill), guess, noise)?;
+            let fitted =
+                fit::fit(&mut self.window, &mut PointSource::new(spread, SIZE_PX2, spill), guess, noise)?;
             self.told(&fitted, noise)
         } else {
             let fitted = fit::fit(&mut self.window, &mut self.belief.free(), guess, noise)?;
@@ -273,7 +285,17 @@ impl Meter {
     /// What a fit says of a spot.
     fn told<const N: usize>(&self, fitted: &Fitted<N>, noise: PixelNoise) -> Option<Model> {
         let misfit = fitted.chi2 / fitted.freedom;
-        if std::env::var("DBG").is_ok() { eprintln!("   N{N} full {} reach {} chi2 {:.1} free {} n {:?} sig {:?}", self.window.full_px, self.window.reach, fitted.chi2, fitted.freedom, fitted.numbers.as_slice(), fitted.covariance.diagonal().map(|v| v.sqrt()).as_slice()); }
+        if std::env::var("DBG").is_ok() {
+            eprintln!(
+                "   N{N} full {} reach {} chi2 {:.1} free {} n {:?} sig {:?}",
+                self.window.full_px,
+                self.window.reach,
+                fitted.chi2,
+                fitted.freedom,
+                fitted.numbers.as_slice(),
+                fitted.covariance.diagonal().map(|v| v.sqrt()).as_slice()
+            );
+        }
         if misfit > NO_POINT {
             return None;
         }
@@ -290,7 +312,8 @@ impl Meter {
             + (MISSHAPEN_PX * shape * shape) * (MISSHAPEN_PX * shape * shape);
         Some(Model {
             centre: self.window.place(fitted.numbers[0], fitted.numbers[1]),
-            covariance_px2: fitted.centre_covariance_px2() * noisier + Matrix2::from_diagonal_element(blur_px2),
+            covariance_px2: fitted.centre_covariance_px2() * noisier
+                + Matrix2::from_diagonal_element(blur_px2),
             light: Measured {
                 value: seen * fitted.light(),
                 sigma: seen * (fitted.light_variance() * noisier + unsure * unsure).sqrt(),
@@ -376,7 +399,9 @@ impl Meter {
             if let Some(fitted) = fit::fit(&mut self.window, &mut shape, guess, noise) {
                 let spills = self.window.full_px > 0 && self.window.spilled_share() > LEAST_SPILT;
                 if fitted.chi2 / fitted.freedom < NO_POINT && !spills {
-                    fit::residuals(&self.window, &mut shape, &fitted, noise, |light, square| bins.add(light, square));
+                    fit::residuals(&self.window, &mut shape, &fitted, noise, |light, square| {
+                        bins.add(light, square)
+                    });
                 }
             }
             *self.belief.noise_bins() = bins;

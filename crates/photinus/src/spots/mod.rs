@@ -3,6 +3,7 @@
 //! The stages, a module each, in the order of the flow:
 //!
 //! ```text
+//! tiles          the brightest and darkest pixel of each tile      -> bytes per tile
 //! background     the level of the surroundings, tile by tile      -> a threshold per tile
 //! runs           rows of pixels at or above their threshold       -> runs
 //! grouping       runs that touch, also by a corner                -> components
@@ -36,6 +37,7 @@ mod rejection;
 mod runs;
 mod settings;
 mod splitting;
+mod tiles;
 mod window;
 
 use nalgebra::Matrix2;

@@ -3,7 +3,7 @@
 //! In: the centres and radii of all parts. Out: the room around each. Small parts are looked up in the cells of a grid, so
 //! that a frame of ten thousands of specks takes no longer per speck; the few large ones are gone through.
 
-use super::background::TILE_PX;
+use super::tiles::TILE_PX;
 use crate::camera::Pixel;
 use crate::frame::FrameView;
 
@@ -30,6 +30,9 @@ impl Neighbourhood {
         let cell = |place: Pixel| cell_of(place.v, rows) * columns + cell_of(place.u, columns);
         self.parts.clear();
         self.parts.extend(parts);
+        if self.parts.is_empty() {
+            return;
+        }
         self.starts.clear();
         self.starts.resize(self.columns * self.rows + 1, 0);
         self.large.clear();

@@ -3,7 +3,7 @@
 //! In: the runs of a part, in raster order. Out: its outline, a first guess of its centre, the paper's middle pixel.
 
 use super::Extent;
-use super::background::{Background, TILE_PX};
+use super::background::Background;
 use super::ledge;
 use super::rejection::{Outline, Reason};
 use super::runs::Run;
@@ -65,13 +65,16 @@ pub(super) fn outline(
         extent.left = extent.left.min(u32::from(run.start));
         extent.right = extent.right.max(u32::from(run.end) - 1);
         let mut value = 0;
-        for (&pixel, u) in run.pixels(frame).iter().zip(u64::from(run.start)..) {
+        // From the last pixel: each sum so far, added up, counts a pixel once for every column that it lies right of the first.
+        let mut value_u = 0;
+        for &pixel in run.pixels(frame).iter().rev() {
             peak = pixel.max(peak);
             saturated_px += u32::from(pixel == u8::MAX);
+            value_u += value;
             value += u64::from(pixel);
-            light_u += u64::from(pixel) * u;
         }
         light += value;
+        light_u += value_u + value * u64::from(run.start);
         light_v += value * u64::from(run.v);
         add_moments(&mut moments, run, u0, v0);
         if let Some(mask) = mask {
@@ -81,7 +84,8 @@ pub(super) fn outline(
         area_px += run.len();
     }
     let light = light.max(1) as f64;
-    let bright = background.row(usize::from(first.v) / TILE_PX).0[usize::from(first.start) / TILE_PX] as u8;
+    let (u, v) = (usize::from(first.start), usize::from(first.v));
+    let bright = background.threshold(u, v) as u8;
     let cut = touches_border(&extent, frame);
     let goes_on = ledge::goes_on(frame, background, runs, &extent, peak.midpoint(bright));
     let outline = Outline { extent, area_px, peak, saturated_px, masked_px, cut, goes_on, moments };
@@ -92,7 +96,7 @@ pub(super) fn outline(
         guess: Pixel::new(light_u as f64 / light, light_v as f64 / light),
         middle: middle_pixel(runs, area_px),
         bright,
-        level: background.level(usize::from(first.start), usize::from(first.v)),
+        level: background.level(u, v),
         reason: None,
     }
 }
@@ -130,4 +134,37 @@ fn touches_border(extent: &Extent, frame: &FrameView<'_>) -> bool {
         || extent.top == 0
         || extent.right as usize + 1 == frame.width()
         || extent.bottom as usize + 1 == frame.height()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::spots::settings::Brightness;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn an_outline_tells_of_each_pixel_once(
+            left in 1u16..9, lengths in prop::collection::vec(1u16..40, 1..9), pixels in prop::collection::vec(1u8.., 50 * 9),
+        ) {
+            let frame = FrameView::packed(&pixels, 50, 9).unwrap();
+            let runs: Vec<Run> =
+                (0u16..).zip(&lengths).map(|(v, length)| Run { v, start: left, end: left + length }).collect();
+            let mut background = Background::default();
+            background.measure(&frame, Brightness::Threshold(1));
+            let part = outline(&frame, &background, &runs, None);
+            let places = runs.iter().flat_map(|run| (run.start..run.end).map(|u| (usize::from(u), usize::from(run.v))));
+            let values: Vec<(f64, f64, u8)> =
+                places.map(|(u, v)| (u as f64, v as f64, frame.row(v)[u])).collect();
+            let light: f64 = values.iter().map(|value| f64::from(value.2)).sum();
+            let centre = |of: fn(&(f64, f64, u8)) -> f64| {
+                values.iter().map(|value| of(value) * f64::from(value.2)).sum::<f64>() / light
+            };
+            prop_assert_eq!(part.outline.area_px as usize, values.len());
+            prop_assert_eq!(part.outline.peak, values.iter().map(|value| value.2).max().unwrap());
+            prop_assert_eq!(part.outline.saturated_px as usize, values.iter().filter(|value| value.2 == 255).count());
+            prop_assert!((part.guess.u - centre(|value| value.0)).abs() < 1e-9);
+            prop_assert!((part.guess.v - centre(|value| value.1)).abs() < 1e-9);
+        }
+    }
 }

@@ -2,8 +2,10 @@
 //!
 //! In: the runs of a component. Out: the runs of its parts, or nothing when it is one. A watershed from the brightest
 //! pixel down: a pixel joins the basin of its brightest neighbour; where two basins meet, the lower one stays on its own
-//! only if its summit stands out of the saddle by more than noise and a share of its height can explain. A saturated
-//! plateau has one summit: what lies inside it is not to be seen.
+//! only if its summit stands out of the saddle by more than noise and a mosaic of pixels that answer differently to light can
+//! explain. A saturated plateau has one summit: what lies inside it is not to be seen.
+
+use wide::u8x16;
 
 use super::runs::Run;
 use super::settings::Noise;
@@ -11,8 +13,14 @@ use crate::frame::FrameView;
 
 /// A summit must stand out of the saddle by this many sigma of its pixel noise...
 const PROMINENCE_SIGMAS: f64 = 6.0;
-/// ...and by this share of its height above the component's darkest pixel.
-const PROMINENCE_SHARE: f64 = 0.125;
+/// ...and by this share of its height above the background, wherever the threshold lies: pixels that answer by 4 % more and less
+/// in turn make dips of a twelfth, and noise adds to that...
+const PROMINENCE_SHARE: f64 = 0.11;
+/// ...or by this share of it where the other summit is so near that a single dark pixel lies between them: a pattern repeats
+/// every two pixels, and two markers so near each other have one summit.
+const NEAR_PROMINENCE_SHARE: f64 = 0.125;
+/// Summits nearer than this are that near, px.
+const NEAR_PX: i32 = 3;
 /// Fewer pixels than this hold no two summits with a saddle between them and three pixels from one to the other.
 const SMALLEST_PX: u32 = 4;
 /// More pixels than this are no two markers: the sun, a lit surface.
@@ -23,6 +31,7 @@ const NONE: u16 = u16::MAX;
 /// The parts of one component, and the room to find them in.
 #[derive(Debug, Default)]
 pub(super) struct Splitter {
+    summits: Vec<u8>,
     basin_at: Vec<u16>,
     value_at: Vec<u8>,
     pixels: Vec<(u8, u32)>,
@@ -33,8 +42,29 @@ pub(super) struct Splitter {
 #[derive(Clone, Copy, Debug)]
 struct Basin {
     summit: u8,
+    /// Where in the grid its summit is.
+    at: usize,
     parent: u16,
     part: u16,
+}
+
+/// What light stands on.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Ground {
+    /// The level of the surroundings.
+    pub(super) level: u8,
+    pub(super) noise: Noise,
+}
+
+impl Ground {
+    /// Whether a summit stands out of a saddle beside a higher one.
+    fn stands_out(&self, summit: u8, saddle: u8, is_near: bool) -> bool {
+        let value = f64::from(summit);
+        let sigma = (self.noise.read_dn * self.noise.read_dn + self.noise.shot * value).sqrt();
+        let share = if is_near { NEAR_PROMINENCE_SHARE } else { PROMINENCE_SHARE };
+        let least = share * (value - f64::from(self.level));
+        value - f64::from(saddle) > least.max(PROMINENCE_SIGMAS * sigma)
+    }
 }
 
 impl Splitter {
@@ -43,9 +73,9 @@ impl Splitter {
         &mut self,
         frame: &FrameView<'_>,
         runs: &[Run],
-        noise: Noise,
+        ground: Ground,
     ) -> Option<&[(u16, Run)]> {
-        if !has_several_summits(frame, runs) {
+        if !self.may_have_parts(frame, runs, ground) {
             return None;
         }
         let grid = Grid::around(runs);
@@ -53,8 +83,33 @@ impl Splitter {
             return None;
         }
         self.order_pixels(frame, runs, &grid);
-        self.flood(&grid, noise);
+        self.flood(&grid, ground);
         self.collect(runs, &grid)
+    }
+
+    /// Whether some summit beside the highest stands out of the darkest pixel, the lowest saddle that could be.
+    fn may_have_parts(&mut self, frame: &FrameView<'_>, runs: &[Run], ground: Ground) -> bool {
+        if runs.iter().map(Run::len).sum::<u32>() < SMALLEST_PX {
+            return false;
+        }
+        self.summits.clear();
+        for run in runs {
+            let row = frame.row(usize::from(run.v));
+            for u in (usize::from(run.start)..usize::from(run.end)).step_by(LANES) {
+                let mut bits = summits(frame, u, usize::from(run.v)) & below_bit(usize::from(run.end) - u);
+                while bits != 0 {
+                    self.summits.push(row[u + bits.trailing_zeros() as usize]);
+                    bits &= bits - 1;
+                }
+            }
+        }
+        if self.summits.len() < 2 {
+            return false;
+        }
+        self.summits.sort_unstable();
+        self.summits.pop();
+        let darkest = runs.iter().flat_map(|run| run.pixels(frame)).copied().min().unwrap_or(0);
+        self.summits.iter().any(|&summit| ground.stands_out(summit, darkest, false))
     }
 
     fn order_pixels(&mut self, frame: &FrameView<'_>, runs: &[Run], grid: &Grid) {
@@ -66,13 +121,12 @@ impl Splitter {
         self.pixels.sort_unstable_by_key(|&(value, at)| (u8::MAX - value, at));
     }
 
-    fn flood(&mut self, grid: &Grid, noise: Noise) {
+    fn flood(&mut self, grid: &Grid, ground: Ground) {
         self.basin_at.clear();
         self.basin_at.resize(grid.len(), NONE);
         self.value_at.clear();
         self.value_at.resize(grid.len(), 0);
         self.basins.clear();
-        let darkest = self.pixels.last().map_or(0, |&(value, _)| value);
         for i in 0..self.pixels.len() {
             let (value, at) = self.pixels[i];
             let at = at as usize;
@@ -91,28 +145,24 @@ impl Splitter {
                 if highest == NONE {
                     highest = near;
                 } else if near != highest {
-                    highest = self.meet(highest, near, value, darkest, noise);
+                    highest = self.meet(highest, near, value, grid, ground);
                 }
             }
             if home == NONE {
                 home = self.basins.len() as u16;
-                self.basins.push(Basin { summit: value, parent: home, part: NONE });
+                self.basins.push(Basin { summit: value, at, parent: home, part: NONE });
             }
             (self.basin_at[at], self.value_at[at]) = (home, value);
         }
     }
 
     /// Two basins meet at a saddle: the lower becomes part of the higher unless it stands out. Returns the higher.
-    fn meet(&mut self, a: u16, b: u16, saddle: u8, darkest: u8, noise: Noise) -> u16 {
-        let (high, low) = if self.basins[usize::from(b)].summit > self.basins[usize::from(a)].summit {
-            (b, a)
-        } else {
-            (a, b)
-        };
-        let summit = f64::from(self.basins[usize::from(low)].summit);
-        let sigma = (noise.read_dn * noise.read_dn + noise.shot * summit).sqrt();
-        let share = PROMINENCE_SHARE * (summit - f64::from(darkest));
-        if summit - f64::from(saddle) <= share.max(PROMINENCE_SIGMAS * sigma) {
+    fn meet(&mut self, a: u16, b: u16, saddle: u8, grid: &Grid, ground: Ground) -> u16 {
+        let [first, second] = [a, b].map(|basin| self.basins[usize::from(basin)]);
+        let is_near = grid.distance_px2(first.at, second.at) < NEAR_PX * NEAR_PX;
+        let (high, low, summit) =
+            if second.summit > first.summit { (b, a, first.summit) } else { (a, b, second.summit) };
+        if !ground.stands_out(summit, saddle, is_near) {
             self.basins[usize::from(low)].parent = high;
         }
         high
@@ -153,33 +203,34 @@ impl Splitter {
     }
 }
 
-/// Whether more than one pixel is as high as its neighbours and higher than those before it in raster order: a single
-/// summit, also a plateau without dents, has one such pixel.
-fn has_several_summits(frame: &FrameView<'_>, runs: &[Run]) -> bool {
-    if runs.iter().map(Run::len).sum::<u32>() < SMALLEST_PX {
-        return false;
+/// Pixels looked at together.
+const LANES: usize = 16;
+
+/// Of sixteen pixels of row `v` from column `u` on, a bit for each that is as high as its neighbours and higher than those
+/// before it in raster order: a single summit, also a plateau without dents, has one such pixel.
+fn summits(frame: &FrameView<'_>, u: usize, v: usize) -> u32 {
+    let row = |v: usize| if v < frame.height() { beside(frame.row(v), u) } else { [u8x16::ZERO; 3] };
+    let [left, here, right] = row(v);
+    let [above, below] =
+        [v.wrapping_sub(1), v + 1].map(row).map(|[left, here, right]| left.max(here).max(right));
+    let (before, after) = (above.max(left), below.max(right));
+    (!before.max(here).simd_eq(before) & after.max(here).simd_eq(here)).to_bitmask()
+}
+
+/// Sixteen pixels of a row from the one left of column `u` on, from `u` on, and from the one right of it on; 0 outside.
+#[inline(always)]
+fn beside(row: &[u8], u: usize) -> [u8x16; 3] {
+    let sixteen = |pixels: &[u8]| pixels.first_chunk().map_or(u8x16::ZERO, |&pixels| u8x16::new(pixels));
+    if let Some(pixels) = u.checked_sub(1).and_then(|left| row[left..].first_chunk::<{ LANES + 2 }>()) {
+        return [sixteen(pixels), sixteen(&pixels[1..]), sixteen(&pixels[2..])];
     }
-    let mut summits = 0;
-    for run in runs {
-        let v = usize::from(run.v);
-        let above = v.checked_sub(1).map(|v| frame.row(v));
-        let here = frame.row(v);
-        let below = (v + 1 < frame.height()).then(|| frame.row(v + 1));
-        for u in usize::from(run.start)..usize::from(run.end) {
-            let value = here[u];
-            let (first, last) = (u.saturating_sub(1), (u + 1).min(here.len() - 1));
-            let highest =
-                |row: Option<&[u8]>| row.map_or(0, |row| row[first..=last].iter().fold(0, |h, &p| p.max(h)));
-            let left = if u > 0 { here[u - 1] } else { 0 };
-            if value > left && value >= here[last] && value >= highest(below) && value > highest(above) {
-                summits += 1;
-                if summits > 1 {
-                    return true;
-                }
-            }
-        }
-    }
-    false
+    let pixel = |u: usize| u.checked_sub(1).and_then(|u| row.get(u)).copied().unwrap_or(0);
+    [0, 1, 2].map(|from| u8x16::new(std::array::from_fn(|i| pixel(u + from + i))))
+}
+
+/// All bits below one.
+fn below_bit(bit: usize) -> u32 {
+    if bit < 32 { (1 << bit) - 1 } else { u32::MAX }
 }
 
 /// The pixels around a component, with a border of one so that every neighbour has an index.
@@ -212,6 +263,13 @@ impl Grid {
         (usize::from(v) - self.top + 1) * self.width + usize::from(u) - self.left + 1
     }
 
+    /// The squared distance between two indices, px^2.
+    fn distance_px2(&self, a: usize, b: usize) -> i32 {
+        let du = (a % self.width) as i32 - (b % self.width) as i32;
+        let dv = (a / self.width) as i32 - (b / self.width) as i32;
+        du * du + dv * dv
+    }
+
     fn neighbours(&self) -> [isize; 8] {
         let row = self.width as isize;
         [-row, -1, 1, row, -row - 1, 1 - row, row - 1, row + 1]
@@ -221,6 +279,9 @@ impl Grid {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use proptest::prelude::*;
+
+    const DARK: Ground = Ground { level: 0, noise: Noise { read_dn: 0.45, shot: 0.03 } };
 
     fn runs_of(rows: &[&[u8]]) -> (Vec<u8>, Vec<Run>) {
         let pixels = rows.concat();
@@ -237,9 +298,7 @@ mod tests {
         let (pixels, runs) = runs_of(rows);
         let frame = FrameView::packed(&pixels, rows[0].len(), rows.len()).unwrap();
         let mut splitter = Splitter::default();
-        splitter
-            .split(&frame, &runs, Noise::default())
-            .map_or(1, |parts| usize::from(parts.last().unwrap().0) + 1)
+        splitter.split(&frame, &runs, DARK).map_or(1, |parts| usize::from(parts.last().unwrap().0) + 1)
     }
 
     #[test]
@@ -263,7 +322,7 @@ mod tests {
         let pixels = [255, 0, 255, 255, 255, 255];
         let frame = FrameView::packed(&pixels, 3, 2).unwrap();
         let runs = [(0, 0, 1), (0, 2, 3), (1, 0, 3)].map(|(v, start, end)| Run { v, start, end });
-        let silent = Noise { read_dn: 0.0, shot: 0.0 };
+        let silent = Ground { noise: Noise { read_dn: 0.0, shot: 0.0 }, level: 0 };
         assert!(Splitter::default().split(&frame, &runs, silent).is_none());
     }
 
@@ -273,7 +332,7 @@ mod tests {
             runs_of(&[&[40, 90, 60, 40, 60, 40], &[90, 250, 110, 60, 140, 60], &[40, 90, 60, 40, 60, 40]]);
         let frame = FrameView::packed(&pixels, 6, 3).unwrap();
         let mut splitter = Splitter::default();
-        let parts = splitter.split(&frame, &runs, Noise::default()).unwrap();
+        let parts = splitter.split(&frame, &runs, DARK).unwrap();
         let areas = [0, 1]
             .map(|part| parts.iter().filter(|(p, _)| *p == part).map(|(_, run)| run.len()).sum::<u32>());
         assert!(areas[1] >= 8, "{areas:?}");
@@ -284,8 +343,58 @@ mod tests {
         let (pixels, runs) = runs_of(&[&[30, 200, 60, 60, 180, 40], &[20, 60, 30, 30, 90, 40]]);
         let frame = FrameView::packed(&pixels, 6, 2).unwrap();
         let mut splitter = Splitter::default();
-        let parts = splitter.split(&frame, &runs, Noise::default()).unwrap();
+        let parts = splitter.split(&frame, &runs, DARK).unwrap();
         assert_eq!(parts.iter().map(|(_, run)| run.len()).sum::<u32>(), 12);
         assert!(parts.is_sorted_by_key(|(part, run)| (*part, run.v, run.start)));
+    }
+
+    /// The obviously right version: a pixel beside those before and after it in raster order.
+    fn is_summit(frame: &FrameView<'_>, u: usize, v: usize) -> bool {
+        let value = |du: i32, dv: i32| {
+            let (u, v) = (u as i32 + du, v as i32 + dv);
+            let inside = u >= 0 && v >= 0 && u < frame.width() as i32 && v < frame.height() as i32;
+            if inside { frame.row(v as usize)[u as usize] } else { 0 }
+        };
+        let own = value(0, 0);
+        let is_before = |&(du, dv): &(i32, i32)| dv < 0 || (dv == 0 && du < 0);
+        let around = (-1..=1).flat_map(|dv| (-1..=1).map(move |du| (du, dv))).filter(|&off| off != (0, 0));
+        let (before, after): (Vec<_>, Vec<_>) = around.partition(is_before);
+        before.iter().all(|off| own > value(off.0, off.1))
+            && after.iter().all(|off| own >= value(off.0, off.1))
+    }
+
+    proptest! {
+        #[test]
+        fn summits_are_those_found_pixel_by_pixel(
+            width in 1usize..60, height in 1usize..12, levels in 1u8..6, step in 1u8..40,
+            pixels in prop::collection::vec(any::<u8>(), 60 * 12),
+        ) {
+            let pixels: Vec<u8> = pixels[..width * height].iter().map(|p| 1 + p % levels * step).collect();
+            let frame = FrameView::packed(&pixels, width, height).unwrap();
+            for v in 0..height {
+                for u in 0..width {
+                    let own = u - u % 7;
+                    let found = summits(&frame, own, v) >> (u - own) & 1 == 1;
+                    prop_assert_eq!(found, is_summit(&frame, u, v), "{} {}", u, v);
+                }
+            }
+        }
+
+        #[test]
+        fn what_has_parts_is_never_passed_over(
+            width in 4usize..20, height in 3usize..12, level in 0u8..60, levels in 2u8..9,
+            pixels in prop::collection::vec(any::<u8>(), 20 * 12), shot in 0.0..2.0,
+        ) {
+            let pixels: Vec<u8> = pixels[..width * height].iter().map(|p| 60 + p % levels * (190 / levels)).collect();
+            let frame = FrameView::packed(&pixels, width, height).unwrap();
+            let runs: Vec<Run> = (0..height as u16).map(|v| Run { v, start: 0, end: width as u16 }).collect();
+            let ground = Ground { level, noise: Noise { read_dn: 0.3, shot } };
+            let mut splitter = Splitter::default();
+            let grid = Grid::around(&runs);
+            splitter.order_pixels(&frame, &runs, &grid);
+            splitter.flood(&grid, ground);
+            let parts = splitter.collect(&runs, &grid).map(<[_]>::to_vec);
+            prop_assert_eq!(splitter.split(&frame, &runs, ground).map(<[_]>::to_vec), parts);
+        }
     }
 }

@@ -119,7 +119,14 @@ impl Window {
                     continue;
                 }
                 let (signal, full) = (Lanes::new(signal), Lanes::new(full));
-                let four = Four { row: row as usize, column: column as usize, signal, counts, full, ..Four::default() };
+                let four = Four {
+                    row: row as usize,
+                    column: column as usize,
+                    signal,
+                    counts,
+                    full,
+                    ..Four::default()
+                };
                 self.fours.push(four);
             }
         }
@@ -158,7 +165,9 @@ impl Window {
             four.by_spill[0] = (spilled - four.spilled) * per_step;
         });
         self.spill(spill.share, well_dn * (1.0 + SPILL_STEP as f32), stride);
-        self.told(spill.share, stride, |four, spilled| four.by_spill[1] = (spilled - four.spilled) * per_step);
+        self.told(spill.share, stride, |four, spilled| {
+            four.by_spill[1] = (spilled - four.spilled) * per_step
+        });
     }
 
     /// Works out what each pixel gives on so that none holds more than a well: given = max(0, charge - well + what the neighbours
@@ -171,7 +180,8 @@ impl Window {
             let mut most = 0.0_f32;
             for step in 0..last - first {
                 let at = if round % 2 == 0 { first + step } else { last - 1 - step };
-                let received = quarter * (given[at - 1] + given[at + 1] + given[at - stride] + given[at + stride]);
+                let received =
+                    quarter * (given[at - 1] + given[at + 1] + given[at - stride] + given[at + stride]);
                 let wanted = self.charge[at] - well_dn + received;
                 let new = (given[at] + OVER_RELAXED * (wanted - given[at])).max(0.0);
                 most = most.max((new - given[at]).abs());
@@ -188,7 +198,9 @@ impl Window {
         let quarter = Lanes::splat(0.25 * share.clamp(0.0, 1.0) as f32);
         for four in &mut self.fours {
             let at = (four.row + 1) * stride + four.column + 1;
-            let read = |at: usize| self.given[at..].first_chunk::<LANES>().map_or(Lanes::ZERO, |&four| Lanes::new(four));
+            let read = |at: usize| {
+                self.given[at..].first_chunk::<LANES>().map_or(Lanes::ZERO, |&four| Lanes::new(four))
+            };
             let received = read(at - 1) + read(at + 1) + read(at - stride) + read(at + stride);
             with(four, lanes::positive(quarter * received - read(at)));
         }
@@ -232,7 +244,9 @@ impl Window {
     /// How much of what is seen has spilled over from full pixels, 0 to 1.
     pub(super) fn spilled_share(&self) -> f64 {
         let sum = |of: &dyn Fn(&Four) -> Lanes| {
-            f64::from(lanes::sum(self.fours.iter().fold(Lanes::ZERO, |sum, four| sum + of(four) * four.counts)))
+            f64::from(lanes::sum(
+                self.fours.iter().fold(Lanes::ZERO, |sum, four| sum + of(four) * four.counts),
+            ))
         };
         let spilled = sum(&|four| four.spilled * (Lanes::ONE - four.full));
         let seen = sum(&|four| lanes::positive(four.signal) * (Lanes::ONE - four.full));
@@ -261,7 +275,9 @@ impl Window {
 
     /// All signal that counts, grey levels.
     pub(super) fn flux(&self) -> f64 {
-        f64::from(lanes::sum(self.fours.iter().fold(Lanes::ZERO, |sum, four| sum + four.signal * four.counts)))
+        f64::from(lanes::sum(
+            self.fours.iter().fold(Lanes::ZERO, |sum, four| sum + four.signal * four.counts),
+        ))
     }
 }
 

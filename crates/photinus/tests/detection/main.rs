@@ -13,6 +13,7 @@ mod determinism;
 #[path = "../hash/mod.rs"]
 mod hash;
 mod large;
+mod mosaic;
 mod properties;
 mod scene;
 mod tiny;

@@ -72,6 +72,18 @@ impl Scene {
         }
     }
 
+    /// The same where wells are full at this level.
+    pub(crate) fn clipped(&self, full_dn: f64) -> Self {
+        Self { light: self.light.iter().map(|light| light.min(full_dn)).collect(), ..*self }
+    }
+
+    /// The same where each pixel answers to light in its own way.
+    pub(crate) fn answered(&self, answer: impl Fn(usize, usize) -> f64) -> Self {
+        let pixels = self.light.iter().enumerate();
+        let light = pixels.map(|(i, light)| light * answer(i % self.width, i / self.width)).collect();
+        Self { light, ..*self }
+    }
+
     /// What the sensor gives with Gaussian noise of this sigma.
     pub(crate) fn noisy(&self, sigma: f64, rng: &mut Pcg64) -> Vec<u8> {
         let mut value = |light: f64| {

@@ -71,7 +71,7 @@ fn spot() -> impl Strategy<Value = (Spot, Option<u32>)> {
                     peak,
                     saturated_px,
                     flux,
-            light: None,
+                    light: None,
                     background,
                     middle: (u, v),
                     extent,

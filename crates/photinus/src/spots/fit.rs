@@ -25,8 +25,8 @@ const UNDAMPED: usize = 3;
 /// Longest step of the centre, px.
 const LONGEST_PX: f64 = 0.5;
 /// A step shorter than this is the last, px, if it changes the light by less than this share.
-const DONE_PX: f64 = 0.01;
-const DONE_SHARE: f64 = 0.01;
+const DONE_PX: f64 = 0.03;
+const DONE_SHARE: f64 = 0.03;
 /// A last step longer than this has not settled, px.
 const SETTLED_PX: f64 = 0.05;
 /// How far light is taken to change in a step, over the light.
@@ -112,7 +112,9 @@ struct Sums<const N: usize> {
 }
 
 /// Light of other first guesses over that of the first, where so many pixels are full that it may be far off.
-const BRIGHTER: [f64; 3] = [1.0, 3.0, 10.0];
+const BRIGHTER: [f64; 2] = [3.0, 10.0];
+/// Squared residuals over degrees of freedom from which others are tried.
+const GOOD_FIT: f64 = 1.5;
 /// Lights spread evenly in space are as many per light as light^-5/2: what that adds to the cost per logarithm of light.
 const COUNTS: f64 = 5.0;
 /// Fewer full pixels hide little.
@@ -125,16 +127,22 @@ pub(super) fn fit<const N: usize>(
     (u, v, light): (f64, f64, f64),
     noise: PixelNoise,
 ) -> Option<Fitted<N>> {
-    let guesses = if window.full_px >= HIDING_PX { &BRIGHTER[..] } else { &BRIGHTER[..1] };
-    let mut found: [Option<Fitted<N>>; BRIGHTER.len()] = [None; BRIGHTER.len()];
-    for (found, brighter) in found.iter_mut().zip(guesses) {
+    let first = fit_from(window, shape, (u, v, light), noise);
+    let fits_well = |fitted: &Fitted<N>| fitted.chi2 < GOOD_FIT * fitted.freedom;
+    if window.full_px < HIDING_PX || first.as_ref().is_some_and(fits_well) {
+        return first;
+    }
+    let mut found: [Option<Fitted<N>>; BRIGHTER.len() + 1] = [None; BRIGHTER.len() + 1];
+    found[BRIGHTER.len()] = first;
+    for (found, brighter) in found.iter_mut().zip(BRIGHTER) {
         *found = fit_from(window, shape, (u, v, brighter * light), noise);
     }
     // Where nothing fits well, misfits count for less.
     let misfits = found.iter().flatten().map(|fitted| fitted.chi2 / fitted.freedom);
     let least = misfits.fold(f64::INFINITY, f64::min).max(1.0);
-    let cost =
-        |fitted: &Fitted<N>| fitted.chi2 / least + fitted.rest_of_cost + COUNTS * libm::log(fitted.light());
+    let cost = |fitted: &Fitted<N>| {
+        fitted.chi2 / least + fitted.rest_of_cost + COUNTS * libm::log(fitted.light())
+    };
     found.into_iter().flatten().min_by(|a, b| cost(a).total_cmp(&cost(b)))
 }
 
@@ -169,14 +177,6 @@ fn fit_from<const N: usize>(
             matrix[(number, number)] += weight;
             right[number] += weight * (mean - numbers[number]);
         }
-        if std::env::var("DBG2").is_ok() {
-            eprintln!(
-                "   try {} {:?} diag {:?}",
-                step_number,
-                numbers.as_slice(),
-                matrix.diagonal().as_slice()
-            );
-        }
         let factor = matrix.cholesky()?;
         let mut step = factor.solve(&right);
         for number in [U, V] {
@@ -196,16 +196,6 @@ fn fit_from<const N: usize>(
         step *= gain;
         numbers += step;
         previous = step;
-        if std::env::var("DBG2").is_ok() {
-            eprintln!(
-                "     fit N{N} {step_number} full {} n {:.3?} step {:.3?} chi2 {:.1} px {}",
-                window.full_px,
-                numbers.as_slice(),
-                step.as_slice(),
-                sums.chi2,
-                sums.pixels
-            );
-        }
         let is_done = step_px < DONE_PX && step[LIGHT].abs() < DONE_SHARE * before;
         let mut cost = sums.log_variances;
         for number in WIDTH..N {

@@ -111,18 +111,6 @@ impl Belief {
         self.sigmas().iter().zip(SURE).all(|(sigma, sure)| *sigma < sure)
     }
 
-    pub(super) fn debug(&self) -> String {
-        format!(
-            "spill {:.3} well {:.3} core {:.3} q {:.3} halo {:.3} sig {:.3?} noise {:?}",
-            self.numbers[3],
-            self.numbers[4],
-            self.core_px(),
-            self.numbers[1],
-            libm::exp(self.numbers[2]) * self.core_px(),
-            self.sigmas(),
-            self.noise.noise
-        )
-    }
     fn sigmas(&self) -> [f64; NUMBERS] {
         let covariance = self.information.try_inverse().unwrap_or_else(Information::zeros);
         std::array::from_fn(|i| covariance[(i, i)].max(0.0).sqrt())

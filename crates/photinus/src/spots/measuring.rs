@@ -56,6 +56,8 @@ const LEAST_AROUND: f32 = 0.12;
 const SPILT_LIGHT: f64 = 0.3;
 /// Share of spilled charge in a spot from which its residuals say nothing of noise.
 const LEAST_SPILT: f64 = 0.02;
+/// Spots of a frame that are learnt from, at most.
+const MOST_TELLING: usize = 40;
 /// Rounds in which a frame's spots and the point spread are fitted to each other.
 const ROUNDS: usize = 5;
 /// Frames after which a belief that is sure of itself learns no more of the spread.
@@ -80,6 +82,8 @@ pub(super) struct Meter {
     noise: Noise,
     belief: Belief,
     full_level: FullLevel,
+    /// Whether spots are fitted at all: it takes time.
+    fits: bool,
     frames: u32,
     window: Window,
     patch: Patch,
@@ -94,6 +98,7 @@ impl Meter {
             noise: settings.noise,
             belief: Belief::new(settings.noise, u8::MAX),
             full_level: FullLevel::default(),
+            fits: matches!(settings.brightness, Brightness::Contrast(_)),
             frames: 0,
             window: Window::default(),
             patch: Patch::default(),
@@ -104,13 +109,13 @@ impl Meter {
 
     /// Fits all parts that may be points.
     pub(super) fn fit(&mut self, frame: &FrameView<'_>, parts: &[Part], near: &Neighbourhood) {
-        let full_from = self.full_from(frame, parts);
-        self.learn(frame, parts, near, full_from);
-        if std::env::var("DBG").is_ok() {
-            eprintln!("{} sure {} {:?}", self.frames, self.belief.is_sure(), self.belief.debug());
-        }
         self.models.clear();
         self.models.resize(parts.len(), None);
+        if !self.fits {
+            return;
+        }
+        let full_from = self.full_from(frame, parts);
+        self.learn(frame, parts, near, full_from);
         for others in [false, true] {
             for (index, part) in parts.iter().enumerate() {
                 if part.reason.is_some() || part.radius_px > WIDEST_POINT_PX {
@@ -181,9 +186,6 @@ impl Meter {
         self.patch.read(frame, nearest_pixel(part.guess), reach_px(window_px), &around);
         let flux = self.patch.flux(part.guess, window_px as f32);
         let model = self.models[index];
-        if std::env::var("DBG").is_ok() && model.is_none() {
-            eprintln!("NONE {:?}", part.guess);
-        }
         let (centre, covariance_px2) = match model {
             Some(model) => (model.centre, model.covariance_px2),
             None => self.balanced(part, window_px, around),
@@ -262,7 +264,7 @@ impl Meter {
     fn model(&mut self, part: &Part, around: Surroundings) -> Option<Model> {
         let noise = self.pixel_noise(around);
         let guess = self.guess(part);
-        let is_sure = self.optics.is_some() || self.belief.is_sure();
+        let is_sure = self.optics.is_some() || self.belief.is_sure() || self.frames >= LEARNT_FRAMES;
         if is_sure {
             let spread = spread(self.optics.as_deref(), &self.belief, part.guess);
             let spill = self.spill();
@@ -285,17 +287,6 @@ impl Meter {
     /// What a fit says of a spot.
     fn told<const N: usize>(&self, fitted: &Fitted<N>, noise: PixelNoise) -> Option<Model> {
         let misfit = fitted.chi2 / fitted.freedom;
-        if std::env::var("DBG").is_ok() {
-            eprintln!(
-                "   N{N} full {} reach {} chi2 {:.1} free {} n {:?} sig {:?}",
-                self.window.full_px,
-                self.window.reach,
-                fitted.chi2,
-                fitted.freedom,
-                fitted.numbers.as_slice(),
-                fitted.covariance.diagonal().map(|v| v.sqrt()).as_slice()
-            );
-        }
         if misfit > NO_POINT {
             return None;
         }
@@ -324,7 +315,7 @@ impl Meter {
 
     /// Takes in what the frame's spots say of the point spread and of noise.
     fn learn(&mut self, frame: &FrameView<'_>, parts: &[Part], near: &Neighbourhood, full_from: u8) {
-        if self.optics.is_some() || (self.belief.is_sure() && self.frames >= LEARNT_FRAMES) {
+        if self.optics.is_some() || self.frames >= LEARNT_FRAMES {
             return;
         }
         let tells = |index: usize, part: &Part| {
@@ -346,10 +337,12 @@ impl Meter {
             let mut told = Told::default();
             let numbers = self.belief.numbers();
             let is_last = round + 1 == ROUNDS;
+            let mut telling = MOST_TELLING;
             for (index, part) in parts.iter().enumerate() {
-                if !tells(index, part) {
+                if telling == 0 || !tells(index, part) {
                     continue;
                 }
+                telling -= 1;
                 let (_, around) = self.open(frame, part, f64::INFINITY, full_from);
                 let (noise, guess) = (self.pixel_noise(around), self.guess(part));
                 if !self.is_light(noise) {
@@ -385,10 +378,12 @@ impl Meter {
         tells: &dyn Fn(usize, &Part) -> bool,
         full_from: u8,
     ) {
+        let mut telling = MOST_TELLING;
         for (index, part) in parts.iter().enumerate() {
-            if !tells(index, part) {
+            if telling == 0 || !tells(index, part) {
                 continue;
             }
+            telling -= 1;
             let (_, around) = self.open(frame, part, f64::INFINITY, full_from);
             if !self.is_light(self.pixel_noise(around)) {
                 continue;

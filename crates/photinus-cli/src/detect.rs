@@ -46,25 +46,47 @@ pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> Result<(), Failure> {
     let done = args.output.done()?;
     let input = args.input.open()?;
     let masks = args.spots.masks(&input, terminal)?;
-    let mut detector =
-        Detector::new(args.spots.settings()).map_err(|error| Failure::Input(error.to_string()))?;
+    let detector = || Detector::new(args.spots.settings()).map_err(|error| Failure::Input(error.to_string()));
+    let detectors = masks.iter().map(|_| detector()).collect::<Result<_, _>>()?;
     let read: Vec<PathBuf> = input.files.iter().cloned().chain(args.spots.file()).collect();
     let outputs = args.output.claim(None, &read, Vec::new(), lines)?;
-    run::run(input, outputs, done.as_ref(), terminal, |entry, clock| {
+    run::run(input, outputs, done.as_ref(), terminal, &mut Detecting { detectors, masks })
+}
+
+/// Detecting in the frames of each camera.
+struct Detecting {
+    detectors: Vec<Detector>,
+    masks: Vec<Option<MaskFile>>,
+}
+
+impl run::Work for Detecting {
+    fn fill(&mut self, entry: &mut Entry, clock: &mut Clock) -> photinus_io::Result<()> {
         let Some(image) = &entry.image else { return Ok(()) };
         let frame = image.view();
-        let mask = masks[entry.camera].as_ref();
+        let mask = self.masks[entry.camera].as_ref();
         if let Some(mask) = mask {
             mask.check_size(frame.width(), frame.height())?;
         }
-        let found = detector
+        let found = self.detectors[entry.camera]
             .detect(&frame, mask_of(mask))
             .map_err(|error| in_frame(Error::new(&entry.record.source, error), entry))?;
         clock.lap("spots");
         entry.record.spots = found.spots.iter().map(SpotRecord::from).collect();
         entry.record.rejected = found.rejected.iter().map(RejectedRecord::from).collect();
         Ok(())
-    })
+    }
+
+    fn learns(&self) -> bool {
+        self.detectors.iter().any(Detector::learns)
+    }
+
+    fn learn(&mut self, entry: &Entry) {
+        if let Some(image) = &entry.image {
+            // A mask of another size is refused, and then the frame teaches nothing.
+            let mask = mask_of(self.masks[entry.camera].as_ref());
+            let _ = self.detectors[entry.camera].detect(&image.view(), mask);
+        }
+    }
 }
 
 /// Says which frame an error is about, where the file does not say it.

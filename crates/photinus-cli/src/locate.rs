@@ -187,16 +187,38 @@ pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> std::result::Result<(
     let mut views = args.views(&input, &airframe, terminal)?;
     let cameras = views.iter().map(|view| view.camera.clone()).collect();
     let outputs = args.output.claim(args.csv.as_deref(), &read, cameras, lines)?;
-    let fill = |entry: &mut Entry, clock: &mut Clock| {
-        let view = &mut views[entry.camera];
-        entry.gravity = args.gravity.or(entry.gravity);
-        fill(entry, &mut view.locator, airframe.name(), clock)?;
+    let mut work = Locating { views: &mut views, airframe: airframe.name(), gravity: args.gravity };
+    run::run(input, outputs, done.as_ref(), terminal, &mut work)
+}
+
+/// Locating in the frames of each camera.
+struct Locating<'a> {
+    views: &'a mut [View],
+    airframe: &'a str,
+    gravity: Option<Unit<Vector3<f64>>>,
+}
+
+impl run::Work for Locating<'_> {
+    fn fill(&mut self, entry: &mut Entry, clock: &mut Clock) -> Result<()> {
+        let view = &mut self.views[entry.camera];
+        entry.gravity = self.gravity.or(entry.gravity);
+        fill(entry, &mut view.locator, self.airframe, clock)?;
         if let Some(mounting) = &view.mounting {
             entry.record.put_mounting(mounting);
         }
         Ok(())
-    };
-    run::run(input, outputs, done.as_ref(), terminal, fill)
+    }
+
+    fn learns(&self) -> bool {
+        self.views.iter().any(|view| view.locator.learns())
+    }
+
+    fn learn(&mut self, entry: &Entry) {
+        if let Some(image) = &entry.image {
+            // A frame of another size is refused, and teaches nothing.
+            let _ = self.views[entry.camera].locator.learn(&image.view());
+        }
+    }
 }
 
 /// Completes the record of a frame.

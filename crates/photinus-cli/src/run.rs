@@ -25,20 +25,34 @@ use crate::terminal::{Terminal, input_name};
 /// After so many failed frames the others are only counted: the first ones say what is wrong.
 const REPORTED_FAILURES: u64 = 10;
 
-/// Takes every frame of `input` through `fill`, which completes its record, and writes it. What is `done` is skipped; its last
-/// frame is made once more, to see that this run finds the same.
+/// What is done with frames.
+pub(crate) trait Work {
+    /// Completes the record of a frame.
+    ///
+    /// # Errors
+    /// Those of the method, told of the frame.
+    fn fill(&mut self, entry: &mut Entry, clock: &mut Clock) -> Result<()>;
+
+    /// Whether frames still tell something of their camera.
+    fn learns(&self) -> bool;
+
+    /// Learns from a frame what [`Self::fill`] would have learnt; what that refuses teaches nothing.
+    fn learn(&mut self, entry: &Entry);
+}
+
+/// Takes every frame of `input` through `work`, which completes its record, and writes it. What is `done` is skipped, once nothing is left to
+/// learn from it; its last frame is made once more, to see that this run finds the same.
 pub(crate) fn run(
     input: Input,
     outputs: Claimed,
     done: Option<&Done>,
     terminal: &mut Terminal,
-    mut fill: impl FnMut(&mut Entry, &mut Clock) -> Result<()>,
+    work: &mut impl Work,
 ) -> std::result::Result<(), Failure> {
     let (mut summary, mut clock, mut told) = (Summary::default(), Clock::new(), HashSet::new());
     let mut entries = input.entries;
-    let mut fill = |entry: &mut Entry, clock: &mut Clock| guarded(entry, clock, &mut fill);
     let again = match done {
-        Some(done) => Some(go_on(done, &mut entries, &mut clock, &mut fill)?),
+        Some(done) => Some(go_on(done, &mut entries, &mut clock, work)?),
         None => None,
     };
     let mut outputs = outputs.open(done).map_err(Failure::input)?;
@@ -54,7 +68,7 @@ pub(crate) fn run(
         let filled = read.and_then(|mut entry| {
             tell_conversions(&entry, &mut told, terminal);
             clock.skip();
-            fill(&mut entry, &mut clock)?;
+            guarded(&mut entry, &mut clock, work)?;
             Ok(entry)
         });
         match filled {
@@ -96,29 +110,35 @@ pub(crate) fn run(
     }
 }
 
-/// Skips what is done and makes its last frame once more.
+/// Learns from what is done, skips the rest of it and makes its last frame once more.
 fn go_on(
     done: &Done,
     entries: &mut Entries,
     clock: &mut Clock,
-    fill: &mut impl FnMut(&mut Entry, &mut Clock) -> Result<()>,
+    work: &mut impl Work,
 ) -> std::result::Result<Entry, Failure> {
-    entries.skip_to(done.frame());
-    let reached = entries.find(|entry| entry.as_ref().is_ok_and(|entry| done.is_last(&entry.record)));
-    let Some(Ok(mut entry)) = reached else { return Err(done.never_reached()) };
-    fill(&mut entry, clock).map_err(Failure::input)?;
-    done.check(&entry.record)?;
-    Ok(entry)
+    loop {
+        if !work.learns() {
+            entries.skip_to(done.frame());
+        }
+        let Some(read) = entries.next() else { return Err(done.never_reached()) };
+        let Ok(mut entry) = read else { continue };
+        if done.is_last(&entry.record) {
+            guarded(&mut entry, clock, work).map_err(Failure::input)?;
+            done.check(&entry.record)?;
+            return Ok(entry);
+        }
+        if work.learns() {
+            // What the method refused, or failed on, was told by the run before.
+            let _ = catch_unwind(AssertUnwindSafe(|| work.learn(&entry)));
+        }
+    }
 }
 
 /// A panic on a frame is an error of that frame.
-fn guarded(
-    entry: &mut Entry,
-    clock: &mut Clock,
-    fill: &mut impl FnMut(&mut Entry, &mut Clock) -> Result<()>,
-) -> Result<()> {
+fn guarded(entry: &mut Entry, clock: &mut Clock, work: &mut impl Work) -> Result<()> {
     // Every buffer of the method is filled anew by the next frame.
-    match catch_unwind(AssertUnwindSafe(|| fill(entry, clock))) {
+    match catch_unwind(AssertUnwindSafe(|| work.fill(entry, clock))) {
         Ok(filled) => filled,
         Err(payload) => {
             let error = Error::format(&entry.record.source, fault::told(payload.as_ref()));

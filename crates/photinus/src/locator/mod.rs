@@ -236,11 +236,12 @@ impl Locator {
         if !(0.0..=std::f64::consts::PI).contains(&settings.max_tilt_rad) {
             return Err(LocatorError::Tilt(settings.max_tilt_rad));
         }
+        let detector = Detector::with_optics(settings.spots, camera.optics().cloned())?;
         Ok(Self {
             camera,
             curve,
             mask: None,
-            detector: Detector::new(settings.spots)?,
+            detector,
             matcher: Matcher::new(airframe, settings.max_tilt_rad),
             poser: Poser::new(airframe, settings.pose, &settings.spots)?,
             groups: Groups::default(),
@@ -262,6 +263,21 @@ impl Locator {
         Ok(())
     }
 
+    /// Whether frames still tell something of the camera, see [`Detector::learns`].
+    pub fn learns(&self) -> bool {
+        self.detector.learns()
+    }
+
+    /// Learns of the camera from a frame what [`Self::locate`] would have learnt, without locating anybody: for a run that goes on where
+    /// another ended.
+    ///
+    /// # Errors
+    /// [`LocateError::Size`] when the frame is not of the camera's size.
+    pub fn learn(&mut self, frame: &FrameView<'_>) -> Result<(), LocateError> {
+        let size = self.wrong_size(frame);
+        self.detector.detect(frame, self.mask.as_ref()).map(|_| ()).map_err(|_| size)
+    }
+
     /// The camera in use.
     pub fn camera(&self) -> &Camera {
         &self.camera
@@ -278,12 +294,7 @@ impl Locator {
         gravity: Option<&Unit<Vector3<f64>>>,
         finished: &mut dyn FnMut(Stage),
     ) -> Result<&Located, LocateError> {
-        let size = LocateError::Size {
-            width: frame.width(),
-            height: frame.height(),
-            camera_width: self.camera.width(),
-            camera_height: self.camera.height(),
-        };
+        let size = self.wrong_size(frame);
         if (frame.width(), frame.height()) != (self.camera.width(), self.camera.height()) {
             return Err(size);
         }
@@ -317,6 +328,15 @@ impl Locator {
         finished: &mut dyn FnMut(Stage),
     ) -> &Located {
         self.sight_and_tell(spots.iter().map(|(spot, signal)| (spot, *signal)), gravity, finished)
+    }
+
+    fn wrong_size(&self, frame: &FrameView<'_>) -> LocateError {
+        LocateError::Size {
+            width: frame.width(),
+            height: frame.height(),
+            camera_width: self.camera.width(),
+            camera_height: self.camera.height(),
+        }
     }
 
     fn sight_and_tell<'a>(

@@ -88,6 +88,12 @@ impl Detector {
         Ok(&self.detections)
     }
 
+    /// Whether frames still tell something of the camera: its point spread, noise and full level are learnt from the first frames that
+    /// show spots, unless they were measured.
+    pub fn learns(&self) -> bool {
+        self.meter.learns()
+    }
+
     fn outline_parts(&mut self, frame: &FrameView<'_>, mask: Option<&Mask>) {
         self.parts.clear();
         for component in 0..self.components.len() {

@@ -19,7 +19,7 @@ use crate::optics::{PointSpread, Shares};
 
 /// Steps of Gauss and Newton at most; of a spot with full pixels, whose set of pixels that count changes.
 const STEPS: usize = 8;
-const STEPS_OF_FULL: usize = 12;
+const STEPS_OF_FULL: usize = 8;
 /// Steps that are never damped.
 const UNDAMPED: usize = 3;
 /// Longest step of the centre, px.
@@ -136,6 +136,9 @@ pub(super) fn fit<const N: usize>(
     found[BRIGHTER.len()] = first;
     for (found, brighter) in found.iter_mut().zip(BRIGHTER) {
         *found = fit_from(window, shape, (u, v, brighter * light), noise);
+        if found.as_ref().is_some_and(fits_well) {
+            break;
+        }
     }
     // Where nothing fits well, misfits count for less.
     let misfits = found.iter().flatten().map(|fitted| fitted.chi2 / fitted.freedom);

@@ -145,6 +145,11 @@ impl Meter {
         }
     }
 
+    /// Whether frames still tell something of the camera.
+    pub(super) fn learns(&self) -> bool {
+        self.fits && self.optics.is_none() && self.frames < LEARNT_FRAMES
+    }
+
     /// The lowest level that may be that of a full pixel.
     fn full_from(&mut self, frame: &FrameView<'_>, parts: &[Part]) -> u8 {
         if let Some(optics) = &self.optics {
@@ -315,7 +320,7 @@ impl Meter {
 
     /// Takes in what the frame's spots say of the point spread and of noise.
     fn learn(&mut self, frame: &FrameView<'_>, parts: &[Part], near: &Neighbourhood, full_from: u8) {
-        if self.optics.is_some() || self.frames >= LEARNT_FRAMES {
+        if !self.learns() {
             return;
         }
         let tells = |index: usize, part: &Part| {

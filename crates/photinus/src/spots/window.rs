@@ -65,7 +65,7 @@ pub(super) struct Spill {
 }
 
 /// Rounds in which charge spills on, at most; how far each goes past its answer; a change by which all is done, grey levels.
-const ROUNDS: usize = 40;
+const ROUNDS: usize = 16;
 const OVER_RELAXED: f32 = 1.5;
 const DONE_DN: f32 = 0.5;
 /// Step of the share of charge that spills and of the logarithm of the well, for slopes.
@@ -231,13 +231,6 @@ impl Window {
             let wrong = other * Lanes::splat(error as f32);
             four.others += other;
             four.others_variance += wrong * wrong;
-        }
-    }
-
-    /// Forgets the light of others.
-    pub(super) fn forget_others(&mut self) {
-        for four in &mut self.fours {
-            (four.others, four.others_variance) = (Lanes::ZERO, Lanes::ZERO);
         }
     }
 

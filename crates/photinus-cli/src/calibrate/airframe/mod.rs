@@ -177,7 +177,7 @@ fn measured(nominal: &Airframe, found: &Layout) -> Result<Airframe, photinus::ai
     let moved = |(index, led): (usize, &Led)| {
         let marker = marker_of(nominal, index).unwrap_or(0);
         let shift_m = found.positions_m[marker].map(|place_m| place_m - nominal.markers()[marker].position_m);
-        Led { position_m: led.position_m + shift_m.unwrap_or_else(Vector3::zeros), ..*led }
+        Led { position_m: led.position_m + shift_m.unwrap_or_else(Vector3::zeros), ..led.clone() }
     };
     Airframe::new(nominal.name(), nominal.leds().iter().enumerate().map(moved).collect())
 }

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use nalgebra::{Unit, Vector3};
-use photinus::airframe::{Airframe, Led, Ring};
+use photinus::airframe::{Airframe, AirframeError, Led, Ring};
 use serde::{Deserialize, Serialize};
 
 use super::lobe::LobeEntry;
@@ -106,10 +106,8 @@ fn to_led(led: LedTable, index: usize, path: &Path) -> Result<Led> {
             .at(key(index, Part::Axis))
             .advise("give the direction in which the LED shines, such as [1.0, 0.0, 0.0]")
     })?;
-    let lobe = led.lobe.read().map_err(|error| {
-        let advice = "a table gives as many angles from the axis, in degrees, as intensities";
-        Error::new(path, error).at(key(index, Part::Lobe)).advise(advice)
-    })?;
+    let lobe =
+        led.lobe.read().map_err(|error| refuse(path, AirframeError::Lobe { led: index, error }, key))?;
     Ok(Led { position_m: led.position_m.into(), axis, lobe, power: led.power, signal: led.signal })
 }
 

@@ -143,7 +143,8 @@ impl Args {
             };
             let curve = self.spot_curve(named, terminal)?;
             let refuse = |error: LocatorError| Failure::Input(error.to_string());
-            let mut locator = Locator::new(camera.clone(), airframe, curve, self.settings(tolerances)).map_err(refuse)?;
+            let mut locator =
+                Locator::new(camera.clone(), airframe, curve, self.settings(tolerances)).map_err(refuse)?;
             locator.set_mask(mask_of(mask.as_ref()).cloned()).map_err(refuse)?;
             Ok(View { camera, mounting, locator })
         };

@@ -112,7 +112,8 @@ fn parse_all(bytes: &[u8]) {
     let _ = parse_frames_csv(&text, "t");
     let _ = parse_truth(&text, "t");
     if let Ok(file) = parse_airframe(&text, "t") {
-        let again = parse_airframe(&toml_text(&file.airframe, &file.tolerances), "t").expect("what was written is read");
+        let again = parse_airframe(&toml_text(&file.airframe, &file.tolerances), "t")
+            .expect("what was written is read");
         assert_eq!(again.airframe, file.airframe);
     }
     if let Ok(codes) = BlinkCodes::parse(&text, "t") {

@@ -63,7 +63,8 @@ pub(super) fn airframe_to_layout(
         beforehand::airframe(path, terminal).map_err(Failure::input)?;
     let text = layout_text(&airframe, out).map_err(Failure::input)?;
     target.write(text.as_bytes()).map_err(Failure::running)?;
-    if tolerances != Tolerances::default() || airframe.leds().iter().any(|led| (led.power - 1.0).abs() > 0.0) {
+    if tolerances != Tolerances::default() || airframe.leds().iter().any(|led| (led.power - 1.0).abs() > 0.0)
+    {
         terminal.note(format_args!(
             "{}: powers of LEDs and how well they and the positions are known are not kept; a layout has no place for them",
             out.display()

@@ -53,7 +53,11 @@ fn lobes(airframe: &Airframe) -> String {
     }
     match kinds.as_slice() {
         [(lobe, _)] => format!("all {}", in_words(lobe)),
-        _ => kinds.iter().map(|(lobe, count)| format!("{count} {}", in_words(lobe))).collect::<Vec<_>>().join(", "),
+        _ => kinds
+            .iter()
+            .map(|(lobe, count)| format!("{count} {}", in_words(lobe)))
+            .collect::<Vec<_>>()
+            .join(", "),
     }
 }
 
@@ -72,7 +76,8 @@ fn in_words(lobe: &Lobe) -> String {
 /// The range of the LEDs' powers, and how well they are known.
 fn powers(airframe: &Airframe, sigma: Option<f64>) -> String {
     let powers = || airframe.leds().iter().map(|led| led.power);
-    let (least, most) = powers().fold((f64::INFINITY, 0.0_f64), |(low, high), power| (low.min(power), high.max(power)));
+    let (least, most) =
+        powers().fold((f64::INFINITY, 0.0_f64), |(low, high), power| (low.min(power), high.max(power)));
     let range = if most > least { format!("{least:.3} to {most:.3}") } else { "all alike".to_owned() };
     sigma.map_or(range.clone(), |sigma| format!("{range}, known to {:.1} %", 100.0 * sigma))
 }

@@ -92,7 +92,10 @@ fn refuse(path: &Path, error: AirframeError, place: impl Fn(usize, Part) -> Plac
         E::NotFinite { led } => (Some((led, Part::Position)), "give finite numbers"),
         E::Axis { led } => (Some((led, Part::Axis)), "give the direction in which the LED shines"),
         E::Power { led, .. } => (Some((led, Part::Power)), "give its light against the mean of its kind"),
-        E::Lobe { led, .. } => (Some((led, Part::Lobe)), "give a power of the cosine, or as many angles from the axis as intensities"),
+        E::Lobe { led, .. } => (
+            Some((led, Part::Lobe)),
+            "give a power of the cosine, or as many angles from the axis as intensities",
+        ),
         E::TooFar { led, .. } => (Some((led, Part::Position)), "give the position in metres"),
         E::Duplicate { second, .. } => (Some((second, Part::Whole)), "LEDs are counted from 0"),
         _ => (None, KNOWN),

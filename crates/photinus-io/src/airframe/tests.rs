@@ -86,18 +86,37 @@ fn lobes_powers_and_tolerances_are_read_and_come_back_as_written() {
     assert_eq!(read(&toml_text(&file.airframe, &file.tolerances)), file);
     assert!(!toml_text(&read(LIST).airframe, &Tolerances::default()).contains("power"));
     let error = layout_text(&file.airframe, "quad.txt").unwrap_err().to_string();
-    assert!(error.starts_with("quad.txt: LED 0 shines by a power of the cosine") && error.contains("; write TOML"));
+    assert!(
+        error.starts_with("quad.txt: LED 0 shines by a power of the cosine")
+            && error.contains("; write TOML")
+    );
 }
 
 #[test]
 fn lobes_and_powers_that_cannot_be_are_refused_with_their_key() {
     for (from, to, reason) in [
-        ("cosine_power = 3.0", "cosine_power = -1", "quad, `led[0].lobe`: LED 0: a power of the cosine of -1: "),
-        ("cosine_power = 3.0", "cosine = 3.0", "quad, line 8: unknown key `cosine`, expected one of `cosine_power`"),
-        ("cosine_power = 3.0", "table_deg = [0, 90]", "quad, line 8: a lobe has a `cosine_power`, or `table_deg`"),
+        (
+            "cosine_power = 3.0",
+            "cosine_power = -1",
+            "quad, `led[0].lobe`: LED 0: a power of the cosine of -1: ",
+        ),
+        (
+            "cosine_power = 3.0",
+            "cosine = 3.0",
+            "quad, line 8: unknown key `cosine`, expected one of `cosine_power`",
+        ),
+        (
+            "cosine_power = 3.0",
+            "table_deg = [0, 90]",
+            "quad, line 8: a lobe has a `cosine_power`, or `table_deg`",
+        ),
         ("power = 0.8", "power = 0", "quad, `led[0].power`: LED 0 has a power of 0: "),
         ("90.1]", "90.1, 3]", "quad, `led[1].lobe`: LED 1: 4 angles and 3 intensities: "),
-        ("0.5, 0.0]", "0.5, 0.2]", "quad, `led[1].lobe`: LED 1: a lobe ends with light at 90.1 deg: let it end"),
+        (
+            "0.5, 0.0]",
+            "0.5, 0.2]",
+            "quad, `led[1].lobe`: LED 1: a lobe ends with light at 90.1 deg: let it end",
+        ),
         ("0.002", "-1", "quad, `position_sigma_m`: -1 is no standard deviation that can be; give metres"),
         ("0.03", "nan", "quad, `power_sigma`: NaN is no standard deviation that can be; give a share"),
         ("{ cosine_power = 3.0 }", "3", "quad, line 8: invalid type: integer `3`, expected a name of a lobe"),

@@ -116,8 +116,14 @@ fn impossible_leds_are_refused_by_name() {
     let refuse = |leds: Vec<Led>| Airframe::new("bad", leds).unwrap_err();
     assert_eq!(refuse(vec![]), AirframeError::TooFewMarkers { leds: 0, markers: 0 });
     let near = led([0.02, 0.0, 0.0], [1.0, 0.0, 0.0]);
-    assert_eq!(refuse(vec![good.clone(), near.clone()]), AirframeError::TooFewMarkers { leds: 2, markers: 1 });
-    assert_eq!(refuse(vec![good.clone(), near, good.clone()]), AirframeError::Duplicate { first: 0, second: 2 });
+    assert_eq!(
+        refuse(vec![good.clone(), near.clone()]),
+        AirframeError::TooFewMarkers { leds: 2, markers: 1 }
+    );
+    assert_eq!(
+        refuse(vec![good.clone(), near, good.clone()]),
+        AirframeError::Duplicate { first: 0, second: 2 }
+    );
     assert_eq!(
         refuse(vec![good.clone(), led([f64::NAN, 0.0, 0.0], [1.0, 0.0, 0.0])]),
         AirframeError::NotFinite { led: 1 }

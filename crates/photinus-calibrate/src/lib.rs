@@ -12,6 +12,7 @@
 //! spot_size        areas of one LED over distance -> how large a spot can be
 //! mounting         places in the image of what is known in the body frame -> how the camera sits
 //! airframe_layout  photos taken around an airframe -> where its LEDs sit
+//! airframe_light   a flight of one neighbour -> lobes, the power of each LED, how well positions are known
 //! ```
 //!
 //! What these share: `sighted` (something seen, and what an error of it is in pixels), `resection` (a camera's pose from what is
@@ -19,6 +20,7 @@
 
 pub mod adjust;
 pub mod airframe_layout;
+pub mod airframe_light;
 pub mod camera;
 pub mod grid;
 pub mod labels;

@@ -52,6 +52,7 @@ fn airframe(places_m: &[Vector3<f64>]) -> Airframe {
         position_m: body_from_board() * place_m,
         axis: Unit::new_normalize(Vector3::x()),
         lobe: Lobe::Lambertian,
+        power: 1.0,
         signal: None,
     };
     Airframe::new("board-7x5", places_m.iter().map(led).collect()).expect("35 markers")

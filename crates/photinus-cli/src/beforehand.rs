@@ -3,9 +3,8 @@
 
 use std::path::Path;
 
-use photinus::airframe::Airframe;
 use photinus::spots::Brightness;
-use photinus_io::airframe::read_airframe;
+use photinus_io::airframe::{AirframeFile, read_airframe};
 use photinus_io::spot_curve::{SpotCurveFile, read_spot_curve};
 use photinus_io::{CameraFile, Result, read_camera};
 
@@ -28,10 +27,10 @@ pub(crate) fn camera(path: &Path, terminal: &Terminal) -> Result<CameraFile> {
 ///
 /// # Errors
 /// As [`read_airframe`].
-pub(crate) fn airframe(path: &Path, terminal: &Terminal) -> Result<Airframe> {
+pub(crate) fn airframe(path: &Path, terminal: &Terminal) -> Result<AirframeFile> {
     let file = read_airframe(path)?;
     tell(path, &file.notes, terminal);
-    Ok(file.airframe)
+    Ok(file)
 }
 
 /// Reads a spot curve; the word `paper` stands for the paper's.

@@ -3,11 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use nalgebra::{Unit, Vector3};
-use photinus::airframe::Airframe;
 use photinus::camera::{Bearing, Camera};
 use photinus::locator::{Locator, LocatorError, Settings, Stage};
 use photinus::ranging::SpotCurve;
 use photinus::spots::Spot;
+use photinus_io::airframe::{AirframeFile, Tolerances};
 use photinus_io::calibration::{MountingFile, read_mounting};
 use photinus_io::dataset::{Dataset, DatasetCamera};
 use photinus_io::mask::MaskFile;
@@ -101,17 +101,17 @@ impl Args {
         }
     }
 
-    fn airframe(&self, input: &Input, terminal: &Terminal) -> std::result::Result<Airframe, Failure> {
+    fn airframe(&self, input: &Input, terminal: &Terminal) -> std::result::Result<AirframeFile, Failure> {
         let of_dataset = input.dataset.as_ref().map(|dataset| dataset.path(&dataset.info().airframe));
         let path = needed(self.airframe.as_deref(), "airframe", of_dataset)?;
         beforehand::airframe(&path, terminal).map_err(Failure::input)
     }
 
-    fn settings(&self) -> Settings {
+    fn settings(&self, airframe: &Tolerances) -> Settings {
         Settings {
             spots: self.spot_options.settings(),
             max_tilt_rad: self.max_tilt.to_radians(),
-            pose: self.pose_options.settings(),
+            pose: self.pose_options.settings(airframe),
         }
     }
 
@@ -119,7 +119,7 @@ impl Args {
     fn views(
         &self,
         input: &Input,
-        airframe: &Airframe,
+        AirframeFile { airframe, tolerances, .. }: &AirframeFile,
         terminal: &Terminal,
     ) -> std::result::Result<Vec<View>, Failure> {
         if self.camera.is_some() || self.spot_curve.is_some() || self.mounting.is_some() {
@@ -144,7 +144,7 @@ impl Args {
             let curve = self.spot_curve(named, terminal)?;
             let refuse = |error: LocatorError| Failure::Input(error.to_string());
             let mut locator =
-                Locator::new(camera.clone(), airframe, curve, self.settings()).map_err(refuse)?;
+                Locator::new(camera.clone(), airframe, curve, self.settings(tolerances)).map_err(refuse)?;
             locator.set_mask(mask_of(mask.as_ref()).cloned()).map_err(refuse)?;
             Ok(View { camera, mounting, locator })
         };
@@ -182,12 +182,12 @@ struct View {
 pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> std::result::Result<(), Failure> {
     let done = args.output.done()?;
     let input = args.open_input()?;
-    let airframe = args.airframe(&input, terminal)?;
+    let file = args.airframe(&input, terminal)?;
     let read: Vec<PathBuf> = input.files.iter().cloned().chain(args.files()).collect();
-    let mut views = args.views(&input, &airframe, terminal)?;
+    let mut views = args.views(&input, &file, terminal)?;
     let cameras = views.iter().map(|view| view.camera.clone()).collect();
     let outputs = args.output.claim(args.csv.as_deref(), &read, cameras, lines)?;
-    let mut work = Locating { views: &mut views, airframe: airframe.name(), gravity: args.gravity };
+    let mut work = Locating { views: &mut views, airframe: file.airframe.name(), gravity: args.gravity };
     run::run(input, outputs, done.as_ref(), terminal, &mut work)
 }
 

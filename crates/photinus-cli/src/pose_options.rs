@@ -1,6 +1,7 @@
 //! What the user may believe of neighbours before a frame tells.
 
 use photinus::pose::Settings;
+use photinus_io::airframe::Tolerances;
 
 use crate::number;
 
@@ -12,11 +13,13 @@ pub(crate) struct PoseArgs {
     #[arg(long, value_name = "DEG", default_value_t = 5.0, value_parser = tilt_sigma)]
     tilt_sigma: f64,
     /// How far the LEDs are from where the airframe's file says: standard deviation per axis, in metres
-    #[arg(long, value_name = "METRES", default_value_t = 0.001, value_parser = marker_sigma)]
-    marker_sigma: f64,
-    /// How much the power of LEDs of one kind differs: standard deviation, as a share
-    #[arg(long, value_name = "SHARE", default_value_t = 0.12, value_parser = power_spread)]
-    power_spread: f64,
+    /// [default: what the file says of it, 0.001 where it does not]
+    #[arg(long, value_name = "METRES", value_parser = marker_sigma)]
+    marker_sigma: Option<f64>,
+    /// How much the power of an LED differs from what the airframe's file says: standard deviation, as a share
+    /// [default: what the file says of it, 0.12 where it does not]
+    #[arg(long, value_name = "SHARE", value_parser = power_spread)]
+    power_spread: Option<f64>,
     /// How often a marker that must show does not, dead or hidden
     #[arg(long, value_name = "SHARE", default_value_t = 0.001, value_parser = missed)]
     missed: f64,
@@ -26,15 +29,16 @@ pub(crate) struct PoseArgs {
 }
 
 impl PoseArgs {
-    /// The settings of the estimator.
-    pub(crate) fn settings(&self) -> Settings {
+    /// The settings of the estimator for an airframe that is known so well.
+    pub(crate) fn settings(&self, airframe: &Tolerances) -> Settings {
+        let default = Settings::default();
         Settings {
             tilt_sigma_rad: self.tilt_sigma.to_radians(),
-            marker_sigma_m: self.marker_sigma,
-            unit_sigma: self.power_spread,
+            marker_sigma_m: self.marker_sigma.or(airframe.position_sigma_m).unwrap_or(default.marker_sigma_m),
+            unit_sigma: self.power_spread.or(airframe.power_sigma).unwrap_or(default.unit_sigma),
             missed: self.missed,
             use_brightness: !self.no_brightness,
-            ..Settings::default()
+            ..default
         }
     }
 }

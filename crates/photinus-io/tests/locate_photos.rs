@@ -38,6 +38,7 @@ fn board() -> Airframe {
         position_m: Vector3::new(0.0, 0.05 * f64::from(column - 3), 0.05 * f64::from(row - 2)),
         axis: Unit::new_normalize(Vector3::x()),
         lobe: Lobe::Lambertian,
+        power: 1.0,
         signal: None,
     };
     let leds = (0..7).flat_map(|column| (0..5).map(move |row| led(column, row))).collect();

@@ -6,7 +6,7 @@ use std::io::Cursor;
 use std::path::Path;
 
 use photinus::ranging::{Envelope, SpotCurve};
-use photinus_io::airframe::{layout_text, parse_airframe, toml_text};
+use photinus_io::airframe::{Tolerances, layout_text, parse_airframe, toml_text};
 use photinus_io::blink::BlinkCodes;
 use photinus_io::calibration::{
     mounting_text, parse_known_sightings, parse_led_sightings, parse_mounting, parse_spot_sizes,
@@ -112,7 +112,8 @@ fn parse_all(bytes: &[u8]) {
     let _ = parse_frames_csv(&text, "t");
     let _ = parse_truth(&text, "t");
     if let Ok(file) = parse_airframe(&text, "t") {
-        let again = parse_airframe(&toml_text(&file.airframe), "t").expect("what was written is read");
+        let again = parse_airframe(&toml_text(&file.airframe, &file.tolerances), "t")
+            .expect("what was written is read");
         assert_eq!(again.airframe, file.airframe);
     }
     if let Ok(codes) = BlinkCodes::parse(&text, "t") {
@@ -219,8 +220,8 @@ proptest! {
             text += &format!("[[led]]\nposition_m = {position:?}\naxis = {axis:?}\nlobe = \"omni\"\n{signal}");
         }
         let read = parse_airframe(&text, "t").expect("valid LEDs").airframe;
-        prop_assert_eq!(&parse_airframe(&toml_text(&read), "t").expect("valid LEDs").airframe, &read);
-        let layout = parse_airframe(&layout_text(&read), "t").expect("valid LEDs").airframe;
+        prop_assert_eq!(&parse_airframe(&toml_text(&read, &Tolerances::default()), "t").expect("valid LEDs").airframe, &read);
+        let layout = parse_airframe(&layout_text(&read, "t").expect("omni has a type"), "t").expect("valid LEDs").airframe;
         for (a, b) in read.leds().iter().zip(layout.leds()) {
             prop_assert_eq!(a.position_m, b.position_m);
             prop_assert!((a.axis.into_inner() - b.axis.into_inner()).norm() < 1e-15);

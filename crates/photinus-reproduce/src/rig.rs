@@ -150,6 +150,7 @@ fn single_led() -> Airframe {
         position_m: Vector3::new(x_m, 0.0, 0.0),
         axis,
         lobe: Lobe::Lambertian,
+        power: 1.0,
         signal: None,
     };
     Airframe::new("one LED", vec![led(0.0, Vector3::x_axis()), led(-0.05, -Vector3::x_axis())])

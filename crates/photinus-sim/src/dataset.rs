@@ -6,7 +6,7 @@
 use std::path::{Path, PathBuf};
 
 use nalgebra::{Isometry3, Matrix3};
-use photinus_io::airframe::toml_text;
+use photinus_io::airframe::{Tolerances, toml_text};
 use photinus_io::calibration::{MountingFile, mounting_text};
 use photinus_io::camera::write_camera_toml;
 use photinus_io::dataset::{
@@ -135,7 +135,7 @@ impl<'a> NamedTargets<'a> {
 
     fn write(&self, folder: &Path) -> Result<()> {
         for (target, file) in self.targets.iter().zip(&self.airframes) {
-            write(folder, file, toml_text(&target.airframe).as_bytes())?;
+            write(folder, file, toml_text(&target.airframe, &Tolerances::default()).as_bytes())?;
         }
         if let Some(blink) = self.book.and_then(|target| target.blink.as_ref()) {
             write(folder, CODES_FILE, blink.codes.to_string().as_bytes())?;

@@ -26,7 +26,8 @@ const FOREIGN: u32 = 77;
 
 /// A ring whose LEDs carry the signals that `signal` gives them.
 fn signalled(anonymous: &Airframe, signal: impl Fn(u32) -> u32) -> Airframe {
-    let leds = (0..).zip(anonymous.leds()).map(|(number, led)| Led { signal: Some(signal(number)), ..*led });
+    let leds =
+        (0..).zip(anonymous.leds()).map(|(number, led)| Led { signal: Some(signal(number)), ..led.clone() });
     Airframe::new("signalled", leds.collect()).expect("an airframe")
 }
 

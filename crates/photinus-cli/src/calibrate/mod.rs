@@ -2,6 +2,7 @@
 
 mod advice;
 mod airframe;
+mod airframe_light;
 mod camera;
 mod coverage;
 mod mounting;
@@ -31,6 +32,7 @@ enum What {
     SpotSize(spot_size::Args),
     Mounting(mounting::Args),
     Airframe(airframe::Args),
+    AirframeLight(airframe_light::Args),
 }
 
 impl Args {
@@ -42,6 +44,7 @@ impl Args {
             What::SpotSize(args) => args.quiet(),
             What::Mounting(args) => args.quiet(),
             What::Airframe(args) => args.quiet(),
+            What::AirframeLight(args) => args.quiet(),
         }
     }
 }
@@ -54,5 +57,6 @@ pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> Result<(), Failure> {
         What::SpotSize(args) => spot_size::run(args, terminal),
         What::Mounting(args) => mounting::run(args, terminal),
         What::Airframe(args) => airframe::run(args, terminal),
+        What::AirframeLight(args) => airframe_light::run(args, terminal),
     }
 }

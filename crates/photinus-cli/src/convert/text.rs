@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use photinus_io::airframe::{layout_text, toml_text};
+use photinus_io::airframe::{AirframeFile, Tolerances, layout_text, toml_text};
 use photinus_io::camera::{write_calibrated_camera_toml, write_ocam_text};
 use photinus_io::results::{CsvWriter, read_results};
 
@@ -59,8 +59,17 @@ pub(super) fn airframe_to_layout(
     terminal: &Terminal,
 ) -> Result<(), Failure> {
     let out = target.path();
-    let airframe = beforehand::airframe(path, terminal).map_err(Failure::input)?;
-    target.write(layout_text(&airframe).as_bytes()).map_err(Failure::running)?;
+    let AirframeFile { airframe, tolerances, .. } =
+        beforehand::airframe(path, terminal).map_err(Failure::input)?;
+    let text = layout_text(&airframe, out).map_err(Failure::input)?;
+    target.write(text.as_bytes()).map_err(Failure::running)?;
+    if tolerances != Tolerances::default() || airframe.leds().iter().any(|led| (led.power - 1.0).abs() > 0.0)
+    {
+        terminal.note(format_args!(
+            "{}: powers of LEDs and how well they and the positions are known are not kept; a layout has no place for them",
+            out.display()
+        ));
+    }
     if out.file_stem().is_none_or(|stem| stem.to_string_lossy() != airframe.name()) {
         terminal.note(format_args!(
             "{}: the name `{}` is not kept; a layout is named by its file",
@@ -80,8 +89,9 @@ pub(super) fn airframe_to_layout(
 }
 
 pub(super) fn airframe_to_toml(path: &Path, target: &FileTarget, terminal: &Terminal) -> Result<(), Failure> {
-    let airframe = beforehand::airframe(path, terminal).map_err(Failure::input)?;
-    target.write(toml_text(&airframe).as_bytes()).map_err(Failure::running)
+    let AirframeFile { airframe, tolerances, .. } =
+        beforehand::airframe(path, terminal).map_err(Failure::input)?;
+    target.write(toml_text(&airframe, &tolerances).as_bytes()).map_err(Failure::running)
 }
 
 pub(super) fn results_to_csv(path: &Path, target: &FileTarget, terminal: &Terminal) -> Result<(), Failure> {

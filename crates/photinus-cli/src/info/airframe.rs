@@ -31,6 +31,10 @@ pub(super) fn report(path: &Path) -> Result<Report> {
     };
     report.fact("ring", ring);
     report.fact("reach", format!("{:.4} m from the origin to the farthest marker", airframe.max_radius_m()));
+    report.fact("powers", powers(airframe, file.tolerances.power_sigma));
+    if let Some(sigma_m) = file.tolerances.position_sigma_m {
+        report.fact("positions", format!("known to {:.2} mm per axis", 1e3 * sigma_m));
+    }
     report.fact("signals", signals(airframe));
     report.tables.push(markers_table(airframe));
     report.tables.push(visible_table(airframe));
@@ -38,13 +42,44 @@ pub(super) fn report(path: &Path) -> Result<Report> {
     Ok(report)
 }
 
+/// How the LEDs shine: each kind of lobe with how many have it.
 fn lobes(airframe: &Airframe) -> String {
-    let omni = airframe.leds().iter().filter(|led| led.lobe == Lobe::Omni).count();
-    match airframe.leds().len() - omni {
-        0 => "all shine in every direction".to_owned(),
-        directional if omni == 0 => format!("{} directional", if directional == 1 { "it is" } else { "all" }),
-        directional => format!("{directional} directional, {omni} shine in every direction"),
+    let mut kinds: Vec<(&Lobe, usize)> = Vec::new();
+    for led in airframe.leds() {
+        match kinds.iter_mut().find(|(lobe, _)| *lobe == &led.lobe) {
+            Some((_, count)) => *count += 1,
+            None => kinds.push((&led.lobe, 1)),
+        }
     }
+    match kinds.as_slice() {
+        [(lobe, _)] => format!("all {}", in_words(lobe)),
+        _ => kinds
+            .iter()
+            .map(|(lobe, count)| format!("{count} {}", in_words(lobe)))
+            .collect::<Vec<_>>()
+            .join(", "),
+    }
+}
+
+fn in_words(lobe: &Lobe) -> String {
+    match lobe {
+        Lobe::Lambertian => "directional".to_owned(),
+        Lobe::Omni => "shine in every direction".to_owned(),
+        Lobe::Cosine { power } => format!("directional by cosine^{power:.2}"),
+        Lobe::Table(table) => {
+            let last_rad = table.entries().last().map_or(0.0, |(at_rad, _)| at_rad);
+            format!("directional by a table to {:.0}°", last_rad.to_degrees())
+        }
+    }
+}
+
+/// The range of the LEDs' powers, and how well they are known.
+fn powers(airframe: &Airframe, sigma: Option<f64>) -> String {
+    let powers = || airframe.leds().iter().map(|led| led.power);
+    let (least, most) =
+        powers().fold((f64::INFINITY, 0.0_f64), |(low, high), power| (low.min(power), high.max(power)));
+    let range = if most > least { format!("{least:.3} to {most:.3}") } else { "all alike".to_owned() };
+    sigma.map_or(range.clone(), |sigma| format!("{range}, known to {:.1} %", 100.0 * sigma))
 }
 
 fn signals(airframe: &Airframe) -> String {
@@ -124,5 +159,12 @@ mod tests {
         assert_eq!(seen_from(&hexa, 90, 0), 2, "the arms beside are edge on");
         assert_eq!(signals(&hexa), "none");
         assert_eq!(lobes(&hexa), "all directional");
+        let mut leds = hexa.leds().to_vec();
+        leds[1].lobe = Lobe::Cosine { power: 3.0 };
+        leds[2].power = 1.25;
+        let various = Airframe::new("various", leds).unwrap();
+        assert_eq!(lobes(&various), "5 directional, 1 directional by cosine^3.00");
+        assert_eq!(powers(&hexa, None), "all alike");
+        assert_eq!(powers(&various, Some(0.02)), "1.000 to 1.250, known to 2.0 %");
     }
 }

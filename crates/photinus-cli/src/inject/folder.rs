@@ -3,7 +3,7 @@
 
 use std::path::{Component, Path, PathBuf};
 
-use photinus_io::airframe::{read_airframe, toml_text};
+use photinus_io::airframe::{AirframeFile, read_airframe, toml_text};
 use photinus_io::camera::write_camera_toml;
 use photinus_io::dataset::{
     DATASET_FILE, Dataset, DatasetInfo, DatasetToml, DatasetWriter, IMU_FILE, ODOMETRY_FILE, RigCamera,
@@ -95,10 +95,10 @@ impl Files<'_> {
             return self.copy(named);
         }
         let path = self.dataset.path(named);
-        let airframe = read_airframe(&path)?.airframe;
+        let AirframeFile { airframe, tolerances, .. } = read_airframe(&path)?;
         let airframe =
             self.faults.airframe(&airframe).map_err(|error| Error::format(&path, error.to_string()))?;
-        self.tell(named, toml_text(&airframe).into_bytes())
+        self.tell(named, toml_text(&airframe, &tolerances).into_bytes())
     }
 
     /// The list of vehicles, each with its airframe as it is told.

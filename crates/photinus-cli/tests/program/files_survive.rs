@@ -127,6 +127,7 @@ fn what_is_there_stays_without_force() {
         "calibrate camera frame.png --grid 7x5 --out new.toml --ocam mine.txt",
         "calibrate mounting table.csv --camera camera.toml --out mine.txt",
         "calibrate airframe table.csv --camera camera.toml --nominal hexa.toml --out mine.txt",
+        "calibrate airframe-light rec --out mine.txt",
         "calibrate spot-size rec --json mine.txt",
     ] {
         let scene = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/crossing.toml");

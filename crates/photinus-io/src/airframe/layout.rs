@@ -9,7 +9,7 @@ use std::path::Path;
 use nalgebra::{Unit, Vector3};
 use photinus::airframe::{Airframe, Led, Lobe};
 
-use super::{AirframeFile, refuse};
+use super::{AirframeFile, Tolerances, refuse};
 use crate::{Error, Place, Result};
 
 const COLUMNS: [&str; 7] = ["X", "Y", "Z", "Type", "Pitch", "Yaw", "signal_id"];
@@ -32,7 +32,8 @@ pub(super) fn parse(text: &str, path: &Path) -> Result<AirframeFile> {
         Airframe::new(name, leds).map_err(|error| refuse(path, error, |led, _| Place::Line(lines[led])))?;
     let ring_note =
         || format!("{rings} LED(s) of type 1 (ring) are taken as shining the same in every direction");
-    Ok(AirframeFile { airframe, notes: (rings > 0).then(ring_note).into_iter().collect() })
+    let notes = (rings > 0).then(ring_note).into_iter().collect();
+    Ok(AirframeFile { airframe, tolerances: Tolerances::default(), notes })
 }
 
 /// What is wrong, and what to do.
@@ -58,7 +59,7 @@ fn parse_row(row: &str) -> std::result::Result<(Led, bool), Wrong> {
     let signal = signal.parse().map_err(|_| wrong_number(6, signal))?;
     let axis = axis(number(4, pitch)?, number(5, yaw)?);
     let position_m = Vector3::new(number(0, x)?, number(1, y)?, number(2, z)?);
-    Ok((Led { position_m, axis, lobe, signal: Some(signal) }, *kind == "1"))
+    Ok((Led { position_m, axis, lobe, power: 1.0, signal: Some(signal) }, *kind == "1"))
 }
 
 /// Rz(yaw) Ry(pitch) applied to +x.
@@ -81,14 +82,26 @@ fn wrong_number(column: usize, word: &str) -> Wrong {
     (format!("{} `{word}` is not a number", COLUMNS[column]), advice)
 }
 
-/// The airframe as the text of a layout file. An LED without a signal gets signal 0, since the format has no other
-/// way; its lobe becomes type 0 or 2. The name is that of the file.
-pub fn layout_text(airframe: &Airframe) -> String {
+/// The airframe as the text of a layout file; `path` is for the messages. An LED without a signal gets signal 0, since the
+/// format has no other way; powers are left out; a lobe becomes type 0 or 2. The name is that of the file.
+///
+/// # Errors
+/// [`Error`] names the first LED whose lobe has no type in a layout.
+pub fn layout_text(airframe: &Airframe, path: impl AsRef<Path>) -> Result<String> {
     let mut text = format!("# {}\n", COLUMNS.join(" "));
-    for led in airframe.leds() {
+    for (number, led) in airframe.leds().iter().enumerate() {
         let kind = match led.lobe {
             Lobe::Lambertian => 0,
             Lobe::Omni => 2,
+            Lobe::Cosine { .. } | Lobe::Table(_) => {
+                let reason = format!(
+                    "LED {number} shines by a power of the cosine or by a table: a layout knows only the cosine and every \
+                     direction alike"
+                );
+                return Err(
+                    Error::format(path.as_ref(), reason).advise("write TOML, which knows lobes of all kinds")
+                );
+            }
         };
         let pitch_rad = libm::atan2(-led.axis.z, libm::hypot(led.axis.x, led.axis.y));
         let yaw_rad = libm::atan2(led.axis.y, led.axis.x);
@@ -97,5 +110,5 @@ pub fn layout_text(airframe: &Airframe) -> String {
         // Writing to a String cannot fail.
         let _ = writeln!(text, "{x} {y} {z} {kind} {pitch_rad} {yaw_rad} {signal}");
     }
-    text
+    Ok(text)
 }

@@ -3,7 +3,9 @@
 //! Which of the two it is shows in the content: the first line of a layout that says anything is a row of numbers.
 
 mod layout;
+mod lobe;
 mod own;
+mod tolerances;
 
 use std::path::Path;
 
@@ -12,12 +14,15 @@ use photinus::airframe::{Airframe, AirframeError};
 use crate::{Error, Place, Result, whole};
 pub use layout::layout_text;
 pub use own::toml_text;
+pub use tolerances::Tolerances;
 
 /// An airframe as read.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AirframeFile {
     /// The airframe.
     pub airframe: Airframe,
+    /// How well it is known.
+    pub tolerances: Tolerances,
     /// What was read otherwise than it stands in the file, a sentence each.
     pub notes: Vec<String>,
 }
@@ -86,6 +91,11 @@ fn refuse(path: &Path, error: AirframeError, place: impl Fn(usize, Part) -> Plac
         E::TooManyLeds { .. } => (None, "list the LEDs of one airframe"),
         E::NotFinite { led } => (Some((led, Part::Position)), "give finite numbers"),
         E::Axis { led } => (Some((led, Part::Axis)), "give the direction in which the LED shines"),
+        E::Power { led, .. } => (Some((led, Part::Power)), "give its light against the mean of its kind"),
+        E::Lobe { led, .. } => (
+            Some((led, Part::Lobe)),
+            "give a power of the cosine, or as many angles from the axis as intensities",
+        ),
         E::TooFar { led, .. } => (Some((led, Part::Position)), "give the position in metres"),
         E::Duplicate { second, .. } => (Some((second, Part::Whole)), "LEDs are counted from 0"),
         _ => (None, KNOWN),
@@ -102,6 +112,8 @@ fn refuse(path: &Path, error: AirframeError, place: impl Fn(usize, Part) -> Plac
 enum Part {
     Position,
     Axis,
+    Lobe,
+    Power,
     Whole,
 }
 

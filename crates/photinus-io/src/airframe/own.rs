@@ -3,16 +3,21 @@
 use std::path::Path;
 
 use nalgebra::{Unit, Vector3};
-use photinus::airframe::{Airframe, Led, Lobe, Ring};
+use photinus::airframe::{Airframe, AirframeError, Led, Ring};
 use serde::{Deserialize, Serialize};
 
-use super::{AirframeFile, Part, refuse};
+use super::lobe::LobeEntry;
+use super::{AirframeFile, Part, Tolerances, refuse};
 use crate::{Error, Place, Result, table};
 
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Table {
     name: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    position_sigma_m: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    power_sigma: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     ring: Option<RingTable>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -33,20 +38,26 @@ struct RingTable {
 struct LedTable {
     position_m: [f64; 3],
     axis: [f64; 3],
-    lobe: LobeName,
+    lobe: LobeEntry,
     #[serde(skip_serializing_if = "Option::is_none")]
     signal: Option<u32>,
+    #[serde(default = "mean_power", skip_serializing_if = "is_mean_power")]
+    power: f64,
 }
 
-#[derive(Clone, Copy, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-enum LobeName {
-    Lambertian,
-    Omni,
+fn mean_power() -> f64 {
+    1.0
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
+fn is_mean_power(power: &f64) -> bool {
+    (power - mean_power()).abs() <= 0.0
 }
 
 pub(super) fn parse(text: &str, path: &Path) -> Result<AirframeFile> {
-    let Table { name, ring, led } = table::parse(text, path)?;
+    let Table { name, position_sigma_m, power_sigma, ring, led } = table::parse(text, path)?;
+    let tolerances = Tolerances { position_sigma_m, power_sigma };
+    tolerances.check(path)?;
     if name.trim().is_empty() {
         return Err(Error::format(path, "the name is empty")
             .at(Place::Key("name".to_owned()))
@@ -76,13 +87,15 @@ pub(super) fn parse(text: &str, path: &Path) -> Result<AirframeFile> {
             return Err(Error::format(path, "it gives no LED").advise("add [[led]] tables, or a ring"));
         }
     };
-    Ok(AirframeFile { airframe, notes: Vec::new() })
+    Ok(AirframeFile { airframe, tolerances, notes: Vec::new() })
 }
 
 fn key(led: usize, part: Part) -> Place {
     Place::Key(match part {
         Part::Position => format!("led[{led}].position_m"),
         Part::Axis => format!("led[{led}].axis"),
+        Part::Lobe => format!("led[{led}].lobe"),
+        Part::Power => format!("led[{led}].power"),
         Part::Whole => format!("led[{led}]"),
     })
 }
@@ -93,11 +106,9 @@ fn to_led(led: LedTable, index: usize, path: &Path) -> Result<Led> {
             .at(key(index, Part::Axis))
             .advise("give the direction in which the LED shines, such as [1.0, 0.0, 0.0]")
     })?;
-    let lobe = match led.lobe {
-        LobeName::Lambertian => Lobe::Lambertian,
-        LobeName::Omni => Lobe::Omni,
-    };
-    Ok(Led { position_m: led.position_m.into(), axis, lobe, signal: led.signal })
+    let lobe =
+        led.lobe.read().map_err(|error| refuse(path, AirframeError::Lobe { led: index, error }, key))?;
+    Ok(Led { position_m: led.position_m.into(), axis, lobe, power: led.power, signal: led.signal })
 }
 
 /// The direction of a vector of any length; one of length 1 to the last digits stays as it is written.
@@ -111,17 +122,21 @@ fn unit(vector: Vector3<f64>) -> Option<Unit<Vector3<f64>>> {
 }
 
 /// The airframe as the text of a TOML file, its LEDs as a list.
-pub fn toml_text(airframe: &Airframe) -> String {
+pub fn toml_text(airframe: &Airframe, tolerances: &Tolerances) -> String {
     let led = |led: &Led| LedTable {
         position_m: led.position_m.into(),
         axis: led.axis.into_inner().into(),
-        lobe: match led.lobe {
-            Lobe::Lambertian => LobeName::Lambertian,
-            Lobe::Omni => LobeName::Omni,
-        },
+        lobe: LobeEntry::of(&led.lobe),
         signal: led.signal,
+        power: led.power,
     };
-    let leds = airframe.leds().iter().map(led).collect();
-    let table = Table { name: airframe.name().to_owned(), ring: None, led: Some(leds) };
+    let Tolerances { position_sigma_m, power_sigma } = *tolerances;
+    let table = Table {
+        name: airframe.name().to_owned(),
+        position_sigma_m,
+        power_sigma,
+        ring: None,
+        led: Some(airframe.leds().iter().map(led).collect()),
+    };
     toml::to_string(&table).expect("numbers and strings are TOML")
 }

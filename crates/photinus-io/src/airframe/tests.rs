@@ -29,10 +29,10 @@ fn message(text: &str) -> String {
 
 #[test]
 fn a_list_of_leds_is_read_and_its_axes_normalised() {
-    let AirframeFile { airframe, notes } = read(LIST);
+    let AirframeFile { airframe, notes, .. } = read(LIST);
     assert_eq!((airframe.name(), airframe.leds().len(), notes.len()), ("pair", 2, 0));
     assert_eq!(airframe.leds()[0].axis.into_inner().as_slice(), [1.0, 0.0, 0.0]);
-    assert_eq!((airframe.leds()[1].lobe, airframe.leds()[1].signal), (Lobe::Omni, Some(3)));
+    assert_eq!((&airframe.leds()[1].lobe, airframe.leds()[1].signal), (&Lobe::Omni, Some(3)));
 }
 
 #[test]
@@ -50,18 +50,86 @@ fn a_ring_stands_for_a_list() {
 #[test]
 fn both_forms_come_back_as_written() {
     let airframe = read(LIST).airframe;
-    assert_eq!(read(&toml_text(&airframe)).airframe, airframe);
+    assert_eq!(read(&toml_text(&airframe, &Tolerances::default())).airframe, airframe);
     let airframe = read(LAYOUT).airframe;
-    let again = read(&layout_text(&airframe)).airframe;
+    let again = read(&layout_text(&airframe, "t").unwrap()).airframe;
     for (a, b) in airframe.leds().iter().zip(again.leds()) {
         assert!((a.axis.into_inner() - b.axis.into_inner()).norm() < 1e-15);
-        assert_eq!((a.position_m, a.lobe, a.signal), (b.position_m, b.lobe, b.signal));
+        assert_eq!((a.position_m, &a.lobe, a.signal), (b.position_m, &b.lobe, b.signal));
+    }
+}
+
+const SHINING: &str = r#"
+name = "various"
+position_sigma_m = 0.002
+power_sigma = 0.03
+[[led]]
+position_m = [0.4, 0.0, 0]
+axis = [1.0, 0.0, 0.0]
+lobe = { cosine_power = 3.0 }
+power = 0.8
+[[led]]
+position_m = [-0.4, 0.0, 0.0]
+axis = [-1.0, 0.0, 0.0]
+lobe = { table_deg = [0, 37.3, 90.1], intensity = [1.0, 0.5, 0.0] }
+"#;
+
+#[test]
+fn lobes_powers_and_tolerances_are_read_and_come_back_as_written() {
+    let file = read(SHINING);
+    let leds = file.airframe.leds();
+    assert_eq!((&leds[0].lobe, leds[0].power), (&Lobe::Cosine { power: 3.0 }, 0.8));
+    let Lobe::Table(table) = &leds[1].lobe else { panic!("a table") };
+    let entries = [(0.0, 1.0), (37.3_f64.to_radians(), 0.5), (90.1_f64.to_radians(), 0.0)];
+    assert!(table.entries().eq(entries) && (leds[1].power - 1.0).abs() <= 0.0);
+    assert_eq!(file.tolerances, Tolerances { position_sigma_m: Some(0.002), power_sigma: Some(0.03) });
+    assert_eq!(read(&toml_text(&file.airframe, &file.tolerances)), file);
+    assert!(!toml_text(&read(LIST).airframe, &Tolerances::default()).contains("power"));
+    let error = layout_text(&file.airframe, "quad.txt").unwrap_err().to_string();
+    assert!(
+        error.starts_with("quad.txt: LED 0 shines by a power of the cosine")
+            && error.contains("; write TOML")
+    );
+}
+
+#[test]
+fn lobes_and_powers_that_cannot_be_are_refused_with_their_key() {
+    for (from, to, reason) in [
+        (
+            "cosine_power = 3.0",
+            "cosine_power = -1",
+            "quad, `led[0].lobe`: LED 0: a power of the cosine of -1: ",
+        ),
+        (
+            "cosine_power = 3.0",
+            "cosine = 3.0",
+            "quad, line 8: unknown key `cosine`, expected one of `cosine_power`",
+        ),
+        (
+            "cosine_power = 3.0",
+            "table_deg = [0, 90]",
+            "quad, line 8: a lobe has a `cosine_power`, or `table_deg`",
+        ),
+        ("power = 0.8", "power = 0", "quad, `led[0].power`: LED 0 has a power of 0: "),
+        ("90.1]", "90.1, 3]", "quad, `led[1].lobe`: LED 1: 4 angles and 3 intensities: "),
+        (
+            "0.5, 0.0]",
+            "0.5, 0.2]",
+            "quad, `led[1].lobe`: LED 1: a lobe ends with light at 90.1 deg: let it end",
+        ),
+        ("0.002", "-1", "quad, `position_sigma_m`: -1 is no standard deviation that can be; give metres"),
+        ("0.03", "nan", "quad, `power_sigma`: NaN is no standard deviation that can be; give a share"),
+        ("{ cosine_power = 3.0 }", "3", "quad, line 8: invalid type: integer `3`, expected a name of a lobe"),
+    ] {
+        let message = message(&SHINING.replace(from, to));
+        assert!(message.starts_with(reason), "{message}");
+        assert!(message.contains("; "), "no advice: {message}");
     }
 }
 
 #[test]
 fn a_layout_points_down_with_positive_pitch_and_is_named_by_its_file() {
-    let AirframeFile { airframe, notes } = read(LAYOUT);
+    let AirframeFile { airframe, notes, .. } = read(LAYOUT);
     assert_eq!((airframe.name(), airframe.leds()[0].signal), ("quad", Some(0)));
     assert!((airframe.leds()[1].axis.z + 1.0).abs() < 1e-15);
     assert_eq!(airframe.leds()[1].lobe, Lobe::Omni);
@@ -153,7 +221,7 @@ fn errors_of_a_layout_name_the_line() {
 fn every_real_layout_is_read() {
     let Some(folder) = real_data("airframes") else { return };
     for path in files_in(&folder) {
-        let AirframeFile { airframe, notes } = read_airframe(&path).unwrap();
+        let AirframeFile { airframe, notes, .. } = read_airframe(&path).unwrap();
         let has_beacon = path.to_string_lossy().contains("beacon");
         assert_eq!(airframe.markers().len(), if has_beacon { 5 } else { 4 }, "{path:?}");
         assert_eq!(notes.len(), usize::from(has_beacon), "{path:?} {notes:?}");

@@ -5,7 +5,7 @@ use photinus::camera::{Camera, CameraError, Ideal, KannalaBrandt, Model, OCam, P
 
 /// An airframe larger by a factor.
 pub(super) fn airframe(airframe: &Airframe, factor: f64) -> Result<Airframe, AirframeError> {
-    let larger = |led: &Led| Led { position_m: led.position_m * factor, ..*led };
+    let larger = |led: &Led| Led { position_m: led.position_m * factor, ..led.clone() };
     Airframe::new(airframe.name(), airframe.leds().iter().map(larger).collect())
 }
 

@@ -9,7 +9,7 @@ use super::Renderer;
 use crate::background::Water;
 use crate::optics::PointLight;
 use crate::snapshot::{LedLight, Snapshot, Vehicle};
-use crate::source::Lobe;
+use crate::source::{Lobe, lobe};
 
 /// A vehicle and the camera at the three instants of the exposure of the rows that show it.
 pub(super) struct Instants {
@@ -50,14 +50,10 @@ struct Streak {
 impl Source<'_> {
     /// Intensity towards a place of the body frame against that of the mean part on its axis.
     fn power(&self, towards_m: Vector3<f64>) -> f64 {
-        let lobe = match self.lobe {
-            None => self.led.intensity(&towards_m),
-            Some(lobe) => {
-                let ray_m = towards_m - self.led.position_m;
-                lobe.intensity(self.led.axis.dot(&ray_m) / ray_m.norm())
-            }
-        };
-        lobe * self.light.power
+        let ray_m = towards_m - self.led.position_m;
+        let cos = self.led.axis.dot(&ray_m) / ray_m.norm();
+        let lobe = self.lobe.map_or_else(|| lobe::told(&self.led.lobe, cos), |own| own.intensity(cos));
+        lobe * self.led.power * self.light.power
     }
 }
 

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use photinus::airframe::{self, Airframe, LobeTable};
 use photinus::camera::Pixel;
 
 use crate::cameras::worlds;
@@ -60,6 +61,18 @@ fn a_target_shines_by_its_own_lobe_and_the_powers_of_its_leds() {
     ] {
         let share = sum(&turned(lobe)) / plain;
         assert!((share / against - 1.0).abs() < 2e-3, "{share} not {against}: {lobe}");
+    }
+    // what the airframe itself says: 60 deg off the axis cos^3 is 1/8, the table 0.4, the cosine 1/2
+    let table = LobeTable::new(&[0.0, 80.0, 100.0].map(f64::to_radians), &[1.0, 0.2, 0.0]).unwrap();
+    for (lobe, power, against) in
+        [(airframe::Lobe::Cosine { power: 3.0 }, 0.5, 0.125), (airframe::Lobe::Table(table), 1.5, 1.2)]
+    {
+        let mut told = scene(&turned(""));
+        let mut leds = told.targets[0].airframe.leds().to_vec();
+        (leds[0].lobe, leds[0].power) = (lobe, power);
+        told.targets[0].airframe = Airframe::new("told", leds).unwrap().into();
+        let share = light(&told, AXIS).0 / plain;
+        assert!((share / against - 1.0).abs() < 2e-3, "{share} not {against}");
     }
     let dead = scene(&led("leds = { dead = [0] }"));
     let rendered = Simulator::new(&dead, 0).unwrap().frame(0);

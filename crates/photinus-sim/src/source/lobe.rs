@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use photinus::airframe;
+
 /// How the light of an LED falls off with the angle to its axis.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Lobe {
@@ -52,6 +54,28 @@ impl Lobe {
     }
 }
 
+/// Intensity at an angle to the axis, by its cosine, of a lobe as an airframe tells it: of its words and numbers, not by the
+/// method's own arithmetic. Tables are linear between their angles here.
+pub(crate) fn told(lobe: &airframe::Lobe, cos: f64) -> f64 {
+    match lobe {
+        airframe::Lobe::Lambertian => cos.max(0.0),
+        airframe::Lobe::Omni => Lobe::Omni.intensity(cos),
+        airframe::Lobe::Cosine { power } => Lobe::Cosine { power: *power }.intensity(cos),
+        airframe::Lobe::Table(table) => {
+            let at_rad = libm::acos(cos.clamp(-1.0, 1.0));
+            let before = table.entries().take_while(|(entry_rad, _)| *entry_rad <= at_rad).last();
+            let after = table.entries().find(|(entry_rad, _)| *entry_rad > at_rad);
+            match (before, after) {
+                (Some((from_rad, from)), Some((to_rad, to))) => {
+                    from + (to - from) * (at_rad - from_rad) / (to_rad - from_rad)
+                }
+                (Some((_, last)), None) => last,
+                (None, _) => 0.0,
+            }
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -70,6 +94,21 @@ mod tests {
         }
         assert!(Lobe::cosine(3.0).unwrap().intensity(-0.1) <= 0.0);
         assert_eq!(Lobe::cosine(f64::NAN), None);
+    }
+
+    #[test]
+    fn what_an_airframe_tells_is_what_its_words_mean() {
+        let at = |lobe: &airframe::Lobe, deg: f64| told(lobe, libm::cos(deg.to_radians()));
+        let cosine = airframe::Lobe::Cosine { power: 3.0 };
+        assert!((at(&cosine, 60.0) - 0.125).abs() < 1e-12 && at(&cosine, 95.0) <= 0.0);
+        let angles_rad = [0.0, 40.0, 80.0].map(f64::to_radians);
+        let table = airframe::LobeTable::new(&angles_rad, &[1.0, 0.6, 0.0]).unwrap();
+        let table = airframe::Lobe::Table(table);
+        for (deg, expected) in [(0.0, 1.0), (20.0, 0.8), (60.0, 0.3), (85.0, 0.0)] {
+            assert!((at(&table, deg) - expected).abs() < 1e-9, "{deg}");
+        }
+        assert!((at(&airframe::Lobe::Omni, 170.0) - 1.0).abs() <= 0.0);
+        assert!((at(&airframe::Lobe::Lambertian, 60.0) - 0.5).abs() < 1e-12);
     }
 
     #[test]

@@ -6,7 +6,7 @@
 
 mod blink;
 mod faults;
-mod lobe;
+pub(crate) mod lobe;
 
 pub use blink::Blink;
 pub use faults::LedFaults;

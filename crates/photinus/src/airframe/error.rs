@@ -1,6 +1,6 @@
 //! Why LEDs are not an airframe.
 
-use super::Airframe;
+use super::{Airframe, Led, LobeError};
 
 /// Why a list of LEDs or a ring is not an airframe. LEDs are counted from 0.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -31,6 +31,22 @@ pub enum AirframeError {
     Axis {
         /// Which LED.
         led: usize,
+    },
+    /// A power that no LED has against others.
+    #[error("LED {led} has a power of {power}: {} to {} are possible, 1 is the mean of its kind", Led::POWERS[0], Led::POWERS[1])]
+    Power {
+        /// Which LED.
+        led: usize,
+        /// Its power.
+        power: f64,
+    },
+    /// A lobe that no LED has.
+    #[error("LED {led}: {error}")]
+    Lobe {
+        /// Which LED.
+        led: usize,
+        /// What is wrong with its lobe.
+        error: LobeError,
     },
     /// An LED beyond [`Airframe::MAX_REACH_M`].
     #[error("LED {led} sits {distance_m} m from the origin, {max} m at most: are the positions in metres?", max = Airframe::MAX_REACH_M)]

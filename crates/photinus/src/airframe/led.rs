@@ -1,20 +1,11 @@
-//! One LED: where it sits, where it shines, how its light falls off to the side.
+//! One LED: where it sits, where it shines and how much.
 
 use nalgebra::{Unit, Vector3};
 
-use super::{Airframe, AirframeError};
-
-/// How the light of an LED falls off with the angle to its axis.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Lobe {
-    /// The cosine of the angle, nothing past 90 deg: a bare LED (the paper's figure 8).
-    Lambertian,
-    /// The same in every direction: an LED under a diffuser.
-    Omni,
-}
+use super::{Airframe, AirframeError, Lobe};
 
 /// One LED in the body frame.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Led {
     /// Where it sits, m.
     pub position_m: Vector3<f64>,
@@ -22,33 +13,37 @@ pub struct Led {
     pub axis: Unit<Vector3<f64>>,
     /// How its light falls off to the side.
     pub lobe: Lobe,
+    /// How much it shines against the others of its kind: 1 is the mean part. Within [`Led::POWERS`].
+    pub power: f64,
     /// Which of the airframe's blink signals it carries, if it blinks.
     pub signal: Option<u32>,
 }
 
 impl Led {
-    /// Intensity towards a camera at `camera_m` (body frame, m), as a share of that on the axis: 0 to 1.
+    /// The least and the largest power.
+    pub const POWERS: [f64; 2] = [1e-3, 1e3];
+
+    /// Intensity towards a camera at `camera_m` (body frame, m); 1 is that of an LED of power 1 straight ahead.
     pub fn intensity(&self, camera_m: &Vector3<f64>) -> f64 {
         let ray_m = camera_m - self.position_m;
         let distance_m = ray_m.norm();
         if !(distance_m.is_finite() && distance_m > 0.0) {
             return 0.0;
         }
-        match self.lobe {
-            Lobe::Lambertian => (self.axis.dot(&ray_m) / distance_m).max(0.0),
-            Lobe::Omni => 1.0,
-        }
+        self.power * self.lobe.intensity(self.axis.dot(&ray_m) / distance_m)
     }
 
     /// [`Led::intensity`] with its derivative by the camera's place, 1/m.
     pub(super) fn intensity_with_gradient(&self, camera_m: &Vector3<f64>) -> (f64, Vector3<f64>) {
-        let intensity = self.intensity(camera_m);
-        if self.lobe == Lobe::Omni || intensity <= 0.0 {
-            return (intensity, Vector3::zeros());
-        }
         let ray_m = camera_m - self.position_m;
         let distance_m = ray_m.norm();
-        (intensity, (self.axis.into_inner() - ray_m * (intensity / distance_m)) / distance_m)
+        if !(distance_m.is_finite() && distance_m > 0.0) {
+            return (0.0, Vector3::zeros());
+        }
+        let cos = self.axis.dot(&ray_m) / distance_m;
+        let (share, by_cos) = self.lobe.intensity_with_slope(cos);
+        let cos_gradient = (self.axis.into_inner() - ray_m * (cos / distance_m)) / distance_m;
+        (self.power * share, cos_gradient * (self.power * by_cos))
     }
 }
 
@@ -64,6 +59,10 @@ pub(super) fn check(leds: &[Led]) -> Result<(), AirframeError> {
         if (led.axis.norm() - 1.0).abs() > 1e-6 {
             return Err(AirframeError::Axis { led: index });
         }
+        if !(Led::POWERS[0]..=Led::POWERS[1]).contains(&led.power) {
+            return Err(AirframeError::Power { led: index, power: led.power });
+        }
+        led.lobe.check().map_err(|error| AirframeError::Lobe { led: index, error })?;
         let distance_m = led.position_m.norm();
         if distance_m > Airframe::MAX_REACH_M {
             return Err(AirframeError::TooFar { led: index, distance_m });

@@ -6,6 +6,7 @@
 
 mod error;
 mod led;
+mod lobe;
 mod marker;
 mod ring;
 mod symmetry;
@@ -13,7 +14,8 @@ mod symmetry;
 use nalgebra::Vector3;
 
 pub use error::AirframeError;
-pub use led::{Led, Lobe};
+pub use led::Led;
+pub use lobe::{Lobe, LobeError, LobeTable};
 pub use marker::{MARKER_GAP_M, Marker};
 pub use ring::{Ring, RingGeometry};
 
@@ -93,8 +95,8 @@ impl Airframe {
     }
 
     /// How brightly marker `marker` shines towards a camera at `camera_m` (body frame, m): the sum of its
-    /// LEDs' lobes, each at its own angle to the camera. 1 is one LED straight ahead; the falling off with
-    /// distance is not included. 0 for a marker that does not exist or a camera that is not somewhere.
+    /// LEDs' powers times their lobes, each at its own angle to the camera. 1 is one LED of power 1 straight ahead; the
+    /// falling off with distance is not included. 0 for a marker that does not exist or a camera that is not somewhere.
     pub fn intensity(&self, marker: usize, camera_m: &Vector3<f64>) -> f64 {
         let leds = self.markers.get(marker).map_or(&[][..], |marker| &marker.leds);
         leds.iter().map(|&led| self.leds[led].intensity(camera_m)).sum()

@@ -49,6 +49,7 @@ impl Ring {
                 position_m: outward(yaw_rad) * radius_m,
                 axis: Unit::new_normalize(outward(yaw_rad + turn * splay_rad)),
                 lobe: Lobe::Lambertian,
+                power: 1.0,
                 signal: None,
             }
         };

@@ -30,6 +30,7 @@ fn maps_to_itself(airframe: &Airframe, map: impl Fn(&Vector3<f64>) -> Vector3<f6
         let (position_m, axis) = (map(&led.position_m), Unit::new_unchecked(map(&led.axis)));
         leds.iter().any(|other| {
             other.lobe == led.lobe
+                && (other.power - led.power).abs() <= TOLERANCE * led.power
                 && (other.position_m - position_m).norm() <= TOLERANCE
                 && (led.lobe == Lobe::Omni
                     || (other.axis.into_inner() - axis.into_inner()).norm() <= TOLERANCE)
@@ -39,7 +40,7 @@ fn maps_to_itself(airframe: &Airframe, map: impl Fn(&Vector3<f64>) -> Vector3<f6
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Led, Ring};
+    use super::super::Ring;
     use super::*;
 
     fn ring(arms: usize, leds_per_arm: usize, splay_rad: f64) -> Airframe {
@@ -61,8 +62,21 @@ mod tests {
         let tilted = Airframe::new("tilted", leds.clone()).unwrap();
         assert_eq!(turns(&tilted), 1);
         assert!(!is_mirrored(&tilted));
-        leds[5] = Led { axis: Vector3::z_axis(), ..leds[5] };
+        leds[5].axis = Vector3::z_axis();
         let opposite = Airframe::new("opposite", leds).unwrap();
         assert_eq!(turns(&opposite), 2);
+    }
+
+    #[test]
+    fn leds_that_shine_otherwise_break_the_symmetry() {
+        let symmetric = ring(6, 1, 0.0);
+        let mut leds = symmetric.leds().to_vec();
+        leds[0].power = 1.2;
+        assert_eq!(turns(&Airframe::new("one strong", leds.clone()).unwrap()), 1);
+        leds[3].power = 1.2;
+        let opposite = Airframe::new("two strong", leds.clone()).unwrap();
+        assert_eq!((turns(&opposite), is_mirrored(&opposite)), (2, true));
+        leds[3].lobe = Lobe::Cosine { power: 3.0 };
+        assert_eq!(turns(&Airframe::new("one narrow", leds).unwrap()), 1);
     }
 }

@@ -9,6 +9,7 @@ fn led(position_m: [f64; 3], axis: [f64; 3]) -> Led {
         position_m: Vector3::from(position_m),
         axis: Unit::new_normalize(Vector3::from(axis)),
         lobe: Lobe::Lambertian,
+        power: 1.0,
         signal: None,
     }
 }
@@ -115,17 +116,30 @@ fn impossible_leds_are_refused_by_name() {
     let refuse = |leds: Vec<Led>| Airframe::new("bad", leds).unwrap_err();
     assert_eq!(refuse(vec![]), AirframeError::TooFewMarkers { leds: 0, markers: 0 });
     let near = led([0.02, 0.0, 0.0], [1.0, 0.0, 0.0]);
-    assert_eq!(refuse(vec![good, near]), AirframeError::TooFewMarkers { leds: 2, markers: 1 });
-    assert_eq!(refuse(vec![good, near, good]), AirframeError::Duplicate { first: 0, second: 2 });
     assert_eq!(
-        refuse(vec![good, led([f64::NAN, 0.0, 0.0], [1.0, 0.0, 0.0])]),
+        refuse(vec![good.clone(), near.clone()]),
+        AirframeError::TooFewMarkers { leds: 2, markers: 1 }
+    );
+    assert_eq!(
+        refuse(vec![good.clone(), near, good.clone()]),
+        AirframeError::Duplicate { first: 0, second: 2 }
+    );
+    assert_eq!(
+        refuse(vec![good.clone(), led([f64::NAN, 0.0, 0.0], [1.0, 0.0, 0.0])]),
         AirframeError::NotFinite { led: 1 }
     );
-    assert_eq!(refuse(vec![good, led([0.0; 3], [0.0; 3])]), AirframeError::NotFinite { led: 1 });
-    let stretched = Led { axis: Unit::new_unchecked(Vector3::new(2.0, 0.0, 0.0)), ..good };
+    assert_eq!(refuse(vec![good.clone(), led([0.0; 3], [0.0; 3])]), AirframeError::NotFinite { led: 1 });
+    let stretched = Led { axis: Unit::new_unchecked(Vector3::new(2.0, 0.0, 0.0)), ..good.clone() };
     assert_eq!(refuse(vec![stretched]), AirframeError::Axis { led: 0 });
     let far = led([400.0, 0.0, 0.0], [1.0, 0.0, 0.0]);
-    assert_eq!(refuse(vec![good, far]), AirframeError::TooFar { led: 1, distance_m: 400.0 });
+    assert_eq!(refuse(vec![good.clone(), far]), AirframeError::TooFar { led: 1, distance_m: 400.0 });
+    for power in [0.0, -1.0, f64::NAN, 1e4] {
+        let weak = Led { power, ..good.clone() };
+        assert!(matches!(refuse(vec![weak]), AirframeError::Power { led: 0, .. }));
+    }
+    let narrow = Led { lobe: Lobe::Cosine { power: -1.0 }, ..good.clone() };
+    let error = LobeError::CosinePower { power: -1.0 };
+    assert_eq!(refuse(vec![narrow]), AirframeError::Lobe { led: 0, error });
     assert_eq!(refuse(vec![good; 257]), AirframeError::TooManyLeds { leds: 257 });
 }
 
@@ -145,4 +159,16 @@ fn impossible_rings_are_refused_by_name() {
     assert!(ring(4, 0.4, 2, PI.to_degrees()).is_ok());
     assert_eq!(ring(usize::MAX, 0.4, 2, 60.0), Err(AirframeError::TooManyLeds { leds: usize::MAX }));
     assert_eq!(ring(100, 0.1, 1, 0.0), Err(AirframeError::TooFewMarkers { leds: 100, markers: 1 }));
+}
+
+#[test]
+fn power_and_lobe_of_each_led_make_the_light_of_its_marker() {
+    let x = [1.0, 0.0, 0.0];
+    let narrow = Led { power: 1.5, lobe: Lobe::Cosine { power: 3.0 }, ..led([0.0; 3], x) };
+    let table = LobeTable::new(&[0.0, PI / 3.0, FRAC_PI_2], &[1.2, 0.6, 0.0]).unwrap();
+    let tabled = Led { power: 0.5, lobe: Lobe::Table(table), ..led([0.0, 0.01, 0.0], x) };
+    let airframe = Airframe::new("two kinds", vec![narrow, tabled, led([0.0, 0.5, 0.0], x)]).unwrap();
+    assert!((airframe.intensity(0, &far(60.0)) - (1.5 * 0.125 + 0.5 * 0.6)).abs() < 1e-7);
+    assert!((airframe.intensity(0, &far(0.0)) - (1.5 + 0.5 * 1.2)).abs() < 1e-7);
+    assert!(!airframe.is_visible(0, &far(91.0)));
 }

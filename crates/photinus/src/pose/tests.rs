@@ -4,7 +4,7 @@ use proptest::prelude::*;
 use super::observation::Whitened;
 use super::problem::Problem;
 use super::*;
-use crate::airframe::{Airframe, Ring};
+use crate::airframe::{Airframe, Led, Lobe, LobeTable, Ring};
 use crate::camera::Bearing;
 
 fn hexarotor() -> Airframe {
@@ -37,6 +37,17 @@ fn observation(direction: Vector3<f64>, sigma_rad: f64, light: f64) -> Observati
 fn nothing() -> Known<'static> {
     let bounds = crate::ranging::Interval::new(0.0, f64::INFINITY).unwrap();
     Known { up: None, bounds, size: None, power: None, visible: Visible::default() }
+}
+
+/// Laws and tables of how light falls off to the side.
+fn lobes() -> impl Strategy<Value = Lobe> {
+    let table = prop::collection::vec(0.1f64..1.5, 4).prop_map(|intensities| {
+        let angles_rad = [0.0, 0.4, 0.8, 1.2, 1.5];
+        let closed: Vec<f64> = intensities.into_iter().chain([0.0]).collect();
+        Lobe::Table(LobeTable::new(&angles_rad, &closed).unwrap())
+    });
+    let cosine = (1.0f64..9.0).prop_map(|power| Lobe::Cosine { power });
+    prop_oneof![Just(Lobe::Lambertian), Just(Lobe::Omni), cosine, table]
 }
 
 proptest! {
@@ -90,14 +101,18 @@ proptest! {
 
     #[test]
     fn slopes_of_light_agree_with_finite_differences(
-        place in prop::array::uniform3(-3.0f64..3.0), yaw in -3.0f64..3.0, quad in any::<bool>(),
+        place in prop::array::uniform3(-3.0f64..3.0), yaw in -3.0f64..3.0, quad in any::<bool>(), lobe in lobes(),
     ) {
-        let airframe = if quad { quadrotor() } else { hexarotor() };
+        let uniform = if quad { quadrotor() } else { hexarotor() };
+        let leds = (1..).zip(uniform.leds()).map(|(number, led)| {
+            Led { lobe: lobe.clone(), power: 0.3 * f64::from(number), ..led.clone() }
+        });
+        let airframe = Airframe::new("various", leds.collect()).unwrap();
         let camera = Vector3::from(place) + Rotation3::new(Vector3::z() * yaw) * Vector3::x() * 3.0;
         for marker in 0..airframe.markers().len() {
             let (intensity, gradient) = airframe.intensity_with_gradient(marker, &camera);
             prop_assert_eq!(intensity.to_bits(), airframe.intensity(marker, &camera).to_bits());
-            let step = 1e-6;
+            let step = 1e-7;
             let numeric = Vector3::from_fn(|axis, _| {
                 let mut off = Vector3::zeros();
                 off[axis] = step;
@@ -144,7 +159,8 @@ proptest! {
     fn markers_that_melt_are_seen_between_them(gap in 0.0f64..2.5) {
         // Two markers 0.1 m apart, side by side, the first seen: at no gap their light is one, far apart it is its own.
         let leds = [-0.05, 0.05].map(|y| crate::airframe::Led {
-            position_m: Vector3::new(0.0, y, 0.0), axis: Vector3::x_axis(), lobe: crate::airframe::Lobe::Omni, signal: None,
+            position_m: Vector3::new(0.0, y, 0.0), axis: Vector3::x_axis(), lobe: crate::airframe::Lobe::Omni, power: 1.0,
+            signal: None,
         });
         let airframe = Airframe::new("pair", leds.to_vec()).unwrap();
         let camera_m = Vector3::new(5.0, 0.0, 0.0);

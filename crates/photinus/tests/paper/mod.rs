@@ -28,6 +28,6 @@ pub(crate) fn quadrotor() -> Airframe {
 
 /// A hexarotor whose LEDs shine all around: all six show at once.
 pub(crate) fn lanterns() -> Airframe {
-    let leds = hexarotor().leds().iter().map(|led| Led { lobe: Lobe::Omni, ..*led }).collect();
+    let leds = hexarotor().leds().iter().map(|led| Led { lobe: Lobe::Omni, ..led.clone() }).collect();
     Airframe::new("lanterns", leds).expect("an airframe")
 }

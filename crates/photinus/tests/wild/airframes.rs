@@ -7,7 +7,7 @@ use photinus::airframe::{Airframe, Led, Lobe, Ring};
 
 fn led(position_m: [f64; 3], axis: [f64; 3], lobe: Lobe) -> Led {
     let axis = Unit::new_normalize(Vector3::from(axis));
-    Led { position_m: Vector3::from(position_m), axis, lobe, signal: None }
+    Led { position_m: Vector3::from(position_m), axis, lobe, power: 1.0, signal: None }
 }
 
 fn ring(arms: usize, leds_per_arm: usize, splay_rad: f64) -> Vec<Led> {
@@ -19,8 +19,8 @@ fn ring(arms: usize, leds_per_arm: usize, splay_rad: f64) -> Vec<Led> {
 pub(crate) fn airframes() -> Vec<Airframe> {
     let hexarotor = ring(6, 1, 0.0);
     let signalled =
-        (0..).zip(&hexarotor).map(|(signal, led)| Led { signal: Some(signal % 3), ..*led }).collect();
-    let lanterns = hexarotor.iter().map(|led| Led { lobe: Lobe::Omni, ..*led }).collect();
+        (0..).zip(&hexarotor).map(|(signal, led)| Led { signal: Some(signal % 3), ..led.clone() }).collect();
+    let lanterns = hexarotor.iter().map(|led| Led { lobe: Lobe::Omni, ..led.clone() }).collect();
     let mast =
         (0..3).map(|level| led([0.0, 0.0, 0.2 * f64::from(level)], [0.0, 0.0, 1.0], Lobe::Omni)).collect();
     let pair = [0.2, -0.2].map(|y| led([0.0, y, 0.0], [1.0, 0.0, 0.0], Lobe::Lambertian)).to_vec();

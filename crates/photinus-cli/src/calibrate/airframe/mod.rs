@@ -12,7 +12,7 @@ use photinus::airframe::{Airframe, Led};
 use photinus::camera::{Camera, Pixel};
 use photinus_calibrate::airframe_layout::{KnownDistance, Layout, LayoutError, LedSighting, calibrate};
 use photinus_calibrate::sighted::Sighted;
-use photinus_io::airframe::toml_text;
+use photinus_io::airframe::{AirframeFile, Tolerances, toml_text};
 use photinus_io::calibration::{self, read_led_sightings};
 use photinus_io::{Error, Place};
 
@@ -77,7 +77,8 @@ pub(crate) fn run(args: &Args, terminal: &Terminal) -> Result<(), Failure> {
         Targets::new(args.write, [args.table.clone(), args.camera.clone(), args.nominal.clone()]);
     let out = args.out.as_deref().map(|path| targets.file(path)).transpose()?;
     let camera = beforehand::camera(&args.camera, terminal).map_err(Failure::input)?.camera;
-    let nominal = beforehand::airframe(&args.nominal, terminal).map_err(Failure::input)?;
+    let AirframeFile { airframe: nominal, tolerances, .. } =
+        beforehand::airframe(&args.nominal, terminal).map_err(Failure::input)?;
     let rows = read_led_sightings(&args.table).map_err(Failure::input)?;
     let table = Table { args, camera: &camera, nominal: &nominal, rows: &rows };
     let sightings = table.sightings()?;
@@ -89,7 +90,9 @@ pub(crate) fn run(args: &Args, terminal: &Terminal) -> Result<(), Failure> {
         let airframe = measured(&nominal, &found)
             .map_err(|error| Failure::Running(format!("the LEDs as measured: {error}")))?;
         let told = report::comment(&found, !args.distance.is_empty());
-        out.write(format!("{told}{}", toml_text(&airframe)).as_bytes()).map_err(Failure::running)?;
+        let tolerances = Tolerances { position_sigma_m: Some(report::mean_sigma_m(&found)), ..tolerances };
+        let text = toml_text(&airframe, &tolerances);
+        out.write(format!("{told}{text}").as_bytes()).map_err(Failure::running)?;
     }
     match args.quiet {
         true => Ok(()),
@@ -177,7 +180,7 @@ fn measured(nominal: &Airframe, found: &Layout) -> Result<Airframe, photinus::ai
     let moved = |(index, led): (usize, &Led)| {
         let marker = marker_of(nominal, index).unwrap_or(0);
         let shift_m = found.positions_m[marker].map(|place_m| place_m - nominal.markers()[marker].position_m);
-        Led { position_m: led.position_m + shift_m.unwrap_or_else(Vector3::zeros), ..*led }
+        Led { position_m: led.position_m + shift_m.unwrap_or_else(Vector3::zeros), ..led.clone() }
     };
     Airframe::new(nominal.name(), nominal.leds().iter().enumerate().map(moved).collect())
 }

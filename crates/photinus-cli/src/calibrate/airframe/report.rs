@@ -72,14 +72,18 @@ impl Told<'_> {
     }
 }
 
+/// Standard deviation of a position per axis, m, over all LEDs that were placed.
+pub(super) fn mean_sigma_m(found: &Layout) -> f64 {
+    (found.covariance_m2.trace() / found.covariance_m2.nrows() as f64).sqrt()
+}
+
 /// The head of the file.
 pub(super) fn comment(found: &Layout, has_scale: bool) -> String {
-    let sigma_m2 = found.covariance_m2.trace() / found.covariance_m2.nrows() as f64;
     format!(
         "# photinus calibrate airframe: {} photos, positions known to {:.2} mm on average; axes, lobes and signals are nominal,\n\
          # and so are origin, axes of the body frame{}.\n",
         found.photos.iter().flatten().count(),
-        1e3 * sigma_m2.sqrt(),
+        1e3 * mean_sigma_m(found),
         if has_scale { "" } else { " and scale" }
     )
 }

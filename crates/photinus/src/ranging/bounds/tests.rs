@@ -1,7 +1,7 @@
 use nalgebra::{Unit, Vector3};
 
 use super::*;
-use crate::airframe::{Led, Lobe, Ring};
+use crate::airframe::{Led, Lobe, LobeTable, Ring};
 use crate::ranging::Interval;
 
 fn hexarotor() -> Airframe {
@@ -14,6 +14,7 @@ fn led(position_m: [f64; 3], axis: [f64; 3], lobe: Lobe) -> Led {
         position_m: Vector3::from(position_m),
         axis: Unit::new_normalize(Vector3::from(axis)),
         lobe,
+        power: 1.0,
         signal: None,
     }
 }
@@ -94,6 +95,20 @@ fn bounds_hold_for_an_airframe_without_any_symmetry() {
 }
 
 #[test]
+fn bounds_hold_for_lobes_that_end_before_and_behind_a_right_angle() {
+    let table = |ends_deg: f64| {
+        let angles_deg = [0.0, 0.5 * ends_deg, ends_deg];
+        Lobe::Table(LobeTable::new(&angles_deg.map(f64::to_radians), &[1.0, 0.7, 0.0]).unwrap())
+    };
+    let ring = hexarotor();
+    let leds = ring.leds().iter().zip([70.0, 130.0, 100.0, 60.0, 170.0, 80.0]).map(|(led, ends_deg)| {
+        let position_m = led.position_m + Vector3::new(0.0, 0.0, 1e-3 * ends_deg);
+        Led { position_m, lobe: table(ends_deg), ..led.clone() }
+    });
+    assert_holds_level(&Airframe::new("tabled", leds.collect()).unwrap(), 2000);
+}
+
+#[test]
 fn bounds_hold_when_only_one_led_of_a_wide_marker_shines_this_way() {
     let corner = |x: f64, y: f64| {
         [
@@ -108,7 +123,7 @@ fn bounds_hold_when_only_one_led_of_a_wide_marker_shines_this_way() {
     for direction in directions(2000) {
         let camera_m = direction * 0.8;
         let brightest = |marker: &crate::airframe::Marker| {
-            let lit = marker.leds.iter().map(|&led| airframe.leds()[led]);
+            let lit = marker.leds.iter().map(|&led| &airframe.leds()[led]);
             let best = lit.max_by(|a, b| a.intensity(&camera_m).total_cmp(&b.intensity(&camera_m)));
             best.filter(|led| led.intensity(&camera_m) > 0.0)
         };

@@ -12,7 +12,7 @@
 
 use nalgebra::Vector3;
 
-use crate::airframe::{Airframe, Lobe};
+use crate::airframe::Airframe;
 
 /// Widens every box, against the rounding of its own arithmetic.
 const ROUNDING: f64 = 1e-9;
@@ -114,13 +114,14 @@ pub(super) struct Views {
 impl Views {
     /// Whether `marker` shines towards any of the places.
     pub(super) fn can_see(&self, airframe: &Airframe, marker: usize) -> bool {
-        airframe.markers()[marker].leds.iter().map(|&led| &airframe.leds()[led]).any(|led| match led.lobe {
-            Lobe::Omni => true,
-            Lobe::Lambertian => {
-                let ahead_m = led.position_m.dot(&led.axis);
-                let cos = self.direction.dot(&led.axis) - self.inverse_m * ahead_m;
-                cos > -(self.turn + self.half_inverse_m * ahead_m.abs())
-            }
+        airframe.markers()[marker].leds.iter().map(|&led| &airframe.leds()[led]).any(|led| {
+            let Some(dark_cos) = led.lobe.dark_from_cos() else { return true };
+            let (ahead_m, reach_m) = (led.position_m.dot(&led.axis), led.position_m.norm());
+            let ray = self.direction - self.inverse_m * led.position_m;
+            let beyond = self.direction.dot(&led.axis) - self.inverse_m * ahead_m - dark_cos * ray.norm();
+            // How far the ray's part along the axis changes, and its length.
+            let [along, length] = [ahead_m.abs(), reach_m].map(|m| self.turn + self.half_inverse_m * m);
+            beyond > -(along + dark_cos.abs() * length)
         })
     }
 

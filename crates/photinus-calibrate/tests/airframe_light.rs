@@ -1,0 +1,31 @@
+//! Rendered flights: learned lobes and powers take away the bias of distance that a wrong airframe file makes.
+
+mod flight;
+
+use flight::{Built, distances, known, learn, powers_off};
+use photinus::locator::Settings;
+
+/// LEDs as narrow as cos^3, with powers that spread by 20 %, told as equal cosines.
+fn built(seed: u64) -> Built {
+    Built { airframe: "hexarotor-0.4", cosine_power: 3.0, spread: 0.2, misplaced_m: 0.0, seed }
+}
+
+#[test]
+fn distances_in_other_frames_lose_their_bias() {
+    let built = built(20_261);
+    let scene = built.flight(400);
+    let told = &scene.targets[0].airframe;
+    let light = learn(&scene);
+    let cosine = light.lobes[0].cosine_power.expect("a lobe that was seen");
+    assert!((cosine.value - 3.0).abs() < 0.15 && cosine.sigma < 0.05, "{cosine:?}");
+    assert!(powers_off(&light, &built).0 < 0.05, "{:?}", light.powers);
+
+    let others = built.other_frames(150);
+    let before = distances(&others, told, Settings::default());
+    let after = distances(&others, &light.airframe, known(&light));
+    let truth = distances(&others, &built.as_built(told), known(&light));
+    assert!(before.bias - truth.bias > 0.01, "{before:?} {truth:?}");
+    // What is left is what the true airframe leaves, in frames that are the same.
+    assert!((after.bias - truth.bias).abs() < 0.002, "{after:?} {truth:?}");
+    assert!(after.nees < 0.2 * before.nees, "{after:?} {before:?}");
+}

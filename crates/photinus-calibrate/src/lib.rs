@@ -24,6 +24,7 @@ pub mod grid;
 pub mod labels;
 pub mod lens;
 pub mod mounting;
+pub mod optics;
 pub mod photo;
 mod resection;
 mod robust;

@@ -5,6 +5,7 @@ mod airframe;
 mod camera;
 mod coverage;
 mod mounting;
+mod optics;
 mod page;
 mod photos;
 mod report;
@@ -15,6 +16,8 @@ use clap::Subcommand;
 
 use crate::failure::Failure;
 use crate::terminal::Terminal;
+
+pub(crate) use optics::Width;
 
 /// Calibrate: from photos and recordings to a camera whose errors are known
 #[derive(Debug, clap::Args)]
@@ -28,6 +31,7 @@ pub(crate) struct Args {
 enum What {
     Camera(camera::Args),
     Coverage(coverage::Args),
+    Optics(optics::Args),
     SpotSize(spot_size::Args),
     Mounting(mounting::Args),
     Airframe(airframe::Args),
@@ -39,6 +43,7 @@ impl Args {
         match &self.what {
             What::Camera(args) => args.quiet(),
             What::Coverage(_) => false,
+            What::Optics(args) => args.quiet(),
             What::SpotSize(args) => args.quiet(),
             What::Mounting(args) => args.quiet(),
             What::Airframe(args) => args.quiet(),
@@ -51,6 +56,7 @@ pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> Result<(), Failure> {
     match &args.what {
         What::Camera(args) => camera::run(args, terminal),
         What::Coverage(args) => coverage::run(args, terminal),
+        What::Optics(args) => optics::run(args, terminal),
         What::SpotSize(args) => spot_size::run(args, terminal),
         What::Mounting(args) => mounting::run(args, terminal),
         What::Airframe(args) => airframe::run(args, terminal),

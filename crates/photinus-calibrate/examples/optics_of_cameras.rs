@@ -19,7 +19,7 @@ fn main() {
     println!(
         "| camera | spots | point spread, rms over summit (worst place) | width | full pixel reads | its spread | read noise | shot noise | error of shape | unseen |"
     );
-    println!("|---|---|---|---|---|---|---|---|---|---|");
+    println!("|---|---|---|---|---|---|---|---|---|---|---|");
     for world in photinus_sim::cameras::worlds() {
         if !names.is_empty() && !names.iter().any(|name| name == world.name) {
             continue;
@@ -73,7 +73,7 @@ fn main() {
         let full = sensor.full_well_e / per + sensor.dark_offset_dn;
         let unseen: Vec<&str> = learned.unseen.iter().map(|unseen| unseen.name()).collect();
         println!(
-            "| {} | {} | {:.2} % ({:.2} %) | {:.2} % | {:.2} ± {:.2} ({:.1}) | {:.2} | {:.3} ± {:.3} ({read:.3}) | {:.4} ± {:.4} ({:.4}) | {:.4} ± {:.4} | {} | {rendered_s:.1} s {learned_s:.1} s",
+            "| {} | {} | {:.2} % ({:.2} %) | {:.2} % | {:.2} ± {:.2} ({:.1}) | {:.2} | {:.3} ± {:.3} ({read:.3}) | {:.4} ± {:.4} ({:.4}) | {:.4} ± {:.4} | {:.2} ± {:.2} ({:.2}){} | {} |",
             world.name,
             learned.spots,
             100.0 * rms,
@@ -90,7 +90,12 @@ fn main() {
             1.0 / per,
             learned.optics.spread.shape_error(),
             learned.shape_error_sigma,
+            found.spill.value,
+            found.spill.sigma,
+            sensor.overflow.spill,
+            found.full_well_dn.map_or(String::new(), |well| format!(" well {:.0}", well.value)),
             unseen.join(", ")
         );
+        eprintln!("{}: rendered in {rendered_s:.1} s, learned in {learned_s:.1} s", world.name);
     }
 }

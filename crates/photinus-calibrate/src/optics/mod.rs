@@ -21,6 +21,7 @@ mod noise;
 mod phases;
 mod profile;
 mod saturation;
+mod spill;
 mod spot;
 mod start;
 mod table;
@@ -32,6 +33,8 @@ pub use collect::Collection;
 use field::Field;
 use light::LightNoise;
 use noise::{Darkness, Noise, ROUNDING};
+use saturation::Pile;
+use spill::Spill;
 use spot::Spot;
 use table::Shares;
 
@@ -133,6 +136,7 @@ pub fn learn(collection: &Collection) -> Result<Learned, LearnError> {
     let full_from = pile.map_or(255, |pile| pile.from_dn());
     let darkness = noise::darkness(&collection.patches.kept);
     let mut spots: Vec<Spot<'_>> = windows.iter().map(|window| Spot::new(window, full_from)).collect();
+    let full: Vec<Spot<'_>> = spots.iter().filter(|spot| !spot.is_linear()).cloned().collect();
     choose(&mut spots);
     let size_px = collection.size_px.unwrap_or([1, 1]);
     let mut noise = first_noise(&darkness);
@@ -160,7 +164,8 @@ pub fn learn(collection: &Collection) -> Result<Learned, LearnError> {
     if used < FEWEST_SPOTS {
         return Err(LearnError::TooFew { found: used, needed: FEWEST_SPOTS });
     }
-    let (sensor, mut unseen) = sensor(&darkness, &light, pile.as_ref());
+    let spill = pile.and_then(|pile| spill::learn(&full, &field, &light.noise, &pile));
+    let (sensor, mut unseen) = sensor(&darkness, &light, pile.as_ref(), spill);
     if nodes == [1, 1] {
         unseen.push(Unseen::Field);
     }
@@ -223,7 +228,12 @@ fn explain(spots: &[Spot<'_>], field: &Field, noise: &Noise, darkness: &Darkness
 }
 
 /// The sensor, and what was not seen of it.
-fn sensor(darkness: &Darkness, light: &LightNoise, pile: Option<&saturation::Pile>) -> (Sensor, Vec<Unseen>) {
+fn sensor(
+    darkness: &Darkness,
+    light: &LightNoise,
+    pile: Option<&Pile>,
+    spill: Option<Spill>,
+) -> (Sensor, Vec<Unseen>) {
     let mut unseen = Vec::new();
     if darkness.level_dn.is_none() {
         unseen.push(Unseen::Darkness);
@@ -252,14 +262,17 @@ fn sensor(darkness: &Darkness, light: &LightNoise, pile: Option<&saturation::Pil
     if pile.is_none() {
         unseen.push(Unseen::Saturation);
     }
-    unseen.push(Unseen::Spill);
+    let spill = spill.unwrap_or_else(|| {
+        unseen.push(Unseen::Spill);
+        Spill { share: SPILL_BELIEVED, well_dn: None }
+    });
     let sensor = Sensor {
         dark_dn: darkness.level_dn,
         read_noise_dn,
         shot,
         saturation,
-        spill: SPILL_BELIEVED,
-        full_well_dn: None,
+        spill: spill.share,
+        full_well_dn: spill.well_dn,
         column_smear: None,
     };
     (sensor, unseen)

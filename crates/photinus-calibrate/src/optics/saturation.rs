@@ -35,7 +35,7 @@ impl Pile {
 /// How many summits have each grey level.
 pub(super) fn summits(windows: &[Window]) -> [u32; 256] {
     let mut counts = [0; 256];
-    windows.iter().for_each(|window| counts[usize::from(window.peak())] += 1);
+    windows.iter().for_each(|window| counts[usize::from(window.middle())] += 1);
     counts
 }
 

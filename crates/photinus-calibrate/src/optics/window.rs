@@ -43,6 +43,17 @@ impl Window {
         *values.select_nth_unstable(middle).1
     }
 
+    /// The pixel where the light of the spot is: one that full pixels beside it with their noise do not choose.
+    pub(super) fn middle(&self) -> u8 {
+        let level = f64::from(self.border());
+        let (mut sum, mut u, mut v) = (1e-9, 0.0, 0.0);
+        for (column, row, value) in self.within(3) {
+            let above = (f64::from(value) - level).max(0.0);
+            (sum, u, v) = (sum + above, u + above * column as f64, v + above * row as f64);
+        }
+        self.at((u / sum).round() as isize, (v / sum).round() as isize)
+    }
+
     /// The brightest of the nine pixels in the middle.
     pub(super) fn peak(&self) -> u8 {
         self.within(1).map(|(.., value)| value).max().unwrap_or(0)

@@ -21,17 +21,18 @@ fn main() {
     );
     println!("|---|---|---|---|---|---|---|---|---|---|---|");
     for world in photinus_sim::cameras::worlds() {
-        if !names.is_empty() && !names.iter().any(|name| name == world.name) {
+        if !names.is_empty() && !names.iter().any(|chosen| chosen == world.name) {
             continue;
         }
-        let eye = Eye { camera: world.camera.clone(), preset: world.preset.clone() };
+        let name = world.name;
+        let eye = Eye::of(world);
         let start = std::time::Instant::now();
         let collection = eye.recorded(FRAMES, LEDS, 1);
         let rendered_s = start.elapsed().as_secs_f64();
         let learned = match learn(&collection) {
             Ok(learned) => learned,
             Err(error) => {
-                println!("| {} | {error} |", world.name);
+                println!("| {} | {error} |", name);
                 continue;
             }
         };
@@ -55,9 +56,6 @@ fn main() {
             let found = learned.optics.spread.at(Pixel::new(place[0], place[1]));
             rows.push(difference(found, &eye.truth(place), 3.0));
         }
-        if std::env::var("DBG").is_ok() {
-            eprintln!("{rows:.3?}");
-        }
         let count = rows.len() as f64;
         let rms = (rows.iter().map(|row| row.0 * row.0).sum::<f64>() / count).sqrt();
         let worst = rows.iter().map(|row| row.0).fold(0.0, f64::max);
@@ -74,7 +72,7 @@ fn main() {
         let unseen: Vec<&str> = learned.unseen.iter().map(|unseen| unseen.name()).collect();
         println!(
             "| {} | {} | {:.2} % ({:.2} %) | {:.2} % | {:.2} ± {:.2} ({:.1}) | {:.2} | {:.3} ± {:.3} ({read:.3}) | {:.4} ± {:.4} ({:.4}) | {:.4} ± {:.4} | {:.2} ± {:.2} ({:.2}){} | {} |",
-            world.name,
+            name,
             learned.spots,
             100.0 * rms,
             100.0 * worst,
@@ -96,6 +94,6 @@ fn main() {
             found.full_well_dn.map_or(String::new(), |well| format!(" well {:.0}", well.value)),
             unseen.join(", ")
         );
-        eprintln!("{}: rendered in {rendered_s:.1} s, learned in {learned_s:.1} s", world.name);
+        eprintln!("{}: rendered in {rendered_s:.1} s, learned in {learned_s:.1} s", name);
     }
 }

@@ -185,13 +185,10 @@ impl<'a, const N: usize> Correction<'a, N> {
         let mut product = vec![0.0; self.tables * COUNT];
         for rows in &self.rows {
             for &(first, weight, _) in &rows.pixels {
-                let mut share = 0.0;
-                for (node, near) in rows.nodes {
-                    let table = &coefficients[node * COUNT..][..COUNT];
-                    let mut own = 0.0;
-                    each_of_16(first, &rows.across, &rows.down, |sample, part| own += part * table[sample]);
-                    share += near * own;
-                }
+                let of = |(node, near): (usize, f64)| {
+                    near * gathered(&coefficients[node * COUNT..][..COUNT], first, rows)
+                };
+                let share: f64 = rows.nodes.into_iter().map(of).sum();
                 self.spread_out(rows, first, weight * share, &mut product);
             }
         }
@@ -203,8 +200,11 @@ impl<'a, const N: usize> Correction<'a, N> {
     fn spread_out(&self, rows: &Rows<N>, first: usize, value: f64, onto: &mut [f64]) {
         for (node, near) in rows.nodes {
             let table = &mut onto[node * COUNT..][..COUNT];
-            let value = near * value;
-            each_of_16(first, &rows.across, &rows.down, |sample, part| table[sample] += part * value);
+            for (b, down) in rows.down.iter().enumerate() {
+                let value = near * value * down;
+                let line = &mut table[first + b * SIDE..][..4];
+                line.iter_mut().zip(&rows.across).for_each(|(sum, across)| *sum += across * value);
+            }
         }
     }
 
@@ -233,6 +233,15 @@ impl<'a, const N: usize> Correction<'a, N> {
         }
         held
     }
+}
+
+/// The share that a table of coefficients gives a pixel.
+fn gathered<const N: usize>(table: &[f64], first: usize, rows: &Rows<N>) -> f64 {
+    let line = |b: usize| -> f64 {
+        let four = &table[first + b * SIDE..][..4];
+        four.iter().zip(&rows.across).map(|(share, across)| share * across).sum()
+    };
+    rows.down.iter().enumerate().map(|(b, down)| down * line(b)).sum()
 }
 
 /// Variance of a share at an offset from the variances of coefficients.

@@ -56,6 +56,13 @@ impl Field {
         }
     }
 
+    /// Tables that are known, of zones in rows of `columns`.
+    pub(super) fn given(of_zones: Vec<Table>, columns: usize, size_px: [usize; 2]) -> Self {
+        let zones = [columns, of_zones.len() / columns];
+        let whole = of_zones[of_zones.len() / 2].clone();
+        Self { zones, of_zones, ..Self::new(whole, size_px, [1, 1]) }
+    }
+
     /// The table at a place.
     pub(super) fn at(&self, [u, v]: [f64; 2]) -> &Table {
         let zone = |px: f64, axis: usize| {
@@ -160,10 +167,13 @@ impl Field {
     pub(super) fn spread(&self, shape_error: f64) -> Result<SpreadField, OpticsError> {
         let is_even = self.belief.apart <= 2.0 * LEAST_APART;
         let tables = if is_even { std::slice::from_ref(&self.whole) } else { &self.of_zones };
-        let columns = if is_even { 1 } else { self.zones[0] };
-        let spreads = tables.iter().map(|table| PointSpread::new(table.samples.clone()));
+        let spread = |table: &Table| PointSpread::new(table.samples.clone());
+        if let [only] = tables {
+            return SpreadField::even(spread(only)?, shape_error);
+        }
         let [width_px, height_px] = self.size_px;
-        SpreadField::new(spreads.collect::<Result<_, _>>()?, columns, width_px, height_px, shape_error)
+        let zones = tables.iter().map(spread).collect::<Result<_, _>>()?;
+        SpreadField::new(zones, self.zones[0], width_px, height_px, shape_error)
     }
 }
 

@@ -10,15 +10,18 @@
 //! spot, field  places and light of spots by the table, the table by what they leave, in turn (phases: kept even)
 //! light        noise against light, and how wrong the table is
 //! spill        what the excess of full pixels does to their neighbours
+//! prediction   what was learned against other frames
 //! ```
 //! What a recording does not excite stays what is believed beforehand and is named in [`Learned::unseen`].
 
 mod collect;
 mod correction;
+mod evidence;
 mod field;
 mod light;
 mod noise;
 mod phases;
+mod prediction;
 mod profile;
 mod saturation;
 mod spill;
@@ -30,9 +33,11 @@ mod window;
 use photinus::optics::{Measured, Optics, OpticsError, Saturation, Sensor};
 
 pub use collect::Collection;
+pub use evidence::{Evidence, NoiseBin};
 use field::Field;
 use light::LightNoise;
 use noise::{Darkness, Noise, ROUNDING};
+pub use prediction::{Prediction, predict};
 use saturation::Pile;
 use spill::Spill;
 use spot::Spot;
@@ -107,6 +112,8 @@ pub struct Learned {
     pub frames: u64,
     /// Spots that the point spread rests on.
     pub spots: usize,
+    /// What the numbers rest on.
+    pub evidence: Evidence,
 }
 
 /// Fewest spots that make a point spread.
@@ -132,7 +139,8 @@ const SPILL_BELIEVED: Measured = Measured { value: 0.0, sigma: 0.5 };
 /// [`LearnError`] when too few spots stand alone, or they have nothing in common.
 pub fn learn(collection: &Collection) -> Result<Learned, LearnError> {
     let windows = &collection.windows.kept;
-    let pile = saturation::find(&saturation::summits(windows));
+    let summits = saturation::summits(windows);
+    let pile = saturation::find(&summits);
     let full_from = pile.map_or(255, |pile| pile.from_dn());
     let darkness = noise::darkness(&collection.patches.kept);
     let mut spots: Vec<Spot<'_>> = windows.iter().map(|window| Spot::new(window, full_from)).collect();
@@ -180,6 +188,11 @@ pub fn learn(collection: &Collection) -> Result<Learned, LearnError> {
         unseen,
         frames: collection.frames,
         spots: used,
+        evidence: Evidence {
+            summits,
+            noise: evidence::noise(&light::residuals(&spots, &field, &light.noise)),
+            phases: evidence::phases(&spots, &field, &light.noise),
+        },
     })
 }
 

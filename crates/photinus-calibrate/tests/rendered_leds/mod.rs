@@ -3,11 +3,12 @@
 
 #![allow(dead_code, reason = "each test looks at a part")]
 
-use photinus::camera::{Camera, Pixel};
+use photinus::camera::{Camera, Ideal, Model, Pixel};
 use photinus::frame::FrameView;
 use photinus::optics::PointSpread;
 use photinus_calibrate::optics::Collection;
-use photinus_sim::optics::{PointLight, PointSpread as Drawn};
+use photinus_sim::cameras::World;
+use photinus_sim::optics::PointLight;
 use photinus_sim::preset::Preset;
 use photinus_sim::sensor::{Background, Charge, Readout};
 use rand_pcg::Pcg64;
@@ -17,14 +18,32 @@ use rand_pcg::rand_core::Rng;
 pub(crate) struct Eye {
     pub(crate) camera: Camera,
     pub(crate) preset: Preset,
+    /// Summit of the brightest LED in the middle of a pixel, were it never full, grey levels.
+    pub(crate) brightest_dn: f64,
 }
 
+/// Lights of the faintest LEDs, likewise.
+const FAINTEST_DN: f64 = 15.0;
+
 impl Eye {
+    /// A camera of the list.
+    pub(crate) fn of(world: World) -> Self {
+        Self { camera: world.camera, preset: world.preset, brightest_dn: 600.0 }
+    }
+
     /// A camera of the list by its name.
     pub(crate) fn named(name: &str) -> Self {
         let mut worlds = photinus_sim::cameras::worlds().into_iter();
-        let world = worlds.find(|world| world.name == name).expect("a camera of the list");
-        Self { camera: world.camera, preset: world.preset }
+        Self::of(worlds.find(|world| world.name == name).expect("a camera of the list"))
+    }
+
+    /// The same with a smaller image: what a test can afford.
+    pub(crate) fn cropped(self, width: usize, height: usize) -> Self {
+        let Model::Ideal(lens) = self.camera.model() else { panic!("an ideal lens") };
+        let centre = Pixel::new(0.5 * width as f64 - 0.5, 0.5 * height as f64 - 0.5);
+        let lens = Ideal::new(lens.law(), lens.focal_px(), centre).expect("the same lens");
+        let camera = Camera::new(Model::Ideal(lens), width, height, None).expect("a smaller image");
+        Self { camera, ..self }
     }
 
     fn size(&self) -> (usize, usize) {
@@ -51,13 +70,13 @@ impl Eye {
         let mut uniform = move || (random.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
         let mut collection = Collection::default();
         let mut pixels = vec![0; width * height];
-        // a summit of 15 to 600 grey levels for a spot in the middle of a pixel
         let summit = self.truth([0.5 * width as f64, 0.5 * height as f64]).share(0.0, 0.0);
         for frame in 0..frames {
             charge.clear();
             for _ in 0..leds {
                 let (u_px, v_px) = (uniform() * width as f64, uniform() * height as f64);
-                let levels = 15.0 * libm::pow(40.0, uniform()) / summit;
+                let brighter = libm::pow(self.brightest_dn / FAINTEST_DN, uniform());
+                let levels = FAINTEST_DN * brighter / summit;
                 if let Some(light) = self.light(u_px, v_px, levels * sensor.electrons_per_dn) {
                     self.preset.lens.spread.draw(&light, &mut charge);
                 }
@@ -80,7 +99,7 @@ impl Eye {
             let mut charge = Charge::new(2 * MIDDLE + 1, 2 * MIDDLE + 1);
             let light = self.light(place[0], place[1], 1e7).expect("a place in the field");
             let (u_px, v_px) = (MIDDLE as f64 + x, MIDDLE as f64 + y);
-            draw(&self.preset.lens.spread, &PointLight { u_px, v_px, ..light }, &mut charge);
+            self.preset.lens.spread.draw(&PointLight { u_px, v_px, ..light }, &mut charge);
             charge
         };
         let mut centroid = [0.0; 2];
@@ -121,10 +140,6 @@ impl Eye {
     }
 }
 
-fn draw(spread: &Drawn, light: &PointLight, onto: &mut Charge) {
-    spread.draw(light, onto);
-}
-
 /// How a table differs from the truth: rms over its summit, within so many px; and its width over the true one, less 1.
 pub(crate) fn difference(found: &PointSpread, truth: &PointSpread, within_px: f64) -> (f64, f64) {
     let summit = truth.share(0.0, 0.0);
@@ -142,43 +157,6 @@ pub(crate) fn difference(found: &PointSpread, truth: &PointSpread, within_px: f6
                 *width = [width[0] + share, width[1] + share * (x * x + y * y)];
             }
         }
-    }
-    if std::env::var("DBG").is_ok() {
-        let side = PointSpread::SIDE;
-        for v in (36..61).step_by(1) {
-            let line: Vec<String> = (36..61)
-                .step_by(2)
-                .map(|u| {
-                    format!(
-                        "{:5.1}/{:5.1}",
-                        100.0 * truth.samples()[v * side + u] / summit,
-                        100.0 * (found.samples()[v * side + u] - truth.samples()[v * side + u]) / summit
-                    )
-                })
-                .collect();
-            eprintln!("{}", line.join(" "));
-        }
-        let (f, t) = (found.samples(), truth.samples());
-        let (mut a, mut b, mut c, mut d) = (0.0, 0.0, 0.0, 0.0);
-        for v in 30..67 {
-            for u in 30..67 {
-                let i = v * side + u;
-                let (gx, gy) = (2.0 * (t[i + 1] - t[i - 1]), 2.0 * (t[i + side] - t[i - side]));
-                a += gx * (f[i] - t[i]);
-                b += gx * gx;
-                c += gy * (f[i] - t[i]);
-                d += gy * gy;
-            }
-        }
-        let sum = |s: &[f64]| s.iter().sum::<f64>() / 16.0;
-        eprintln!(
-            "shift {:.4} {:.4} summit {:.4} sum {:.4} {:.4}",
-            -a / b,
-            -c / d,
-            found.share(0.0, 0.0) / summit,
-            sum(f),
-            sum(t)
-        );
     }
     let [found_px, true_px] = widths.map(|[sum, second]| (0.5 * second / sum).sqrt());
     (f64::sqrt(square / count), found_px / true_px - 1.0)

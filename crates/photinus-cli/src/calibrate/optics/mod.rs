@@ -3,10 +3,12 @@
 //! ```text
 //! frames    every frame of every recording -> spots and dark patches; which camera they are of
 //! table     what was learned, to read
+//! page      the same as a page of figures
 //! width     how wide a point spread is
 //! ```
 
 mod frames;
+mod page;
 mod table;
 mod width;
 
@@ -24,7 +26,7 @@ pub(crate) use width::Width;
 
 const EXAMPLES: &str = "\
 Examples:
-  photinus calibrate optics flight --out camera.toml
+  photinus calibrate optics flight --out camera.toml --report optics
   photinus calibrate optics photos/*.png --camera calib.txt --out camera.toml
   photinus calibrate optics video.y4m --camera camera.toml --out measured.toml
   photinus info measured.toml
@@ -46,6 +48,9 @@ pub(crate) struct Args {
     /// Write the camera with its optics, described in docs/file-formats.md
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
+    /// Write a page of plots and numbers, and each plot as PNG and SVG, into this folder, which is made
+    #[arg(long, value_name = "DIR")]
+    report: Option<PathBuf>,
     /// An image of the frames' size that is 0 where not to look [default: that of the dataset, if any]
     #[arg(long, value_name = "FILE")]
     mask: Option<PathBuf>,
@@ -72,6 +77,7 @@ pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> Result<(), Failure> {
     let read: Vec<PathBuf> = files.chain(args.camera.clone()).chain(args.mask.clone()).collect();
     let mut targets = Targets::new(args.write, read);
     let out = args.out.as_deref().map(|path| targets.file(path)).transpose()?;
+    let report = args.report.as_deref().map(|path| targets.folder(path)).transpose()?;
     let name = inputs.first().map_or(String::new(), |input| input.name.clone());
     let mut collection = Collection::default();
     for input in inputs {
@@ -86,7 +92,7 @@ pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> Result<(), Failure> {
     let learned = learn(&collection).map_err(|error| refuse(&name, &error))?;
     if let Some(out) = out {
         let mut text = Vec::new();
-        let measured = camera.camera.with_optics(learned.optics.clone());
+        let measured = camera.camera.clone().with_optics(learned.optics.clone());
         let summary = summary(&learned);
         write_calibrated_camera_toml(
             &measured,
@@ -98,6 +104,14 @@ pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> Result<(), Failure> {
         .and_then(|()| out.write(&text))
         .map_err(Failure::running)?;
         terminal.summary(format_args!("{}: written", out.path().display()));
+    }
+    if let Some(report) = report {
+        let folder = report.whole().map_err(Failure::input)?;
+        let size_px = [camera.camera.width(), camera.camera.height()];
+        page::write(folder.path(), &learned, size_px)
+            .map_err(|error| Failure::running(folder.tell(error)))?;
+        folder.keep().map_err(Failure::running)?;
+        terminal.summary(format_args!("{}: written", report.path().join("index.html").display()));
     }
     match args.quiet {
         true => Ok(()),

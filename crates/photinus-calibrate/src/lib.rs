@@ -1,4 +1,4 @@
-//! Photos and recordings in; cameras, spot-size curves, mountings and LED layouts out, each with its uncertainty.
+//! Photos and recordings in; cameras, their optics, spot-size curves, mountings and LED layouts out, each with its uncertainty.
 //!
 //! A camera, in the order of the flow:
 //!
@@ -9,6 +9,7 @@
 //! What else Photinus must know beforehand:
 //!
 //! ```text
+//! optics           frames with LEDs -> point spread, saturation, noise
 //! spot_size        areas of one LED over distance -> how large a spot can be
 //! mounting         places in the image of what is known in the body frame -> how the camera sits
 //! airframe_layout  photos taken around an airframe -> where its LEDs sit
@@ -26,6 +27,7 @@ pub mod grid;
 pub mod labels;
 pub mod lens;
 pub mod mounting;
+pub mod optics;
 pub mod photo;
 mod resection;
 mod robust;

@@ -3,9 +3,11 @@
 use std::path::PathBuf;
 
 use photinus::spots::Detector;
+use photinus_io::mask::MaskFile;
 use photinus_io::results::{RejectedRecord, SpotRecord};
 use photinus_io::{Error, Place};
 
+use crate::clock::Clock;
 use crate::failure::Failure;
 use crate::input::{Entry, InputArgs};
 use crate::output::OutputArgs;

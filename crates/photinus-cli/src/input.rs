@@ -154,6 +154,28 @@ impl InputArgs {
         Self { inputs: inputs.to_vec(), raw: None, frames: None, dataset: dataset.clone() }
     }
 
+    /// The same inputs one by one: every folder and video for itself, images together.
+    ///
+    /// # Errors
+    /// As [`Self::open`].
+    pub(crate) fn recordings(&self) -> std::result::Result<Vec<Self>, Failure> {
+        let of = |inputs: Vec<PathBuf>| Self {
+            inputs,
+            raw: self.raw,
+            frames: self.frames,
+            dataset: self.dataset.clone(),
+        };
+        let (mut recordings, mut images) = (Vec::new(), Vec::new());
+        for path in &self.inputs {
+            let is_whole = path.is_dir() || self.raw.is_some() || is_video(path)?;
+            if is_whole { recordings.push(of(vec![path.clone()])) } else { images.push(path.clone()) }
+        }
+        if !images.is_empty() || recordings.is_empty() {
+            recordings.push(of(images));
+        }
+        Ok(recordings)
+    }
+
     /// Opens the frames.
     pub(crate) fn open(&self) -> std::result::Result<Input, Failure> {
         let mut input = self.source()?;

@@ -21,6 +21,7 @@ pub mod dataset;
 mod draw;
 pub mod faults;
 pub mod instruments;
+pub mod measured;
 pub mod motion;
 pub mod occlusion;
 pub mod optics;

@@ -67,18 +67,6 @@ pub(crate) fn exp(numbers: Lanes) -> Lanes {
     series * from_bits((n.fast_trunc_int() + i32x4::splat(127)) << 23_i32)
 }
 
-/// The share of a normal distribution below t sigma, whose density there is `bell`, to 2e-7 (Abramowitz and Stegun 26.2.17).
-#[inline(always)]
-pub(crate) fn normal_below(t: Lanes, bell: Lanes) -> Lanes {
-    let [p, a, b, c, d, e] =
-        [0.231_641_9, 0.319_381_54, -0.356_563_78, 1.781_477_9, -1.821_255_9, 1.330_274_5].map(Lanes::splat);
-    let side = less(Lanes::ZERO, t);
-    let sign = side + side - Lanes::ONE;
-    let k = Lanes::ONE / (Lanes::ONE + p * t * sign);
-    let beyond = bell * k * (a + k * (b + k * (c + k * (d + k * e))));
-    side - sign * beyond
-}
-
 #[inline(always)]
 fn bits(numbers: Lanes) -> i32x4 {
     i32x4::new(numbers.to_array().map(|number| number.to_bits().cast_signed()))
@@ -116,17 +104,6 @@ mod tests {
         }
         let far = Lanes::new([-1e6, f32::NEG_INFINITY, -81.0, 0.0]);
         assert!(exp(far).to_array().iter().all(|&number| number > 0.0 && number <= 1.0));
-    }
-
-    #[test]
-    fn the_normal_distribution_is_that_of_the_library() {
-        for step in -800..=800 {
-            let t = step as f32 / 100.0;
-            let bell = (exp(Lanes::splat(-0.5 * t * t)) * Lanes::splat(0.398_942_3)).to_array()[0];
-            let [ours, ..] = normal_below(Lanes::splat(t), Lanes::splat(bell)).to_array();
-            let theirs = 0.5 * libm::erfc(-f64::from(t) / std::f64::consts::SQRT_2);
-            assert!((f64::from(ours) - theirs).abs() < 2e-7, "{t}: {ours}, {theirs}");
-        }
     }
 
     proptest! {

@@ -166,7 +166,7 @@ impl Outputs {
             max_px: report.max_px,
         };
         let (mut text, path) = (Vec::new(), self.camera.path());
-        write_calibrated_camera_toml(calibration.camera(), Some(&summary), &mut text, path)
+        write_calibrated_camera_toml(calibration.camera(), Some(&summary), None, &mut text, path)
             .and_then(|()| self.camera.write(&text))
             .map_err(Failure::running)?;
         terminal.summary(format_args!("{}: written", path.display()));

@@ -6,6 +6,7 @@ mod airframe_light;
 mod camera;
 mod coverage;
 mod mounting;
+mod optics;
 mod page;
 mod photos;
 mod report;
@@ -16,6 +17,8 @@ use clap::Subcommand;
 
 use crate::failure::Failure;
 use crate::terminal::Terminal;
+
+pub(crate) use optics::Width;
 
 /// Calibrate: from photos and recordings to a camera whose errors are known
 #[derive(Debug, clap::Args)]
@@ -29,6 +32,7 @@ pub(crate) struct Args {
 enum What {
     Camera(camera::Args),
     Coverage(coverage::Args),
+    Optics(optics::Args),
     SpotSize(spot_size::Args),
     Mounting(mounting::Args),
     Airframe(airframe::Args),
@@ -41,6 +45,7 @@ impl Args {
         match &self.what {
             What::Camera(args) => args.quiet(),
             What::Coverage(_) => false,
+            What::Optics(args) => args.quiet(),
             What::SpotSize(args) => args.quiet(),
             What::Mounting(args) => args.quiet(),
             What::Airframe(args) => args.quiet(),
@@ -54,6 +59,7 @@ pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> Result<(), Failure> {
     match &args.what {
         What::Camera(args) => camera::run(args, terminal),
         What::Coverage(args) => coverage::run(args, terminal),
+        What::Optics(args) => optics::run(args, terminal),
         What::SpotSize(args) => spot_size::run(args, terminal),
         What::Mounting(args) => mounting::run(args, terminal),
         What::Airframe(args) => airframe::run(args, terminal),

@@ -41,8 +41,14 @@ pub(super) fn camera_to_toml(path: &Path, target: &FileTarget, terminal: &Termin
     let out = target.path();
     let file = beforehand::camera(path, terminal).map_err(Failure::input)?;
     let mut text = Vec::new();
-    write_calibrated_camera_toml(&file.camera, file.calibration.as_ref(), &mut text, out)
-        .map_err(Failure::running)?;
+    write_calibrated_camera_toml(
+        &file.camera,
+        file.calibration.as_ref(),
+        file.optics.as_ref(),
+        &mut text,
+        out,
+    )
+    .map_err(Failure::running)?;
     target.write(&text).map_err(Failure::running)?;
     if file.inverse.is_some() {
         terminal.note(format_args!(

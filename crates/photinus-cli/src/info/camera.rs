@@ -5,13 +5,13 @@ use std::path::Path;
 use photinus::camera::{Camera, IdealLaw, Model, Pixel};
 use photinus_io::{CameraFile, CameraFormat, Result, read_camera};
 
-use super::Report;
+use super::{Report, optics};
 
 /// Farther than this a pixel must not come back from its own bearing, px.
 const ROUND_TRIP_PX: f64 = 1e-6;
 
 pub(super) fn report(path: &Path) -> Result<Report> {
-    let CameraFile { camera, format, oddities, inverse, calibration } = read_camera(path)?;
+    let CameraFile { camera, format, oddities, inverse, calibration, optics } = read_camera(path)?;
     let mut report = Report::new("a camera");
     let centre = camera.model().centre();
     report.fact("format", format_name(format));
@@ -32,6 +32,9 @@ pub(super) fn report(path: &Path) -> Result<Report> {
     }
     if let Some(sigma) = calibration_sigma(&camera) {
         report.fact("calibration sigma", sigma);
+    }
+    if let Some(measured) = camera.optics() {
+        optics::report(measured, optics.as_ref(), &mut report);
     }
     if let Some(inverse) = inverse {
         report.fact(

@@ -4,6 +4,7 @@ mod airframe;
 mod camera;
 mod dataset;
 mod frames;
+mod optics;
 mod records;
 
 use std::path::{Path, PathBuf};

@@ -17,6 +17,7 @@
 //! # tangential = [p1, p2]
 //! [calibration]               # optional: what `photinus calibrate camera` found out about it
 //! covariance = [[...], ...]   # of the model's parameters, in the order of Model::parameter_count
+//! [optics]                    # optional: lens and sensor as `photinus calibrate optics` measured them, docs/file-formats.md
 //! ```
 
 mod camera_info;
@@ -26,6 +27,7 @@ mod kalibr;
 mod numbers;
 mod ocam_text;
 mod ocam_write;
+mod optics_toml;
 mod own_toml;
 mod pyocamcalib;
 mod uvdar_yaml;
@@ -59,6 +61,23 @@ pub struct CameraFile {
     pub inverse: Option<InverseReport>,
     /// What the calibration reached, where the file says so.
     pub calibration: Option<CalibrationSummary>,
+    /// What the calibration of the optics says about itself, where the file has optics.
+    pub optics: Option<OpticsSummary>,
+}
+
+/// What a calibration of optics says about itself; the optics are those of the camera.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct OpticsSummary {
+    /// Frames that it rests on.
+    pub frames: u64,
+    /// Spots that it rests on.
+    pub spots: u64,
+    /// Standard deviation of the mean level of full pixels, grey levels.
+    pub saturation_sigma_dn: Option<f64>,
+    /// Standard deviation of the error of the point spread, a share of the light.
+    pub shape_error_sigma: Option<f64>,
+    /// What the frames did not tell: what stands there is what was believed before.
+    pub unseen: Vec<String>,
 }
 
 /// What a calibration reached: distances between where the photos show LEDs and where the camera expects them.
@@ -125,7 +144,8 @@ impl CameraFile {
         field_limit_deg: Option<f64>,
     ) -> std::result::Result<Self, CameraError> {
         let camera = Camera::new(model, width_px, height_px, field_limit_deg.map(f64::to_radians))?;
-        let mut file = Self { camera, format, oddities: Vec::new(), inverse: None, calibration: None };
+        let mut file =
+            Self { camera, format, oddities: Vec::new(), inverse: None, calibration: None, optics: None };
         file.remark_centre();
         Ok(file)
     }
@@ -178,6 +198,24 @@ fn camera_error(path: &Path, error: CameraError) -> Error {
         _ => RENEW,
     };
     Error::new(path, error).advise(advice)
+}
+
+#[cfg(test)]
+mod tests_of_optics {
+    use photinus::camera::{Ideal, IdealLaw, Pixel};
+
+    use super::*;
+
+    pub(super) fn bare_camera() -> Camera {
+        let lens = Ideal::new(IdealLaw::Equidistant, [265.0; 2], Pixel::new(375.5, 239.5)).unwrap();
+        Camera::new(Model::Ideal(lens), 752, 480, None).unwrap()
+    }
+
+    pub(super) fn round_trip(camera: &Camera, summary: &OpticsSummary) -> CameraFile {
+        let (mut bytes, path) = (Vec::new(), Path::new("out.toml"));
+        write_calibrated_camera_toml(camera, None, Some(summary), &mut bytes, path).unwrap();
+        parse_camera(&bytes, path).unwrap()
+    }
 }
 
 #[cfg(test)]

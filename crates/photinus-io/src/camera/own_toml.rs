@@ -8,7 +8,8 @@ use photinus::camera::{Camera, CameraError, Ideal, IdealLaw, KannalaBrandt, Mode
 use serde::{Deserialize, Serialize};
 
 use super::numbers::{Finite, degrees, values};
-use super::{CalibrationSummary, CameraFile, CameraFormat, camera_error};
+use super::optics_toml::{self, OpticsTable};
+use super::{CalibrationSummary, CameraFile, CameraFormat, OpticsSummary, camera_error};
 use crate::{Error, Place, Result, table};
 
 /// The file as it stands: the keys of all models, of which each model has its own.
@@ -28,6 +29,7 @@ struct Table {
     radial: Option<[Finite; 6]>,
     tangential: Option<[Finite; 2]>,
     calibration: Option<Calibration>,
+    optics: Option<OpticsTable>,
 }
 
 /// What a calibration knows about itself.
@@ -75,6 +77,10 @@ pub fn parse_camera_toml(text: &str, path: &Path) -> Result<CameraFile> {
         file.calibration = calibration.summary();
         file.camera = calibrated(file.camera, &calibration.covariance, path)?;
     }
+    if let Some(optics) = table.optics {
+        let (camera, summary) = optics.install(file.camera, path)?;
+        (file.camera, file.optics) = (camera, Some(summary));
+    }
     if let Model::OCam(lens) = file.camera.model().clone() {
         file.remark_lens(&lens);
     }
@@ -99,21 +105,24 @@ fn calibrated(camera: Camera, rows: &[Vec<Finite>], path: &Path) -> Result<Camer
 /// # Errors
 /// An [`Error`] when writing fails.
 pub fn write_camera_toml(camera: &Camera, to: &mut impl Write, path: &Path) -> Result<()> {
-    write_calibrated_camera_toml(camera, None, to, path)
+    write_calibrated_camera_toml(camera, None, None, to, path)
 }
 
-/// [`write_camera_toml`] with what the calibration reached, where the camera has a covariance.
+/// [`write_camera_toml`] with what the calibrations reached, where the camera has a covariance, and where it has optics.
 ///
 /// # Errors
 /// An [`Error`] when writing fails.
 pub fn write_calibrated_camera_toml(
     camera: &Camera,
     summary: Option<&CalibrationSummary>,
+    optics: Option<&OpticsSummary>,
     to: &mut impl Write,
     path: &Path,
 ) -> Result<()> {
-    let text = toml::to_string(&Table::of(camera, summary))
+    let mut text = toml::to_string(&Table::of(camera, summary, optics))
         .map_err(|error| Error::format(path, error.to_string()))?;
+    // the table of the point spread is the last one
+    text += &camera.optics().map_or(String::new(), |optics| optics_toml::zones_text(optics));
     to.write_all(text.as_bytes()).map_err(|error| Error::io(path, error))
 }
 
@@ -164,7 +173,7 @@ impl Table {
         .find_map(|(there, key)| there.then_some(key))
     }
 
-    fn of(camera: &Camera, summary: Option<&CalibrationSummary>) -> Self {
+    fn of(camera: &Camera, summary: Option<&CalibrationSummary>, optics: Option<&OpticsSummary>) -> Self {
         let centre = camera.model().centre();
         let bare = Self {
             model: Name::Ocam,
@@ -180,6 +189,7 @@ impl Table {
             radial: None,
             tangential: None,
             calibration: camera.parameter_covariance().map(|matrix| Calibration::of(matrix, summary)),
+            optics: camera.optics().map(|measured| OpticsTable::of(measured, optics)),
         };
         match camera.model() {
             Model::OCam(lens) => {

@@ -9,12 +9,14 @@ mod moffat;
 mod sampled;
 mod spread;
 mod vignette;
+mod zones;
 
 pub use aberration::Aberrations;
 pub use gaussian::Gaussian;
 pub use sampled::SampledSpread;
 pub use spread::{PointLight, PointSpread};
 pub use vignette::Vignette;
+pub use zones::ZonedSpread;
 
 /// A lens and filter in front of the sensor.
 #[derive(Clone, Debug, PartialEq)]

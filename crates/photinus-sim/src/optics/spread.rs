@@ -5,7 +5,7 @@
 //! each part out among places nearby (`aberration.rs`).
 
 use super::gaussian::Blob;
-use super::{Aberrations, Gaussian, SampledSpread, moffat};
+use super::{Aberrations, Gaussian, SampledSpread, ZonedSpread, moffat};
 use crate::sensor::Charge;
 
 /// How a point of light spreads over pixels.
@@ -19,6 +19,7 @@ pub struct PointSpread {
 enum Shape {
     Gaussians(Vec<Gaussian>),
     Sampled(SampledSpread),
+    Zoned(ZonedSpread),
 }
 
 /// A place and an amount of light in the image.
@@ -75,6 +76,11 @@ impl PointSpread {
         Self { shape: Shape::Sampled(table), aberrations: Aberrations::default() }
     }
 
+    /// A spread that was measured all over the image.
+    pub fn zoned(zones: ZonedSpread) -> Self {
+        Self { shape: Shape::Zoned(zones), aberrations: Aberrations::default() }
+    }
+
     /// The same shape with what the lens does to it off the axis; `None` for numbers that no lens has: widening and elongation
     /// are 0 to 10, coma is -10 to 10.
     pub fn with_aberrations(self, aberrations: Aberrations) -> Option<Self> {
@@ -90,7 +96,7 @@ impl PointSpread {
     pub fn parts(&self) -> &[Gaussian] {
         match &self.shape {
             Shape::Gaussians(parts) => parts,
-            Shape::Sampled(_) => &[],
+            Shape::Sampled(_) | Shape::Zoned(_) => &[],
         }
     }
 
@@ -110,14 +116,17 @@ impl PointSpread {
                     });
                 }
             }
-            Shape::Sampled(table) => {
-                // a source of some size widens the table as it widens a Gaussian of the same variance
-                let source_px2 = 0.25 * light.radius_px * light.radius_px;
-                let sigma_px = (table.variance_px2() * wider * wider + source_px2).sqrt();
-                let wider = sigma_px / table.variance_px2().sqrt();
-                self.share_out(light, sigma_px, |light, _| table.draw(light, wider, onto));
-            }
+            Shape::Sampled(table) => self.draw_sampled(table, light, wider, onto),
+            Shape::Zoned(zones) => self.draw_sampled(zones.at(light.u_px, light.v_px), light, wider, onto),
         }
+    }
+
+    fn draw_sampled(&self, table: &SampledSpread, light: &PointLight, wider: f64, onto: &mut Charge) {
+        // a source of some size widens the table as it widens a Gaussian of the same variance
+        let source_px2 = 0.25 * light.radius_px * light.radius_px;
+        let sigma_px = (table.variance_px2() * wider * wider + source_px2).sqrt();
+        let wider = sigma_px / table.variance_px2().sqrt();
+        self.share_out(light, sigma_px, |light, _| table.draw(light, wider, onto));
     }
 
     /// Hands over the parts among which aberrations share the light of a blob of `sigma_px`, each with its share.

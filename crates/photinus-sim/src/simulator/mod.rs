@@ -14,6 +14,7 @@ use photinus::airframe::Led;
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64;
 
+use crate::measured::as_measured;
 use crate::render::{CameraView, Rendered, Renderer};
 use crate::scene::{Scene, SceneLamp, Target};
 use crate::sensor::hash;
@@ -37,11 +38,12 @@ impl Simulator {
         let scene: Arc<Scene> = scene.into();
         let mounted = scene.cameras.get(camera)?;
         let preset = &scene.preset;
-        let view = CameraView {
+        let mut view = CameraView {
             camera: mounted.camera.clone(),
             lens: preset.lens.clone(),
             sensor: preset.sensor.clone(),
         };
+        as_measured(&mounted.camera, &mut view.lens, &mut view.sensor);
         // the cameras of a scene differ in their noise; the first one has the scene's seed itself
         let renderer = Renderer::new(view, scene.seed ^ ((camera as u64) << 56))
             .with_own_airframe(&scene.own_airframe, mounted.body_from_camera);

@@ -143,9 +143,8 @@ pub(super) fn fit<const N: usize>(
     // Where nothing fits well, misfits count for less.
     let misfits = found.iter().flatten().map(|fitted| fitted.chi2 / fitted.freedom);
     let least = misfits.fold(f64::INFINITY, f64::min).max(1.0);
-    let cost = |fitted: &Fitted<N>| {
-        fitted.chi2 / least + fitted.rest_of_cost + COUNTS * libm::log(fitted.light())
-    };
+    let cost =
+        |fitted: &Fitted<N>| fitted.chi2 / least + fitted.rest_of_cost + COUNTS * libm::log(fitted.light());
     found.into_iter().flatten().min_by(|a, b| cost(a).total_cmp(&cost(b)))
 }
 

@@ -10,8 +10,6 @@ use crate::lanes::{self, LANES, Lanes};
 /// Width of the ring of background pixels, px.
 const RING_PX: i32 = 2;
 
-/// The pixels of a narrow spot outshine those around them on average by this factor: a Gaussian of 1.1 px does not.
-const CORE_OVER_HALO: f32 = 4.0;
 /// Fewer background pixels tell no level.
 const FEWEST_PX: i32 = 8;
 
@@ -35,8 +33,6 @@ pub(super) struct Patch {
     rows: usize,
     stride: usize,
     signal: Vec<f32>,
-    /// The signal before pixels that touch saturated ones were hidden.
-    before: Vec<f32>,
 }
 
 impl Patch {
@@ -52,12 +48,8 @@ impl Patch {
         (self.left, self.top) = (u - reach, v - reach);
         self.rows = (2 * reach + 1) as usize;
         self.stride = self.rows.next_multiple_of(LANES);
-        self.before.clear();
         self.signal.clear();
         self.signal.resize(self.rows * self.stride, 0.0);
-        if self.before.capacity() < self.signal.len() {
-            self.before.reserve(self.signal.len() - self.before.len());
-        }
         let first = self.left.max(0);
         let end = (self.left + self.rows as i32).min(frame.width() as i32);
         for (signal, v) in self.signal.chunks_exact_mut(self.stride).zip(self.top..) {
@@ -72,34 +64,6 @@ impl Patch {
                 *signal = f32::from(pixel) - (level + rise_u * du as f32);
             }
         }
-    }
-
-    /// Makes pixels that touch a saturated one count as saturated, too: a full pixel overflows into them.
-    pub(super) fn hide_overflow(&mut self, saturation: f32) {
-        self.before.clear();
-        self.before.extend_from_slice(&self.signal);
-        for (row, line) in self.before.chunks_exact(self.stride).enumerate() {
-            for column in (0..self.rows).filter(|&column| line[column] >= saturation) {
-                let columns = column.saturating_sub(1)..(column + 2).min(self.rows);
-                for row in row.saturating_sub(1)..(row + 2).min(self.rows) {
-                    let touching = &mut self.signal[row * self.stride..][columns.clone()];
-                    touching.iter_mut().for_each(|signal| *signal = signal.max(saturation));
-                }
-            }
-        }
-    }
-
-    /// Undoes [`Self::hide_overflow`].
-    pub(super) fn show_overflow(&mut self) {
-        if !self.before.is_empty() {
-            self.signal.copy_from_slice(&self.before);
-            self.before.clear();
-        }
-    }
-
-    /// Whether no side of the window is longer than `most_px`.
-    pub(super) fn fits_in(&self, most_px: usize) -> bool {
-        self.stride <= most_px
     }
 
     /// The signal in columns `column` to `column` + 3, from the first row to the last.
@@ -118,32 +82,6 @@ impl Patch {
     /// A place in the image as seen from the patch's first pixel.
     pub(super) fn local(&self, place: Pixel) -> (f32, f32) {
         ((place.u - f64::from(self.left)) as f32, (place.v - f64::from(self.top)) as f32)
-    }
-
-    /// How much of the light of the nine pixels around `place` falls into four of them, above the halo that the sixteen
-    /// around these tell of; 0 for a spot so wide that these are part of it.
-    pub(super) fn share_in_four(&self, place: Pixel) -> f32 {
-        let (u, v) = (place.u.round() as i32, place.v.round() as i32);
-        let (column, row) = ((u - self.left).max(2) as usize, (v - self.top).max(2) as usize);
-        let [mut columns, mut rows] = [[0.0; 3]; 2];
-        let mut sixteen = 0.0;
-        for (y, line) in self.signal.chunks_exact(self.stride).skip(row - 2).take(5).enumerate() {
-            for (x, &signal) in line.iter().skip(column - 2).take(5).enumerate() {
-                if (1..4).contains(&x) && (1..4).contains(&y) {
-                    columns[x - 1] += signal;
-                    rows[y - 1] += signal;
-                } else {
-                    sixteen += signal;
-                }
-            }
-        }
-        let (nine, halo) = (columns.iter().sum::<f32>(), (sixteen / 16.0).max(0.0));
-        let total = nine - 9.0 * halo;
-        if nine < CORE_OVER_HALO * 9.0 * halo || total <= 0.0 {
-            return 0.0;
-        }
-        let in_two = |[before, middle, after]: [f32; 3]| (middle + before.max(after) - 6.0 * halo) / total;
-        in_two(columns) * in_two(rows)
     }
 
     /// Signal within `radius_px` of `centre`, grey levels.

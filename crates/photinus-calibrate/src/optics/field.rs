@@ -1,0 +1,219 @@
+//! The point spread over the image: tables at the nodes of a grid, between which it changes evenly.
+//!
+//! In each round the tables change so that they explain what fits leave of the pixels (weighted least squares for the coefficients
+//! of their splines, `correction.rs`), held back by what is believed beforehand: that of the whole image is nearly round and
+//! smooth, those of the nodes differ from it as much as the pixels make likely. Where the lens is even they so fall back on it.
+
+use photinus::optics::{OpticsError, PointSpread, SpreadField};
+
+use super::correction::{self, Belief, Correction};
+use super::noise::Noise;
+use super::profile;
+use super::spot::Spot;
+use super::table::{COUNT, SIDE, Table, radius_px};
+
+/// The table of the whole image differs from a round one by this share, and relative changes bend by this from one sample to the
+/// next but one.
+const ROUND: Belief = Belief { apart: 0.4, bent: 0.08 };
+/// What is first believed of the nodes' tables against that of the whole image.
+const EVEN: Belief = Belief { apart: 0.3, bent: 0.06 };
+/// Least and most that the nodes may come to differ.
+const LEAST_APART: f64 = 1e-4;
+const MOST_APART: f64 = 1.0;
+/// Beyond this the table is the round one, px: nothing there stands out of the level.
+const LEARNED_PX: f64 = 8.0;
+/// Zones from one node to the next.
+const ZONES_PER_NODE: usize = 2;
+/// A sample counts as being of at least this share of the summit.
+const FAINTEST: f64 = 2e-4;
+
+/// Tables over the image.
+#[derive(Clone, Debug)]
+pub(super) struct Field {
+    size_px: [f64; 2],
+    nodes: [usize; 2],
+    whole: Table,
+    of_nodes: Vec<Table>,
+    belief: Belief,
+    zones: [usize; 2],
+    of_zones: Vec<Table>,
+    /// Variances of the coefficients of the table of the whole image, and of what nodes add, for the noise that they take from pixels.
+    variances: [Vec<f64>; 2],
+}
+
+impl Field {
+    /// The same table all over the image; it may change between so many nodes along columns and rows.
+    pub(super) fn new(start: Table, size_px: [usize; 2], nodes: [usize; 2]) -> Self {
+        Self {
+            size_px: size_px.map(|px| px as f64),
+            nodes,
+            of_nodes: vec![start.clone(); nodes[0] * nodes[1]],
+            belief: EVEN,
+            zones: [1, 1],
+            of_zones: vec![start.clone()],
+            whole: start,
+            variances: [vec![0.0; COUNT], vec![0.0; COUNT]],
+        }
+    }
+
+    /// Tables that are known, of zones in rows of `columns`.
+    pub(super) fn given(of_zones: Vec<Table>, columns: usize, size_px: [usize; 2]) -> Self {
+        let zones = [columns, of_zones.len() / columns];
+        let whole = of_zones[of_zones.len() / 2].clone();
+        Self { zones, of_zones, ..Self::new(whole, size_px, [1, 1]) }
+    }
+
+    /// The table at a place.
+    pub(super) fn at(&self, [u, v]: [f64; 2]) -> &Table {
+        let zone = |px: f64, axis: usize| {
+            let share = (px + 0.5) / self.size_px[axis] * self.zones[axis] as f64;
+            (share.max(0.0) as usize).min(self.zones[axis] - 1)
+        };
+        &self.of_zones[zone(v, 1) * self.zones[0] + zone(u, 0)]
+    }
+
+    /// Variance of the share that a table says a pixel at this offset gets.
+    pub(super) fn variance(&self, x_px: f64, y_px: f64) -> f64 {
+        // between nodes the mean of their squared shares is left of it
+        const BETWEEN: f64 = 4.0 / 9.0;
+        let [whole, node] = self.variances.each_ref().map(|of| correction::variance(of, x_px, y_px));
+        whole + BETWEEN * node
+    }
+
+    /// Learns what is the same all over the image from what the fits of spots leave.
+    pub(super) fn learn_whole(&mut self, spots: &[Spot<'_>], noise: &Noise) {
+        let mut whole = self.whole.clone();
+        profile::correct(&mut whole, spots, self, noise);
+        self.become_whole(whole);
+        let round = round(&self.whole);
+        let scale = scale(&round);
+        let mut correction = Correction::new(&scale, &ROUND, 1);
+        let all = |_: [f64; 2]| [(0, 1.0); 1];
+        correction.gather(spots, self, noise, 0.1 * summit(&self.whole), all);
+        correction.solve(&[&self.whole], &round);
+        correction.apply(0, &mut self.whole);
+        self.variances[0] = correction.variances(0);
+        self.become_whole(self.whole.clone());
+    }
+
+    /// Learns how the nodes differ.
+    pub(super) fn learn_nodes(&mut self, spots: &[Spot<'_>], noise: &Noise) {
+        let scale = scale(&round(&self.whole));
+        let mut correction = Correction::new(&scale, &self.belief, self.of_nodes.len());
+        correction.gather(spots, self, noise, 0.03 * summit(&self.whole), |place| self.corners(place));
+        correction.solve(&self.of_nodes.iter().collect::<Vec<_>>(), &self.whole);
+        for (node, table) in self.of_nodes.iter_mut().enumerate() {
+            correction.apply(node, table);
+        }
+        // how far the nodes lie apart tells how far they may
+        let apart = correction.apart(&self.of_nodes, &self.whole).clamp(LEAST_APART, MOST_APART);
+        self.belief = Belief { apart, bent: EVEN.bent / EVEN.apart * apart };
+        let count = self.of_nodes.len() as f64;
+        let mut samples = vec![0.0; COUNT];
+        for table in &self.of_nodes {
+            samples.iter_mut().zip(&table.samples).for_each(|(sum, share)| *sum += share / count);
+        }
+        self.whole = Table::new(samples);
+        self.whole.settle();
+        self.variances[1] = correction.variances(self.of_nodes.len() / 2);
+        self.blend();
+    }
+
+    /// The four nodes around a place with their shares in it.
+    fn corners(&self, place: [f64; 2]) -> [(usize, f64); 4] {
+        let along = |axis: usize| {
+            let last = self.nodes[axis] - 1;
+            let at = ((place[axis] + 0.5) / self.size_px[axis]).clamp(0.0, 1.0) * last as f64;
+            let first = (at as usize).min(last.saturating_sub(1));
+            (first, (first + 1).min(last), at - first as f64)
+        };
+        let ((left, right, x), (top, bottom, y)) = (along(0), along(1));
+        let node = |column: usize, row: usize| row * self.nodes[0] + column;
+        [
+            (node(left, top), (1.0 - x) * (1.0 - y)),
+            (node(right, top), x * (1.0 - y)),
+            (node(left, bottom), (1.0 - x) * y),
+            (node(right, bottom), x * y),
+        ]
+    }
+
+    fn become_whole(&mut self, whole: Table) {
+        self.of_nodes.fill(whole.clone());
+        self.of_zones = vec![whole.clone()];
+        (self.zones, self.whole) = ([1, 1], whole);
+    }
+
+    /// Tables of zones finer than the nodes.
+    fn blend(&mut self) {
+        self.zones = self.nodes.map(|nodes| ZONES_PER_NODE * nodes);
+        let mut tables = Vec::with_capacity(self.zones[0] * self.zones[1]);
+        for row in 0..self.zones[1] {
+            for column in 0..self.zones[0] {
+                let middle = |index: usize, axis: usize| {
+                    (index as f64 + 0.5) / self.zones[axis] as f64 * self.size_px[axis] - 0.5
+                };
+                let mut samples = vec![0.0; COUNT];
+                for (node, part) in self.corners([middle(column, 0), middle(row, 1)]) {
+                    let table = &self.of_nodes[node];
+                    samples.iter_mut().zip(&table.samples).for_each(|(sum, share)| *sum += part * share);
+                }
+                tables.push(Table::new(samples));
+            }
+        }
+        self.of_zones = tables;
+    }
+
+    /// What the method takes.
+    pub(super) fn spread(&self, shape_error: f64) -> Result<SpreadField, OpticsError> {
+        let is_even = self.belief.apart <= 2.0 * LEAST_APART;
+        let tables = if is_even { std::slice::from_ref(&self.whole) } else { &self.of_zones };
+        let spread = |table: &Table| PointSpread::new(table.samples.clone());
+        if let [only] = tables {
+            return SpreadField::even(spread(only)?, shape_error);
+        }
+        let [width_px, height_px] = self.size_px;
+        let zones = tables.iter().map(spread).collect::<Result<_, _>>()?;
+        SpreadField::new(zones, self.zones[0], width_px, height_px, shape_error)
+    }
+}
+
+fn summit(table: &Table) -> f64 {
+    table.samples.iter().copied().fold(0.0, f64::max)
+}
+
+/// The table's mean at every radius.
+fn round(table: &Table) -> Table {
+    const WIDTH_PX: f64 = 0.25;
+    let at = |sample: usize| {
+        let ring = radius_px(sample) / WIDTH_PX;
+        [(ring as usize, 1.0 - ring.fract()), (ring as usize + 1, ring.fract())]
+    };
+    let rings = (SIDE as f64 / WIDTH_PX) as usize;
+    let (mut sums, mut weights) = (vec![0.0; rings], vec![0.0; rings]);
+    for (sample, share) in table.samples.iter().enumerate() {
+        for (ring, near) in at(sample) {
+            sums[ring] += near * share;
+            weights[ring] += near;
+        }
+    }
+    let mean = |sample: usize| -> f64 {
+        at(sample).iter().map(|&(ring, near)| near * sums[ring] / f64::max(weights[ring], 1e-9)).sum()
+    };
+    Table::new((0..COUNT).map(mean).collect())
+}
+
+/// How large changes of each coefficient may be, if all of it may change.
+fn scale(round: &Table) -> Vec<f64> {
+    let faintest = FAINTEST * summit(round);
+    let of = |sample: usize| {
+        let fade = (0.5 * (LEARNED_PX - radius_px(sample))).clamp(0.0, 1.0);
+        // what is beside something bright may be as bright
+        let widest = |dx: isize, dy: isize| {
+            let beside = sample as isize + dx + dy * SIDE as isize;
+            usize::try_from(beside).ok().and_then(|beside| round.samples.get(beside)).copied().unwrap_or(0.0)
+        };
+        let beside = [(0, 0), (2, 0), (-2, 0), (0, 2), (0, -2)].map(|(dx, dy)| widest(dx, dy));
+        fade * (beside.into_iter().fold(0.0, f64::max) + faintest)
+    };
+    (0..COUNT).map(of).collect()
+}

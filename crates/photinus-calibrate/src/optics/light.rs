@@ -1,0 +1,129 @@
+//! Noise against light: what fits leave of pixels, squared, explained by darkness, light, and the error of the point spread.
+
+use nalgebra::{SMatrix, SVector};
+use photinus::optics::Measured;
+
+use super::field::Field;
+use super::noise::{Noise, ROUNDING};
+use super::spot::Spot;
+use super::table::Shares;
+
+/// A pixel of a spot: its light and what is left of it, squared, what its fit took away put back.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Residual {
+    pub(super) light: f64,
+    pub(super) square: f64,
+    /// Which tenth of the spots it is of.
+    part: usize,
+}
+
+/// Noise with how sure it is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct LightNoise {
+    pub(super) noise: Noise,
+    /// Standard deviations of darkness, shot and shape (that of its square over twice itself).
+    pub(super) dark_sigma: f64,
+    pub(super) shot_sigma: f64,
+    pub(super) shape_sigma: f64,
+}
+
+const PARTS: usize = 10;
+const ROUNDS: usize = 6;
+/// A pixel whose fit takes more of its noise than this tells too little.
+const MOST_TAKEN: f64 = 0.7;
+/// Pixels farther off than this many sigmas are something else.
+const CLIP: f64 = 5.0;
+/// Pixels with less light say no more than patches without, and round alike, grey levels.
+const LEAST_DN: f64 = 0.7;
+
+/// What is left of the pixels of spots.
+pub(super) fn residuals(spots: &[Spot<'_>], field: &Field, noise: &Noise) -> Vec<Residual> {
+    let mut shares = Shares::default();
+    let mut residuals = Vec::new();
+    for (number, spot) in spots.iter().enumerate().filter(|(_, spot)| spot.is_used && spot.is_linear()) {
+        let table = field.at(spot.place_px());
+        let taken = spot.leverages(table, noise, usize::MAX, &mut shares);
+        let mut taken = taken.iter();
+        spot.each_pixel(table, noise, usize::MAX, &mut shares, |pixel| {
+            let fit = taken.next().copied().unwrap_or(1.0);
+            let (x_px, y_px) = (pixel.column as f64 - spot.u, pixel.row as f64 - spot.v);
+            let learned = field.variance(x_px, y_px) * pixel.weight * spot.light * spot.light;
+            let taken = fit + learned;
+            let off = pixel.left * pixel.left * pixel.weight;
+            if taken < MOST_TAKEN && pixel.light > LEAST_DN && off < CLIP * CLIP {
+                let square = pixel.left * pixel.left / (1.0 - taken);
+                residuals.push(Residual { light: pixel.light, square, part: number % PARTS });
+            }
+        });
+    }
+    residuals
+}
+
+/// Explains residuals; `dark_dn` is the noise of patches without light, where it is known.
+pub(super) fn explain(residuals: &[Residual], dark_dn: Option<Measured>, before: &Noise) -> LightNoise {
+    let dark = dark_dn.map(|measured| measured.value * measured.value + ROUNDING);
+    let whole = solve(residuals, dark, before, |_| true);
+    let mut squares = [0.0; 3];
+    for part in 0..PARTS {
+        let without = solve(residuals, dark, before, |residual| residual.part != part);
+        let changes = [without.dark - whole.dark, without.shot - whole.shot, without.shape - whole.shape];
+        squares.iter_mut().zip(changes).for_each(|(sum, change)| *sum += change * change);
+    }
+    let [dark_sigma, shot_sigma, shape_sigma] =
+        squares.map(|sum| (sum * (PARTS - 1) as f64 / PARTS as f64).sqrt());
+    LightNoise { noise: whole, dark_sigma, shot_sigma, shape_sigma }
+}
+
+/// Least squares of squared residuals on 1, light and its square, none below 0; a normal residual's square has twice its variance
+/// squared.
+fn solve(
+    residuals: &[Residual],
+    dark: Option<f64>,
+    before: &Noise,
+    is_used: impl Fn(&Residual) -> bool,
+) -> Noise {
+    let mut noise = *before;
+    for _ in 0..ROUNDS {
+        let mut normal = SMatrix::<f64, 3, 3>::zeros();
+        let mut right = SVector::<f64, 3>::zeros();
+        for residual in residuals.iter().filter(|residual| is_used(residual)) {
+            let variance = noise.variance(residual.light);
+            let weight = 0.5 / (variance * variance);
+            let constant = if dark.is_some() { 0.0 } else { 1.0 };
+            let row = SVector::from([constant, residual.light, residual.light * residual.light]);
+            normal += row * row.transpose() * weight;
+            right += row * ((residual.square - dark.unwrap_or(0.0)) * weight);
+        }
+        let found = non_negative(&normal, &right);
+        noise = Noise {
+            dark: dark.unwrap_or(found[0].max(ROUNDING)),
+            shot: found[1].max(1e-5),
+            shape: found[2].max(0.0).sqrt(),
+        };
+    }
+    noise
+}
+
+/// The least squares among numbers not below 0: of all choices of those that are 0, the best.
+fn non_negative(normal: &SMatrix<f64, 3, 3>, right: &SVector<f64, 3>) -> SVector<f64, 3> {
+    let mut best = (f64::INFINITY, SVector::zeros());
+    for zeros in 0..8_u32 {
+        let is_zero = |index: usize| zeros & (1 << index) != 0;
+        let mut matrix = *normal;
+        let mut vector = *right;
+        for index in (0..3).filter(|&index| is_zero(index)) {
+            matrix.row_mut(index).fill(0.0);
+            matrix.column_mut(index).fill(0.0);
+            (matrix[(index, index)], vector[index]) = (1.0, 0.0);
+        }
+        let Some(found) = matrix.lu().solve(&vector) else { continue };
+        if found.iter().any(|value| !value.is_finite()) {
+            continue;
+        }
+        let cost = (found.transpose() * normal * found)[0] - 2.0 * found.dot(right);
+        if found.iter().all(|value| *value >= 0.0) && cost < best.0 {
+            best = (cost, found);
+        }
+    }
+    best.1
+}

@@ -1,0 +1,292 @@
+//! Frames with LEDs in; the optics of the camera that took them out, each number with its sigma, and what the frames do not tell.
+//!
+//! No truth is needed, and what moves may move: a spot says by itself what a point of light becomes. In the order of the flow:
+//!
+//! ```text
+//! collect      frames -> windows around spots that stand alone, patches without light
+//! saturation   where the brightest pixels pile up
+//! noise        level and noise of darkness
+//! start        the round core and halo that explain the spots best
+//! spot, field  places and light of spots by the table, the table by what they leave, in turn (phases: kept even)
+//! light        noise against light, and how wrong the table is
+//! spill        what the excess of full pixels does to their neighbours
+//! prediction   what was learned against other frames
+//! ```
+//! What a recording does not excite stays what is believed beforehand and is named in [`Learned::unseen`].
+
+mod collect;
+mod correction;
+mod evidence;
+mod field;
+mod light;
+mod noise;
+mod phases;
+mod prediction;
+mod profile;
+mod saturation;
+mod spill;
+mod spot;
+mod start;
+mod table;
+mod window;
+
+use photinus::optics::{Measured, Optics, OpticsError, Saturation, Sensor};
+
+pub use collect::Collection;
+pub use evidence::{Evidence, NoiseBin};
+use field::Field;
+use light::LightNoise;
+use noise::{Darkness, Noise, ROUNDING};
+pub use prediction::{Prediction, predict};
+use saturation::Pile;
+use spill::Spill;
+use spot::Spot;
+use table::Shares;
+
+/// What frames did not tell of a camera.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Unseen {
+    /// No pixel was dark and not clipped.
+    Darkness,
+    /// Darkness reads the same everywhere, and little light is left over.
+    ReadNoise,
+    /// No light strong enough that its noise stands out.
+    ShotNoise,
+    /// No pixel was full.
+    Saturation,
+    /// Too few pixels were full to see what their excess does.
+    Spill,
+    /// Too few spots to see how the point spread changes over the image.
+    Field,
+    /// LEDs at distances and directions that nobody told.
+    Vignetting,
+    /// Light that rows pick up on their way out.
+    ColumnSmear,
+}
+
+impl Unseen {
+    /// Its name, as it stands in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Darkness => "darkness",
+            Self::ReadNoise => "read_noise",
+            Self::ShotNoise => "shot_noise",
+            Self::Saturation => "saturation",
+            Self::Spill => "spill",
+            Self::Field => "field",
+            Self::Vignetting => "vignetting",
+            Self::ColumnSmear => "column_smear",
+        }
+    }
+}
+
+/// Why frames make no optics.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum LearnError {
+    /// Too few spots.
+    #[error("{found} spots stand alone and are not full, {needed} are needed")]
+    TooFew {
+        /// Spots found.
+        found: usize,
+        /// Spots needed.
+        needed: usize,
+    },
+    /// Numbers that no optics have: the spots are none of one point spread.
+    #[error("the spots have no point spread in common: {0}")]
+    NoOptics(#[from] OpticsError),
+}
+
+/// What was learned of a camera.
+#[derive(Clone, Debug)]
+pub struct Learned {
+    /// Lens and sensor.
+    pub optics: Optics,
+    /// Standard deviation of the mean level of full pixels, grey levels; `None` where none was full.
+    pub saturation_sigma_dn: Option<f64>,
+    /// Standard deviation of the error of the point spread, as that is a share of the light.
+    pub shape_error_sigma: f64,
+    /// What the frames did not tell, in the order of [`Unseen`].
+    pub unseen: Vec<Unseen>,
+    /// Frames looked at.
+    pub frames: u64,
+    /// Spots that the point spread rests on.
+    pub spots: usize,
+    /// What the numbers rest on.
+    pub evidence: Evidence,
+}
+
+/// Fewest spots that make a point spread.
+pub const FEWEST_SPOTS: usize = 40;
+/// Spots of a node of the grid over which the point spread may change.
+const SPOTS_PER_NODE: usize = 40;
+/// Most spots that the table is made of.
+const MOST_SPOTS: usize = 3000;
+const ROUNDS_WHOLE: usize = 5;
+const ROUNDS_BY_NODE: usize = 8;
+/// Rounds after which noise is explained anew: what the table cannot follow yet must not be taken for noise.
+const NOISE_AFTER: [usize; 2] = [8, 10];
+/// How far from a spot its place is told, px.
+const PLACE_REACH: usize = 8;
+/// What is believed of a sensor that nobody measured.
+const SHOT_BELIEVED: Measured = Measured { value: 0.03, sigma: 0.03 };
+const READ_NOISE_BELIEVED: Measured = Measured { value: 1.0, sigma: 1.0 };
+const SPILL_BELIEVED: Measured = Measured { value: 0.0, sigma: 0.5 };
+
+/// Learns the optics of the camera whose frames were collected.
+///
+/// # Errors
+/// [`LearnError`] when too few spots stand alone, or they have nothing in common.
+pub fn learn(collection: &Collection) -> Result<Learned, LearnError> {
+    let windows = &collection.windows.kept;
+    let summits = saturation::summits(windows);
+    let pile = saturation::find(&summits);
+    let full_from = pile.map_or(255, |pile| pile.from_dn());
+    let darkness = noise::darkness(&collection.patches.kept);
+    let mut spots: Vec<Spot<'_>> = windows.iter().map(|window| Spot::new(window, full_from)).collect();
+    let full: Vec<Spot<'_>> = spots.iter().filter(|spot| !spot.is_linear()).cloned().collect();
+    choose(&mut spots);
+    let size_px = collection.size_px.unwrap_or([1, 1]);
+    let mut noise = first_noise(&darkness);
+    if spots.len() < FEWEST_SPOTS {
+        return Err(LearnError::TooFew { found: spots.len(), needed: FEWEST_SPOTS });
+    }
+    let start = start::core_and_halo(&spots, &noise);
+    let nodes = nodes(spots.len(), size_px);
+    let mut field = Field::new(start.table(), size_px, nodes);
+    for round in 0..ROUNDS_WHOLE + ROUNDS_BY_NODE {
+        place(&mut spots, &field, &noise, if round == 0 { 6 } else { 1 });
+        phases::even_out(&mut spots);
+        if round < ROUNDS_WHOLE || nodes == [1, 1] {
+            field.learn_whole(&spots, &noise);
+        } else {
+            field.learn_nodes(&spots, &noise);
+        }
+        if NOISE_AFTER.contains(&round) {
+            noise = explain(&spots, &field, &noise, &darkness).noise;
+        }
+    }
+    place(&mut spots, &field, &noise, 2);
+    let light = explain(&spots, &field, &noise, &darkness);
+    let used = spots.iter().filter(|spot| spot.is_used).count();
+    if used < FEWEST_SPOTS {
+        return Err(LearnError::TooFew { found: used, needed: FEWEST_SPOTS });
+    }
+    let spill = pile.and_then(|pile| spill::learn(&full, &field, &light.noise, &pile));
+    let (sensor, mut unseen) = sensor(&darkness, &light, pile.as_ref(), spill);
+    if nodes == [1, 1] {
+        unseen.push(Unseen::Field);
+    }
+    unseen.extend([Unseen::Vignetting, Unseen::ColumnSmear]);
+    unseen.sort_unstable();
+    sensor.check()?;
+    let optics = Optics { spread: field.spread(light.noise.shape.min(1.0))?, sensor, vignetting: None };
+    Ok(Learned {
+        optics,
+        saturation_sigma_dn: pile.map(|pile| pile.sigma_dn),
+        shape_error_sigma: light.shape_sigma,
+        unseen,
+        frames: collection.frames,
+        spots: used,
+        evidence: Evidence {
+            summits,
+            noise: evidence::noise(&light::residuals(&spots, &field, &light.noise)),
+            phases: evidence::phases(&spots, &field, &light.noise),
+        },
+    })
+}
+
+/// Keeps the spots that a table can be made of: those without full pixels, the brighter the better, spread over the image.
+fn choose(spots: &mut Vec<Spot<'_>>) {
+    let linear = spots.iter().filter(|spot| spot.is_linear()).count();
+    if linear >= 3 * FEWEST_SPOTS {
+        spots.retain(Spot::is_linear);
+    }
+    spots.retain(|spot| spot.window.reach >= 4 && spot.light > 0.0);
+    if spots.len() > MOST_SPOTS {
+        spots.sort_by(|a, b| b.light.total_cmp(&a.light));
+        spots.truncate(MOST_SPOTS);
+    }
+}
+
+fn first_noise(darkness: &Darkness) -> Noise {
+    let read = darkness.noise_dn.map_or(READ_NOISE_BELIEVED.value, |noise| noise.value);
+    Noise { dark: read * read + ROUNDING, shot: SHOT_BELIEVED.value, shape: 0.02 }
+}
+
+/// Nodes along columns and rows that so many spots allow.
+fn nodes(spots: usize, [width_px, height_px]: [usize; 2]) -> [usize; 2] {
+    let most = (spots / SPOTS_PER_NODE).min(24);
+    let shape = width_px as f64 / height_px as f64;
+    let rows = ((most as f64 / shape).sqrt().floor() as usize).clamp(1, 5);
+    let columns = ((rows as f64 * shape).round() as usize).clamp(1, 6);
+    if rows < 2 || columns < 2 { [1, 1] } else { [columns, rows] }
+}
+
+/// Finds where spots are, and which of them the table explains.
+fn place(spots: &mut [Spot<'_>], field: &Field, noise: &Noise, steps: usize) {
+    let mut shares = Shares::default();
+    for spot in spots.iter_mut() {
+        let table = field.at(spot.place_px());
+        spot.fit(table, noise, PLACE_REACH, steps, &mut shares);
+    }
+    let mut misfits: Vec<f64> = spots.iter().filter(|spot| spot.is_used).map(|spot| spot.misfit).collect();
+    misfits.sort_by(f64::total_cmp);
+    let Some(&middle) = misfits.get(misfits.len() / 2) else { return };
+    spots.iter_mut().for_each(|spot| spot.is_used &= spot.misfit < 2.5 * middle + 0.5);
+}
+
+fn explain(spots: &[Spot<'_>], field: &Field, noise: &Noise, darkness: &Darkness) -> LightNoise {
+    light::explain(&light::residuals(spots, field, noise), darkness.noise_dn, noise)
+}
+
+/// The sensor, and what was not seen of it.
+fn sensor(
+    darkness: &Darkness,
+    light: &LightNoise,
+    pile: Option<&Pile>,
+    spill: Option<Spill>,
+) -> (Sensor, Vec<Unseen>) {
+    let mut unseen = Vec::new();
+    if darkness.level_dn.is_none() {
+        unseen.push(Unseen::Darkness);
+    }
+    let read_noise_dn = darkness.noise_dn.unwrap_or_else(|| {
+        let variance = (light.noise.dark - ROUNDING).max(0.0);
+        let sigma = 0.5 * light.dark_sigma / variance.sqrt().max(0.05);
+        if variance > 3.0 * light.dark_sigma {
+            Measured { value: variance.sqrt(), sigma }
+        } else {
+            unseen.push(Unseen::ReadNoise);
+            Measured { value: variance.sqrt(), sigma: sigma.min(READ_NOISE_BELIEVED.sigma) }
+        }
+    });
+    let shot = Measured { value: light.noise.shot, sigma: light.shot_sigma };
+    let shot = if shot.value > 3.0 * shot.sigma {
+        shot
+    } else {
+        unseen.push(Unseen::ShotNoise);
+        Measured { value: shot.value, sigma: shot.sigma.min(SHOT_BELIEVED.sigma) }
+    };
+    let saturation = pile.map_or(Saturation { level_dn: 255.0, spread_dn: 0.0 }, |pile| Saturation {
+        level_dn: pile.level_dn.min(255.0),
+        spread_dn: pile.spread_dn,
+    });
+    if pile.is_none() {
+        unseen.push(Unseen::Saturation);
+    }
+    let spill = spill.unwrap_or_else(|| {
+        unseen.push(Unseen::Spill);
+        Spill { share: SPILL_BELIEVED, well_dn: None }
+    });
+    let sensor = Sensor {
+        dark_dn: darkness.level_dn,
+        read_noise_dn,
+        shot,
+        saturation,
+        spill: spill.share,
+        full_well_dn: spill.well_dn,
+        column_smear: None,
+    };
+    (sensor, unseen)
+}

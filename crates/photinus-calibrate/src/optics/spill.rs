@@ -1,0 +1,270 @@
+//! What the excess of full pixels does: the share that spills into the four neighbours, and from which charge on.
+//!
+//! Every spot with full pixels is explained by its light, spread by the point spread, overflowing: place, light and level are
+//! fitted for a spill and a well that all spots share, and these are where all together are explained best. How much a fit is
+//! worse without a tenth of the spots tells how sure they are.
+
+use nalgebra::{Matrix4, Vector4};
+use photinus::optics::Measured;
+
+use super::field::Field;
+use super::noise::{Noise, least};
+use super::saturation::Pile;
+use super::spot::Spot;
+use super::table::{FARTHEST_PX, Shares};
+
+/// Spill, and the well where it is larger than what the converter tells.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Spill {
+    pub(super) share: Measured,
+    pub(super) well_dn: Option<Measured>,
+}
+
+/// Spots used at most, and at least.
+const MOST: usize = 60;
+const LEAST_SPOTS: usize = 12;
+/// Most full pixels of a spot that is used.
+const MOST_FULL: usize = 30;
+const REACH: usize = 7;
+const SIDE: usize = 2 * REACH + 1;
+/// Wells tried, in units of what a full pixel reads.
+const WELLS: [f64; 5] = [1.0, 1.6, 2.5, 4.0, 6.3];
+/// Spills tried first.
+const SHARES: [f64; 4] = [0.0, 0.33, 0.67, 1.0];
+const PARTS: usize = 10;
+/// One spot counts at most so much against a spill: it may be two LEDs.
+const MOST_COST: f64 = 60.0;
+
+/// Overflow as it is tried.
+#[derive(Clone, Copy)]
+struct Tried {
+    share: f64,
+    /// Well over what a full pixel reads.
+    well: f64,
+}
+
+/// A spot with full pixels on its way.
+#[derive(Clone)]
+struct Full<'a, 'b> {
+    spot: &'b Spot<'a>,
+    at: Vector4<f64>,
+}
+
+/// Learns the spill from spots of which some have full pixels; `None` where too few have.
+pub(super) fn learn(spots: &[Spot<'_>], field: &Field, noise: &Noise, pile: &Pile) -> Option<Spill> {
+    let full = |spot: &&Spot<'_>| {
+        let count = spot.window.within(REACH).filter(|(.., value)| *value >= pile.from_dn()).count();
+        !spot.is_linear() && spot.window.reach >= REACH && count <= MOST_FULL
+    };
+    let all: Vec<&Spot<'_>> = spots.iter().filter(full).collect();
+    if all.len() < LEAST_SPOTS {
+        return None;
+    }
+    let step = all.len().div_ceil(MOST);
+    let model = Model { field, noise, pile };
+    let mut fulls: Vec<Full<'_, '_>> = all.into_iter().step_by(step).map(|spot| model.start(spot)).collect();
+    let mut best = (f64::INFINITY, Tried { share: 0.0, well: 1.0 });
+    for well in WELLS {
+        for share in SHARES {
+            let tried = Tried { share, well };
+            let cost: f64 = model.costs(&mut fulls, tried).iter().sum();
+            if cost < best.0 {
+                best = (cost, tried);
+            }
+        }
+    }
+    let Tried { mut share, mut well } = best.1;
+    let sum = |fulls: &[Full<'_, '_>], tried: Tried| -> f64 {
+        model.costs(&mut fulls.to_vec(), tried).iter().sum()
+    };
+    for _ in 0..2 {
+        model.costs(&mut fulls, Tried { share, well });
+        share = least(
+            |share| sum(&fulls, Tried { share, well }),
+            (share - 0.35).max(0.0),
+            (share + 0.35).min(1.0),
+            7,
+        );
+        if well > 1.0 {
+            let log = libm::log(well);
+            let at = |log: f64| Tried { share, well: libm::exp(log) };
+            well = libm::exp(least(|log| sum(&fulls, at(log)), (log - 0.5).max(0.0), log + 0.5, 6));
+        }
+    }
+    model.costs(&mut fulls, Tried { share, well });
+    let [share, well] = model.jackknife(&fulls, Tried { share, well });
+    let spills = share.value > 2.0 * share.sigma;
+    let capacity_dn = pile.level_dn * well.value;
+    let is_larger = spills && well.value > 1.05;
+    let well_dn = is_larger.then(|| Measured { value: capacity_dn, sigma: pile.level_dn * well.sigma });
+    Some(Spill { share, well_dn })
+}
+
+struct Model<'a> {
+    field: &'a Field,
+    noise: &'a Noise,
+    pile: &'a Pile,
+}
+
+impl Model<'_> {
+    /// The best of a few lights, without spill.
+    fn start<'a, 'b>(&self, spot: &'b Spot<'a>) -> Full<'a, 'b> {
+        let start = |times: f64| {
+            let mut full = Full {
+                spot,
+                at: Vector4::from([spot.u, spot.v, libm::log(spot.light.max(50.0) * times), spot.level]),
+            };
+            let cost = self.fit(&mut full, Tried { share: 0.0, well: 1.0 }, 5);
+            (cost, full)
+        };
+        let starts = [0.7, 1.5, 3.0, 8.0].map(start);
+        let best = starts.into_iter().min_by(|a, b| a.0.total_cmp(&b.0));
+        best.map_or_else(|| Full { spot, at: Vector4::zeros() }, |(_, full)| full)
+    }
+
+    /// How badly each spot is explained.
+    fn costs(&self, fulls: &mut [Full<'_, '_>], tried: Tried) -> Vec<f64> {
+        fulls.iter_mut().map(|full| self.fit(full, tried, 4)).collect()
+    }
+
+    /// Levenberg's steps for place, logarithm of light, and level; the cost where they end.
+    fn fit(&self, full: &mut Full<'_, '_>, tried: Tried, steps: usize) -> f64 {
+        let mut damping = 1e-2;
+        let mut left = self.left(full, tried);
+        let mut cost = square(&left);
+        for _ in 0..steps {
+            const STEPS: [f64; 4] = [0.02, 0.02, 0.02, 0.1];
+            let aside: [Vec<f64>; 4] = std::array::from_fn(|k| {
+                let mut moved = full.clone();
+                moved.at[k] += STEPS[k];
+                self.left(&moved, tried)
+            });
+            let (mut normal, mut right) = (Matrix4::zeros(), Vector4::zeros());
+            for (index, left) in left.iter().enumerate() {
+                let row = Vector4::from_fn(|k, _| (left - aside[k][index]) / STEPS[k]);
+                normal += row * row.transpose();
+                right += row * *left;
+            }
+            (0..4).for_each(|k| normal[(k, k)] *= 1.0 + damping);
+            let Some(step) = normal.cholesky().map(|factor| factor.solve(&right)) else { break };
+            let mut moved = full.clone();
+            let limits = [0.3, 0.3, 0.7, 5.0];
+            (0..4).for_each(|k| moved.at[k] += step[k].clamp(-limits[k], limits[k]));
+            (0..2).for_each(|k| moved.at[k] = moved.at[k].clamp(-FARTHEST_PX, FARTHEST_PX));
+            let next = self.left(&moved, tried);
+            let next_cost = square(&next);
+            if next_cost < cost {
+                (*full, left, cost, damping) = (moved, next, next_cost, 0.3 * damping);
+            } else {
+                damping *= 8.0;
+            }
+        }
+        cost.min(MOST_COST * (SIDE * SIDE) as f64)
+    }
+
+    /// What is left of each pixel over its sigma.
+    fn left(&self, full: &Full<'_, '_>, tried: Tried) -> Vec<f64> {
+        let [u, v, log_light, level] = full.at.into();
+        let light = libm::exp(log_light);
+        let mut shares = Shares::default();
+        let place = [full.spot.window.column as f64 + u, full.spot.window.row as f64 + v];
+        self.field.at(place).window(u, v, REACH, &mut shares);
+        let reads = (self.pile.level_dn - level).max(1.0);
+        let mut charge: Vec<f64> = shares.of_pixels.iter().map(|share| light * share.value).collect();
+        overflow(&mut charge, reads * tried.well, tried.share);
+        let window = full.spot.window.within(REACH);
+        charge
+            .iter()
+            .zip(window)
+            .map(|(&charge, (.., value))| {
+                let value = f64::from(value);
+                let is_full = value >= f64::from(self.pile.from_dn());
+                if is_full && charge >= reads {
+                    return 0.0;
+                }
+                let spread = self.pile.spread_dn;
+                let wrong = 0.01 * charge;
+                let variance = self.noise.variance(charge.min(reads)) + spread * spread + wrong * wrong;
+                (value - level - charge.min(reads)) / variance.sqrt()
+            })
+            .collect()
+    }
+
+    /// The place of the least cost by a parabola, and its scatter when tenths of the spots are left out.
+    fn jackknife(&self, fulls: &[Full<'_, '_>], found: Tried) -> [Measured; 2] {
+        let of = |tried: Tried| self.costs(&mut fulls.to_vec(), tried);
+        let middle = of(found);
+        let parabola = |low: &[f64], high: &[f64], step: f64, part: usize| {
+            let sum = |costs: &[f64]| -> f64 {
+                costs.iter().enumerate().filter(|(k, _)| k % PARTS != part).map(|(_, cost)| cost).sum()
+            };
+            let [low, middle, high] = [sum(low), sum(&middle), sum(high)];
+            let bend = low + high - 2.0 * middle;
+            if bend > 0.0 { (0.5 * step * (low - high) / bend).clamp(-2.0 * step, 2.0 * step) } else { 0.0 }
+        };
+        let measured = |value: f64, low: Vec<f64>, high: Vec<f64>, step: f64| {
+            let all = parabola(&low, &high, step, PARTS);
+            let parts = (0..PARTS).map(|part| parabola(&low, &high, step, part) - all);
+            let square: f64 = parts.map(|off| off * off).sum();
+            Measured {
+                value: value + all,
+                sigma: (square * (PARTS - 1) as f64 / PARTS as f64).sqrt().max(1e-3),
+            }
+        };
+        const STEP: f64 = 0.06;
+        let share = found.share.clamp(STEP, 1.0 - STEP);
+        let at = |off: f64| of(Tried { share: (found.share + off).clamp(0.0, 1.0), ..found });
+        let spill = if (share - found.share).abs() > 0.5 * STEP {
+            // at an end of what can be: as sure as the slope there allows
+            let inward = if found.share < 0.5 { at(STEP) } else { at(-STEP) };
+            let rise: f64 = inward.iter().sum::<f64>() - middle.iter().sum::<f64>();
+            let scale = middle.iter().sum::<f64>() / (middle.len() * (SIDE * SIDE - 4)) as f64;
+            let sigma = STEP * (scale.max(1.0) / rise.max(1e-3)).sqrt();
+            Measured { value: found.share, sigma: sigma.min(0.5) }
+        } else {
+            measured(found.share, at(-STEP), at(STEP), STEP)
+        };
+        let times = |factor: f64| of(Tried { well: (found.well * factor).max(1.0), ..found });
+        let well = if found.well > 1.05 {
+            measured(found.well, times(0.95), times(1.05), 0.05 * found.well)
+        } else {
+            Measured { value: found.well, sigma: 0.05 }
+        };
+        [Measured { value: spill.value.clamp(0.0, 1.0), ..spill }, well]
+    }
+}
+
+/// Lets charge above the well go: a share of it in equal parts to the four neighbours, the rest is drained.
+fn overflow(charge: &mut [f64], well: f64, share: f64) {
+    const SWEEPS: usize = 400;
+    let mut excess = vec![0.0; charge.len()];
+    for _ in 0..SWEEPS {
+        let mut most = 0.0_f64;
+        for (charge, excess) in charge.iter_mut().zip(&mut excess) {
+            *excess = (*charge - well).max(0.0);
+            *charge -= *excess;
+            most = most.max(*excess);
+        }
+        if most < 0.2 || share <= 0.0 {
+            return;
+        }
+        let part = 0.25 * share;
+        for index in 0..charge.len() {
+            let given = part * excess[index];
+            if given > 0.0 {
+                let (column, row) = (index % SIDE, index / SIDE);
+                let beside = [
+                    (column > 0).then(|| index - 1),
+                    (column + 1 < SIDE).then_some(index + 1),
+                    (row > 0).then(|| index - SIDE),
+                    (row + 1 < SIDE).then_some(index + SIDE),
+                ];
+                beside.into_iter().flatten().for_each(|other| charge[other] += given);
+            }
+        }
+    }
+}
+
+fn square(left: &[f64]) -> f64 {
+    left.iter().map(|left| (left * left).min(MOST_COST)).sum()
+}

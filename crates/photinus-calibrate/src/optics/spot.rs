@@ -1,0 +1,181 @@
+//! Where a spot is, how much light it has and on what level it stands: weighted least squares with a table.
+
+use nalgebra::{SMatrix, SVector};
+
+use super::noise::Noise;
+use super::table::{FARTHEST_PX, Shares, Table};
+use super::window::Window;
+
+/// A spot as far as it is known.
+#[derive(Clone, Debug)]
+pub(super) struct Spot<'a> {
+    pub(super) window: &'a Window,
+    /// Pixels that are full, or beside one that is: they do not say how much light they got.
+    full: Option<Box<[bool]>>,
+    /// Place from the middle of the window, px.
+    pub(super) u: f64,
+    pub(super) v: f64,
+    /// Light, grey levels.
+    pub(super) light: f64,
+    /// Level that it stands on, grey levels.
+    pub(super) level: f64,
+    /// Weighted squares of what is left, per degree of freedom.
+    pub(super) misfit: f64,
+    /// Whether it is one of the spots that the table explains.
+    pub(super) is_used: bool,
+}
+
+/// A pixel of a spot with what is expected of it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Pixel {
+    pub(super) column: isize,
+    pub(super) row: isize,
+    /// Expected light above the level, grey levels.
+    pub(super) light: f64,
+    /// What is left of the value, grey levels.
+    pub(super) left: f64,
+    /// One over its variance.
+    pub(super) weight: f64,
+    jacobian: SVector<f64, 4>,
+}
+
+/// A pixel farther off than this many sigmas counts as so far off.
+const CLIP: f64 = 4.0;
+
+impl<'a> Spot<'a> {
+    /// A spot from its window; pixels from grey level `full_from` on are full.
+    pub(super) fn new(window: &'a Window, full_from: u8) -> Self {
+        let level = f64::from(window.border());
+        let (mut light, mut u, mut v) = (0.0, 0.0, 0.0);
+        for (column, row, value) in window.within(4) {
+            let above = f64::from(value) - level;
+            light += above;
+            if column.abs().max(row.abs()) <= 1 {
+                u += above.max(0.0) * column as f64;
+                v += above.max(0.0) * row as f64;
+            }
+        }
+        let middle: f64 = window.within(1).map(|(.., value)| (f64::from(value) - level).max(0.0)).sum();
+        let full = (window.peak() >= full_from).then(|| full_or_beside(window, full_from));
+        let (u, v) = (u / middle.max(1.0), v / middle.max(1.0));
+        Self { window, full, u, v, light: light.max(middle), level, misfit: 0.0, is_used: true }
+    }
+
+    /// Whether no pixel of it is full.
+    pub(super) fn is_linear(&self) -> bool {
+        self.full.is_none()
+    }
+
+    /// Place in the image, px.
+    pub(super) fn place_px(&self) -> [f64; 2] {
+        [self.window.column as f64 + self.u, self.window.row as f64 + self.v]
+    }
+
+    /// Fits place, light and level in so many steps; a fit that leads nowhere makes the spot one that is not used.
+    pub(super) fn fit(
+        &mut self,
+        table: &Table,
+        noise: &Noise,
+        reach: usize,
+        steps: usize,
+        shares: &mut Shares,
+    ) {
+        for _ in 0..steps {
+            let mut normal = SMatrix::<f64, 4, 4>::zeros();
+            let mut right = SVector::<f64, 4>::zeros();
+            self.each_pixel(table, noise, reach, shares, |pixel| {
+                let off = pixel.left * pixel.weight.sqrt();
+                let weight = pixel.weight * (CLIP / off.abs().max(CLIP));
+                normal += pixel.jacobian * pixel.jacobian.transpose() * weight;
+                right += pixel.jacobian * (pixel.left * weight);
+            });
+            let Some(factor) = normal.cholesky() else {
+                self.is_used = false;
+                return;
+            };
+            let step = factor.solve(&right);
+            self.u = (self.u + step[0].clamp(-0.4, 0.4)).clamp(-FARTHEST_PX, FARTHEST_PX);
+            self.v = (self.v + step[1].clamp(-0.4, 0.4)).clamp(-FARTHEST_PX, FARTHEST_PX);
+            self.light = (self.light + step[2]).max(0.1 * self.light.abs().max(1.0));
+            self.level += step[3];
+        }
+        let (mut squares, mut count) = (0.0, 0.0);
+        self.each_pixel(table, noise, reach, shares, |pixel| {
+            squares += pixel.left * pixel.left * pixel.weight;
+            count += 1.0;
+        });
+        self.misfit = squares / f64::max(count - 4.0, 1.0);
+        let is_inside = self.u.abs().max(self.v.abs()) < 0.95 * FARTHEST_PX;
+        self.is_used = is_inside && self.misfit.is_finite() && self.light.is_finite();
+    }
+
+    /// Hands over every pixel within reach that tells its light.
+    pub(super) fn each_pixel(
+        &self,
+        table: &Table,
+        noise: &Noise,
+        reach: usize,
+        shares: &mut Shares,
+        mut take: impl FnMut(&Pixel),
+    ) {
+        let reach = reach.min(self.window.reach);
+        table.window(self.u, self.v, reach, shares);
+        for (column, row, value) in self.window.within(reach) {
+            if self.full.as_ref().is_some_and(|full| full[index(column, row)]) {
+                continue;
+            }
+            let share = shares.at(column, row);
+            let light = self.light * share.value;
+            let expected = self.level + light;
+            if value == 0 && expected < 0.5 {
+                continue; // darkness below the clip
+            }
+            take(&Pixel {
+                column,
+                row,
+                light,
+                left: f64::from(value) - expected,
+                weight: 1.0 / noise.variance(light),
+                jacobian: SVector::from([self.light * share.by_u, self.light * share.by_v, share.value, 1.0]),
+            });
+        }
+    }
+
+    /// The share of each pixel's noise that the fit of this spot takes away, by the order of [`Self::each_pixel`].
+    pub(super) fn leverages(
+        &self,
+        table: &Table,
+        noise: &Noise,
+        reach: usize,
+        shares: &mut Shares,
+    ) -> Vec<f64> {
+        let mut normal = SMatrix::<f64, 4, 4>::zeros();
+        let mut rows = Vec::new();
+        self.each_pixel(table, noise, reach, shares, |pixel| {
+            normal += pixel.jacobian * pixel.jacobian.transpose() * pixel.weight;
+            rows.push((pixel.jacobian, pixel.weight));
+        });
+        let Some(inverse) = normal.try_inverse() else { return vec![1.0; rows.len()] };
+        rows.iter().map(|(row, weight)| weight * (row.transpose() * inverse * row)[0]).collect()
+    }
+}
+
+/// Marks pixels that are full and those around them.
+fn full_or_beside(window: &Window, full_from: u8) -> Box<[bool]> {
+    let mut marked = vec![false; window.pixels.len()].into_boxed_slice();
+    let most = super::window::REACH as isize;
+    for (column, row, _) in window.within(window.reach).filter(|(.., value)| *value >= full_from) {
+        for (right, down) in (-1..=1).flat_map(|down| (-1..=1).map(move |right| (right, down))) {
+            let (column, row) = (column + right, row + down);
+            if column.abs().max(row.abs()) <= most {
+                marked[index(column, row)] = true;
+            }
+        }
+    }
+    marked
+}
+
+fn index(column: isize, row: isize) -> usize {
+    let at = |offset: isize| (super::window::REACH as isize + offset) as usize;
+    at(row) * super::window::SIDE + at(column)
+}

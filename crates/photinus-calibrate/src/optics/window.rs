@@ -1,0 +1,68 @@
+//! What is kept of frames: pixels around a spot that stands alone, and patches without light.
+
+/// Pixels to every side of the middle of a window.
+pub(super) const REACH: usize = 12;
+/// Pixels along a side.
+pub(super) const SIDE: usize = 2 * REACH + 1;
+/// Pixels along a side of a patch.
+pub(super) const PATCH_SIDE: usize = 9;
+
+/// A spot and the pixels around it.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Window {
+    /// Column of the middle pixel.
+    pub(super) column: usize,
+    /// Row of the middle pixel.
+    pub(super) row: usize,
+    /// Pixels to every side that no other spot lights.
+    pub(super) reach: usize,
+    /// Row by row.
+    pub(super) pixels: Box<[u8]>,
+}
+
+impl Window {
+    /// The pixel so many columns and rows from the middle.
+    pub(super) fn at(&self, column: isize, row: isize) -> u8 {
+        let index = |offset: isize| (REACH as isize + offset) as usize;
+        self.pixels[index(row) * SIDE + index(column)]
+    }
+
+    /// Pixels within the reach: columns and rows from the middle, value.
+    pub(super) fn within(&self, reach: usize) -> impl Iterator<Item = (isize, isize, u8)> + '_ {
+        let reach = reach.min(self.reach) as isize;
+        (-reach..=reach)
+            .flat_map(move |row| (-reach..=reach).map(move |column| (column, row, self.at(column, row))))
+    }
+
+    /// Median of the outermost pixels that no other spot lights.
+    pub(super) fn border(&self) -> u8 {
+        let edge = self.reach as isize;
+        let is_edge = |(column, row, _): &(isize, isize, u8)| column.abs().max(row.abs()) == edge;
+        let mut values: Vec<u8> = self.within(self.reach).filter(is_edge).map(|(.., value)| value).collect();
+        let middle = values.len() / 2;
+        *values.select_nth_unstable(middle).1
+    }
+
+    /// The pixel where the light of the spot is: one that full pixels beside it with their noise do not choose.
+    pub(super) fn middle(&self) -> u8 {
+        let level = f64::from(self.border());
+        let (mut sum, mut u, mut v) = (1e-9, 0.0, 0.0);
+        for (column, row, value) in self.within(3) {
+            let above = (f64::from(value) - level).max(0.0);
+            (sum, u, v) = (sum + above, u + above * column as f64, v + above * row as f64);
+        }
+        self.at((u / sum).round() as isize, (v / sum).round() as isize)
+    }
+
+    /// The brightest of the nine pixels in the middle.
+    pub(super) fn peak(&self) -> u8 {
+        self.within(1).map(|(.., value)| value).max().unwrap_or(0)
+    }
+}
+
+/// A patch of the image that no spot lights.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Patch {
+    /// Row by row.
+    pub(super) pixels: [u8; PATCH_SIDE * PATCH_SIDE],
+}

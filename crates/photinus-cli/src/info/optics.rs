@@ -1,0 +1,57 @@
+//! The optics of a camera: what was measured, and what was not.
+
+use photinus::optics::{Measured, Optics};
+use photinus_io::camera::OpticsSummary;
+
+use super::Report;
+use crate::calibrate::Width;
+
+pub(super) fn report(optics: &Optics, summary: Option<&OpticsSummary>, report: &mut Report) {
+    let sensor = &optics.sensor;
+    let error = 100.0 * optics.spread.shape_error();
+    report.fact("point spread", format!("{}, known to {error:.2} % of a pixel's light", widths(optics)));
+    let plain = |measured: Measured| format!("{:.4} ± {:.4}", measured.value, measured.sigma);
+    let levels = |measured: Measured| format!("{:.2} ± {:.2} grey levels", measured.value, measured.sigma);
+    report.fact("read noise", levels(sensor.read_noise_dn));
+    report.fact("shot noise", format!("{} grey levels^2 per grey level", plain(sensor.shot)));
+    if let Some(dark) = sensor.dark_dn {
+        report.fact("darkness", levels(dark));
+    }
+    let saturation = &sensor.saturation;
+    report.fact(
+        "full pixels read",
+        format!("{:.1}, spread {:.1} grey levels", saturation.level_dn, saturation.spread_dn),
+    );
+    report.fact("spill of excess", plain(sensor.spill));
+    if let Some(well) = sensor.full_well_dn {
+        report.fact("full well", levels(well));
+    }
+    if let Some(smear) = sensor.column_smear {
+        report.fact("column smear", format!("{:.1e} ± {:.1e}", smear.value, smear.sigma));
+    }
+    if let Some(vignetting) = &optics.vignetting {
+        let (angles_rad, shares, _) = vignetting.table();
+        if let (Some(rad), Some(share)) = (angles_rad.last(), shares.last()) {
+            let deg = rad.to_degrees();
+            report.fact("vignetting", format!("{:.0} % of the light passes at {deg:.0}°", 100.0 * share));
+        }
+    }
+    let Some(summary) = summary else { return };
+    if summary.spots > 0 {
+        report.fact("optics rest on", format!("{} spots of {} frames", summary.spots, summary.frames));
+    }
+    if !summary.unseen.is_empty() {
+        report.fact("unseen", format!("{}: believed, not measured", summary.unseen.join(", ")));
+    }
+}
+
+/// Widths of the point spread over the image.
+fn widths(optics: &Optics) -> String {
+    let mut widths: Vec<Width> = optics.spread.zones().iter().map(Width::of).collect();
+    widths.sort_by(|a, b| a.rms_px.total_cmp(&b.rms_px));
+    match widths.as_slice() {
+        [only] => format!("{only}"),
+        [least, .., most] => format!("{least} at best, {most} at worst"),
+        [] => String::new(),
+    }
+}

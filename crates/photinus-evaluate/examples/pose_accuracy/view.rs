@@ -116,6 +116,7 @@ impl View {
                 peak: 200,
                 saturated_px: 0,
                 flux,
+                light: None,
                 background: 5.0,
                 middle: (u, v),
                 extent,

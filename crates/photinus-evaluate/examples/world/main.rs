@@ -38,7 +38,8 @@ fn main() -> ExitCode {
     let single = |rows: Vec<Row>| rows.into_iter().map(|row| (row, frames)).collect();
     let rows: Vec<(Row, u64)> = match what.as_str() {
         "faults" => single(faults::rows(&cameras::paper())),
-        "cameras" => single(cameras::rows()),
+        "cameras" => single(cameras::rows(0)),
+        "optics" => single(cameras::rows(200)),
         "crowds" => crowds::rows(&cameras::paper(), 2 * frames),
         "snapshot" => return take_snapshot(update),
         _ => return usage(),

@@ -4,6 +4,8 @@ use nalgebra::{Isometry3, Translation3, Unit, Vector3};
 use photinus::airframe::{Airframe, Ring};
 use photinus::camera::Camera;
 use photinus::locator::{Locator, Settings};
+use photinus::optics::Optics;
+use photinus_calibrate::optics::{Collection, learn};
 use photinus_evaluate::{Scores, evaluate};
 use photinus_io::dataset::TruthFrame;
 use photinus_io::frames::Frame;
@@ -18,6 +20,8 @@ use crate::calibrated::{calibrated, to_centroids};
 use crate::light::{Fallen, Lights, fallen};
 use crate::priors::{Build, Drawing, known_gravity, world_from_camera};
 
+/// The first of the frames that optics are learned from.
+const OTHER_FRAMES: u64 = 1 << 32;
 /// Frames that share the places of hot pixels and lamps, and the side to which gravity is wrong.
 const SPELL: u64 = 20;
 
@@ -41,6 +45,8 @@ pub(crate) struct Row {
     pub(crate) build: Build,
     pub(crate) smear_px: f64,
     pub(crate) faults: Vec<Fault>,
+    /// Frames, none of those located, that the camera's optics are learned from; 0 for none.
+    pub(crate) optics_frames: u64,
 }
 
 /// What came out of a row.
@@ -77,6 +83,7 @@ impl Row {
             build: Build::default(),
             smear_px: 0.0,
             faults: Vec::new(),
+            optics_frames: 0,
         }
     }
 
@@ -87,6 +94,10 @@ impl Row {
         let told = wrong(0).airframe(&self.airframe).expect("an airframe");
         let camera = calibrated(&self.eye.camera, &self.eye.preset.lens);
         let camera = wrong(0).camera(&camera).expect("a camera");
+        let camera = match studio.learned(self.optics_frames) {
+            Some(optics) => camera.with_optics(optics),
+            None => camera,
+        };
         let mut locator = Locator::new(camera, &told, None, Settings::default()).expect("default settings");
         let (mut truth, mut records, mut lights) = (Vec::new(), Vec::new(), Lights::default());
         for first in (0..frames).step_by(SPELL as usize) {
@@ -141,6 +152,22 @@ impl<'a> Studio<'a> {
         let view =
             CameraView { camera: camera.clone(), lens: preset.lens.clone(), sensor: preset.sensor.clone() };
         Self { row, renderer: Renderer::new(view, 1) }
+    }
+
+    /// The optics that so many frames tell, none of which is located.
+    fn learned(&mut self, frames: u64) -> Option<Optics> {
+        if frames == 0 {
+            return None;
+        }
+        let mut collection = Collection::default();
+        for number in OTHER_FRAMES..OTHER_FRAMES + frames {
+            let (shot, _) = self.shoot(number);
+            assert!(collection.add(&shot.frame.image.view(), None), "frames of one size");
+        }
+        match learn(&collection) {
+            Ok(learned) => Some(learned.optics),
+            Err(error) => panic!("{}: {error}", self.row.name),
+        }
     }
 
     /// A frame with vehicles drawn for its number, and the light that fell.

@@ -3,7 +3,7 @@
 //! The stages, a module each, in the order of the flow:
 //!
 //! ```text
-//! tiles          the brightest and darkest pixel of each tile      -> bytes per tile
+//! tiles          brightest and darkest pixel of each tile, noise  -> bytes per tile
 //! background     the level of the surroundings, tile by tile      -> a threshold per tile
 //! runs           rows of pixels at or above their threshold       -> runs
 //! grouping       runs that touch, also by a corner                -> components

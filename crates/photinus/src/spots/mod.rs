@@ -3,11 +3,11 @@
 //! The stages, a module each, in the order of the flow:
 //!
 //! ```text
-//! tiles          the brightest and darkest pixel of each tile      -> bytes per tile
+//! tiles          brightest and darkest pixel of each tile, noise  -> bytes per tile
 //! background     the level of the surroundings, tile by tile      -> a threshold per tile
 //! runs           rows of pixels at or above their threshold       -> runs
 //! grouping       runs that touch, also by a corner                -> components
-//! splitting      one component with several summits               -> parts
+//! splitting      one component with several summits (summits)     -> parts
 //! part           size, shape and first guess of a part; ledge: whether it goes on where the threshold is higher
 //! rejection      what is no marker by its outline, and why
 //! neighbourhood  how far a part's light is its own                -> room for a window
@@ -37,6 +37,7 @@ mod rejection;
 mod runs;
 mod settings;
 mod splitting;
+mod summits;
 mod tiles;
 mod window;
 

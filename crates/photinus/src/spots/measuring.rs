@@ -419,7 +419,10 @@ fn spread<'a>(optics: Option<&'a Optics>, belief: &'a Belief, place: Pixel) -> &
 fn measured_spill(sensor: &Sensor) -> Spill {
     let over = sensor.full_well_dn.map_or(1.0, |well| well.value / sensor.saturation.level_dn);
     let ln_well = libm::log(over.max(1.0));
-    Spill { share: sensor.spill.value, ln_well, relative_error: SPILL_ERROR, numbers: None }
+    // What may spill widens, even where nothing is believed to.
+    let share = sensor.spill.value.max(0.5 * sensor.spill.sigma).min(1.0);
+    let relative_error = SPILL_ERROR.max(sensor.spill.sigma / share.max(1e-3));
+    Spill { share, ln_well, relative_error, numbers: None }
 }
 
 /// How far the window on a part reaches, px.

@@ -34,6 +34,7 @@ mod part;
 mod patch;
 mod reflections;
 mod rejection;
+mod ring;
 mod runs;
 mod settings;
 mod splitting;

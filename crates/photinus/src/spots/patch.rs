@@ -3,12 +3,10 @@
 //! In: the frame, a place and a reach. Out: the signal in a square window, in rows of whole lanes so that the sums over it
 //! vectorise alike on every machine, and the background with its noise from a frame of pixels around the window.
 
+use super::ring::{self, Sums};
 use crate::camera::Pixel;
 use crate::frame::FrameView;
 use crate::lanes::{self, LANES, Lanes};
-
-/// Width of the ring of background pixels, px.
-const RING_PX: i32 = 2;
 
 /// Fewer background pixels tell no level.
 const FEWEST_PX: i32 = 8;
@@ -122,47 +120,7 @@ pub(super) fn surroundings(
     Some(ring_sums(frame, (u, v), reach, darker).unwrap_or(all).even())
 }
 
-/// Sums over the dark pixels of a ring, x and y from its middle, i their value.
-#[derive(Clone, Copy, Default)]
-struct Sums {
-    count: i32,
-    x: i32,
-    y: i32,
-    xx: i32,
-    xy: i32,
-    yy: i32,
-    i: i32,
-    xi: i32,
-    yi: i32,
-    ii: i32,
-}
-
 impl Sums {
-    /// Adds pixels of row `y`, the first in column `x`.
-    fn add(&mut self, pixels: &[u8], x: i32, y: i32, below: u8) {
-        let (mut count, mut sum_x, mut sum_xx, mut sum_i, mut sum_xi, mut sum_ii) = (0, 0, 0, 0, 0, 0);
-        for (&pixel, x) in pixels.iter().zip(x..) {
-            let dark = i32::from(pixel < below);
-            let value = i32::from(pixel) * dark;
-            count += dark;
-            sum_x += x * dark;
-            sum_xx += x * x * dark;
-            sum_i += value;
-            sum_xi += x * value;
-            sum_ii += value * value;
-        }
-        self.count += count;
-        self.x += sum_x;
-        self.y += y * count;
-        self.xx += sum_xx;
-        self.xy += y * sum_x;
-        self.yy += y * y * count;
-        self.i += sum_i;
-        self.xi += sum_xi;
-        self.yi += y * sum_i;
-        self.ii += sum_ii;
-    }
-
     fn level(&self) -> f64 {
         f64::from(self.i) / f64::from(self.count)
     }
@@ -195,23 +153,8 @@ impl Sums {
     }
 }
 
-fn ring_sums(frame: &FrameView<'_>, (u, v): (i32, i32), reach: i32, below: u8) -> Option<Sums> {
-    let (width, height) = (frame.width() as i32, frame.height() as i32);
-    let outer = reach + RING_PX;
-    let mut sums = Sums::default();
-    for row in (v - outer).max(0)..=(v + outer).min(height - 1) {
-        let pixels = frame.row(row as usize);
-        let mut add = |from: i32, to: i32| {
-            let (from, to) = (from.clamp(0, width), (to + 1).clamp(0, width));
-            sums.add(&pixels[from as usize..to as usize], from - u, row - v, below);
-        };
-        if (row - v).abs() > reach {
-            add(u - outer, u + outer);
-        } else {
-            add(u - outer, u - reach - 1);
-            add(u + reach + 1, u + outer);
-        }
-    }
+fn ring_sums(frame: &FrameView<'_>, middle: (i32, i32), reach: i32, below: u8) -> Option<Sums> {
+    let sums = ring::sums(frame, middle, reach, below);
     (sums.count >= FEWEST_PX).then_some(sums)
 }
 

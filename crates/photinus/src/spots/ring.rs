@@ -1,0 +1,183 @@
+//! Sums over the dark pixels of a ring: how many, where they lie, how bright they are.
+//!
+//! In: the frame and a square window in it. Out: the sums over the pixels around the window that are not bright themselves,
+//! of which a plane of background is made. They are whole numbers, the same in any order: sixteen pixels of a row are added up
+//! lane by lane, and lanes only once, at the end.
+
+use wide::{i16x8, i32x4, u8x16};
+
+use crate::frame::FrameView;
+
+/// Width of a ring, px.
+const RING_PX: i32 = 2;
+/// Pixels added at once.
+const LANES: i32 = 16;
+/// Sums of a lane over rings up to so far from the middle fit into sixteen bits, px.
+const WIDEST_PX: i32 = 63;
+
+/// Sums over pixels, x and y from the middle of the ring, i their value.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Sums {
+    pub(super) count: i32,
+    pub(super) x: i32,
+    pub(super) y: i32,
+    pub(super) xx: i32,
+    pub(super) xy: i32,
+    pub(super) yy: i32,
+    pub(super) i: i32,
+    pub(super) xi: i32,
+    pub(super) yi: i32,
+    pub(super) ii: i32,
+}
+
+/// The sums over the pixels that are less than `below` and lie in the frame, just outside the window of `reach` around (`u`, `v`).
+pub(super) fn sums(frame: &FrameView<'_>, (u, v): (i32, i32), reach: i32, below: u8) -> Sums {
+    let outer = reach + RING_PX;
+    if outer > WIDEST_PX {
+        return pixel_by_pixel(frame, (u, v), reach, below);
+    }
+    let mut sums = Sums::default();
+    for first in (-outer..=outer).step_by(LANES as usize) {
+        // Columns of the ring that lie in the frame, and those of them beside the window.
+        let whole = Columns { first, from: (-outer).max(-u), to: outer.min(frame.width() as i32 - 1 - u) };
+        let inner = Columns { first, from: -reach, to: reach };
+        let (above, beside) = (whole.mask(), whole.mask() & !inner.mask());
+        let mut lanes = LaneSums::default();
+        for y in (-outer).max(-v)..=outer.min(frame.height() as i32 - 1 - v) {
+            let counts = if y.abs() > reach { above } else { beside };
+            lanes.add(sixteen(frame.row((v + y) as usize), u + first), counts, below, y as i16);
+        }
+        lanes.add_up(first as i16, &mut sums);
+    }
+    sums
+}
+
+/// Some of the sixteen columns from `first` on.
+struct Columns {
+    first: i32,
+    from: i32,
+    to: i32,
+}
+
+impl Columns {
+    fn mask(&self) -> u8x16 {
+        let lanes = u8x16::new(std::array::from_fn(|lane| lane as u8));
+        let [from, end] = [self.from, self.to + 1].map(|x| (x - self.first).clamp(0, LANES) as u8);
+        let reaches = |least: u8| lanes.max(u8x16::splat(least)).simd_eq(lanes);
+        reaches(from) & !reaches(end)
+    }
+}
+
+/// Sixteen pixels of a row from a column on, 0 outside the row.
+#[inline(always)]
+fn sixteen(row: &[u8], first: i32) -> u8x16 {
+    let inside = usize::try_from(first).ok().and_then(|first| row.get(first..)?.first_chunk());
+    u8x16::new(inside.copied().unwrap_or_else(|| {
+        let pixel = |i: usize| usize::try_from(first + i as i32).ok().and_then(|u| row.get(u));
+        std::array::from_fn(|i| pixel(i).copied().unwrap_or(0))
+    }))
+}
+
+/// Sums of each of sixteen columns, in two halves, and of what needs no column.
+#[derive(Default)]
+struct LaneSums {
+    count: [i16x8; 2],
+    y: [i16x8; 2],
+    i: [i16x8; 2],
+    yy: i32x4,
+    yi: i32x4,
+    ii: i32x4,
+}
+
+impl LaneSums {
+    /// Adds those of sixteen pixels of row `y` that count and are less than `below`.
+    #[inline(always)]
+    fn add(&mut self, pixels: u8x16, counts: u8x16, below: u8, y: i16) {
+        let dark = counts & !pixels.max(u8x16::splat(below)).simd_eq(pixels);
+        let (one, value) = (dark & u8x16::ONE, dark & pixels);
+        let ones = [i16x8::from_u8x16_low(one), i16x8::from_u8x16_high(one)];
+        let values = [i16x8::from_u8x16_low(value), i16x8::from_u8x16_high(value)];
+        let y = i16x8::splat(y);
+        for half in 0..2 {
+            let row = ones[half] * y;
+            self.count[half] += ones[half];
+            self.y[half] += row;
+            self.i[half] += values[half];
+            self.yy += row.dot(y);
+            self.yi += values[half].dot(y);
+            self.ii += values[half].dot(values[half]);
+        }
+    }
+
+    /// Adds the lanes, the first in column `x`, to `sums`.
+    fn add_up(&self, x: i16, sums: &mut Sums) {
+        let columns = [0, 8].map(|from| i16x8::new(std::array::from_fn(|lane| x + from + lane as i16)));
+        let times = |lanes: &[i16x8; 2], by: &[i16x8; 2]| total(lanes[0].dot(by[0]) + lanes[1].dot(by[1]));
+        let ones = [i16x8::ONE; 2];
+        let by_column = [self.count[0] * columns[0], self.count[1] * columns[1]];
+        sums.count += times(&self.count, &ones);
+        sums.x += times(&by_column, &ones);
+        sums.xx += times(&by_column, &columns);
+        sums.y += times(&self.y, &ones);
+        sums.xy += times(&self.y, &columns);
+        sums.i += times(&self.i, &ones);
+        sums.xi += times(&self.i, &columns);
+        sums.yy += total(self.yy);
+        sums.yi += total(self.yi);
+        sums.ii += total(self.ii);
+    }
+}
+
+fn total(lanes: i32x4) -> i32 {
+    lanes.to_array().into_iter().sum()
+}
+
+/// The same, pixel by pixel.
+fn pixel_by_pixel(frame: &FrameView<'_>, (u, v): (i32, i32), reach: i32, below: u8) -> Sums {
+    let outer = reach + RING_PX;
+    let mut sums = Sums::default();
+    for y in (-outer).max(-v)..=outer.min(frame.height() as i32 - 1 - v) {
+        let row = frame.row((v + y) as usize);
+        for x in (-outer).max(-u)..=outer.min(frame.width() as i32 - 1 - u) {
+            let i = row[(u + x) as usize];
+            if i < below && x.abs().max(y.abs()) > reach {
+                let i = i32::from(i);
+                sums.count += 1;
+                sums.x += x;
+                sums.y += y;
+                sums.xx += x * x;
+                sums.xy += x * y;
+                sums.yy += y * y;
+                sums.i += i;
+                sums.xi += x * i;
+                sums.yi += y * i;
+                sums.ii += i * i;
+            }
+        }
+    }
+    sums
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn sums_are_those_pixel_by_pixel(
+            width in 1usize..150, height in 1usize..150, places in prop::collection::vec((0.0..1.0, 0.0..1.0), 1..4),
+            reach in 0..WIDEST_PX + 5, seed in 0u64.., below in 0u8.., calm in 0u32..8,
+        ) {
+            let value = |i: u64| (seed.wrapping_add(i).wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 56) as u8 >> calm;
+            let pixels: Vec<u8> = (0..(width * height) as u64).map(value).collect();
+            let frame = FrameView::packed(&pixels, width, height).unwrap();
+            for (u, v) in places {
+                let middle = ((u * width as f64) as i32, (v * height as f64) as i32);
+                for below in [below, u8::MAX] {
+                    prop_assert_eq!(sums(&frame, middle, reach, below), pixel_by_pixel(&frame, middle, reach, below));
+                }
+            }
+        }
+    }
+}

@@ -70,7 +70,7 @@ fn a_target_shines_by_its_own_lobe_and_the_powers_of_its_leds() {
         let mut told = scene(&turned(""));
         let mut leds = told.targets[0].airframe.leds().to_vec();
         (leds[0].lobe, leds[0].power) = (lobe, power);
-        told.targets[0].airframe = Airframe::new("told", leds).unwrap().into();
+        told.targets[0].airframe = Airframe::new("told", leds).unwrap();
         let share = light(&told, AXIS).0 / plain;
         assert!((share / against - 1.0).abs() < 2e-3, "{share} not {against}");
     }

@@ -32,7 +32,11 @@ fn eye(world: World) -> Eye {
 pub(crate) fn rows(optics_frames: u64) -> Vec<Row> {
     let others = worlds().into_iter().map(|world| (world.name, eye(world)));
     let eyes = std::iter::once(("the paper's", paper())).chain(others);
-    let row = |name: &str, eye: &Eye, arms| Row { ranges_m: RANGES_M, optics_frames, ..Row::plain(name, eye, arms) };
+    let row = |name: &str, eye: &Eye, arms| Row {
+        ranges_m: RANGES_M,
+        optics_frames,
+        ..Row::plain(name, eye, arms)
+    };
     eyes.flat_map(|(name, eye)| [6, 4].map(|arms| row(name, &eye, arms))).collect()
 }
 

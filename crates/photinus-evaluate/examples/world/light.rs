@@ -65,23 +65,6 @@ impl Lights {
             let light: f64 = fallen.iter().filter(|led| apart(led) < SAME_PX).map(|led| led.light).sum();
             if let Some(measured) = sighting.log_light.filter(|_| to_spot(&own) < GATE_PX && !is_melted) {
                 let off = measured.value - libm::log(light);
-                if std::env::var("DBGL").is_ok() {
-                    eprintln!(
-                        "LIGHT {:?} off {:.3} sigma {:.3} area {} sat {} light {:?} at {:?} truth {:.2} {:.2} err {:.3} {:.3} over {:.3}",
-                        SpotClass::of(index, spots),
-                        off,
-                        measured.sigma,
-                        sighting.spot.area_px,
-                        sighting.spot.saturated_px,
-                        sighting.spot.light,
-                        sighting.spot.centre,
-                        own.u_px,
-                        own.v_px,
-                        centre.u - own.u_px,
-                        centre.v - own.v_px,
-                        sighting.spot.sigma_px()
-                    );
-                }
                 self.0.push((SpotClass::of(index, spots), off, measured.sigma));
             }
         }

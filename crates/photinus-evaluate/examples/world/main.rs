@@ -44,11 +44,6 @@ fn main() -> ExitCode {
         "snapshot" => return take_snapshot(update),
         _ => return usage(),
     };
-    let only = std::env::var("ONLY").ok();
-    let rows: Vec<(Row, u64)> = rows
-        .into_iter()
-        .filter(|(row, _)| only.as_ref().is_none_or(|only| row.name.contains(only.as_str())))
-        .collect();
     let outcomes: Vec<Outcome> = rows.iter().map(|(row, frames)| told(row.run(*frames))).collect();
     let tables = [Table::of_neighbours(&outcomes), Table::of_spots(&outcomes)];
     println!("{}\nspots\n{}", tables[0].aligned(), tables[1].aligned());

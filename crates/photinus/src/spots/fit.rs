@@ -31,8 +31,6 @@ const DONE_SHARE: f64 = 0.03;
 const SETTLED_PX: f64 = 0.05;
 /// How far light is taken to change in a step, over the light.
 const LIGHT_STEP: f64 = 3.0;
-/// Of the light of a spot: where its share is less, the point spread is as wrong as there.
-const WRONG_EVERYWHERE: f32 = 0.01;
 /// How far the level of the background is known beforehand, grey levels.
 const LEVEL_KNOWN_DN: f64 = 3.0;
 
@@ -287,7 +285,7 @@ fn weighed<const N: usize>(
         }
     }
     let model = own + level + four.others + four.spilled;
-    let wrong = Lanes::splat(noise.shape) * (own + Lanes::splat(WRONG_EVERYWHERE) * light);
+    let wrong = Lanes::splat(noise.shape) * own;
     let variance = Lanes::splat(noise.dark)
         + Lanes::splat(noise.shot) * lanes::positive(own + four.others)
         + wrong * wrong

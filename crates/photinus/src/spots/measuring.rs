@@ -58,6 +58,8 @@ const SPILT_LIGHT: f64 = 0.3;
 const LEAST_SPILT: f64 = 0.02;
 /// Spots of a frame that are learnt from, at most.
 const MOST_TELLING: usize = 40;
+/// Whether the light of others is taken away, pass by pass: their places are better known the second time.
+const PASSES: [bool; 3] = [false, true, true];
 /// Rounds in which a frame's spots and the point spread are fitted to each other.
 const ROUNDS: usize = 5;
 /// Frames after which a belief that is sure of itself learns no more of the spread.
@@ -116,7 +118,7 @@ impl Meter {
         }
         let full_from = self.full_from(frame, parts);
         self.learn(frame, parts, near, full_from);
-        for others in [false, true] {
+        for others in PASSES {
             for (index, part) in parts.iter().enumerate() {
                 if part.reason.is_some() || part.radius_px > WIDEST_POINT_PX {
                     continue;
@@ -215,7 +217,9 @@ impl Meter {
         let noise = self.pixel_noise(around);
         let variance = PixelVariance { dark: noise.dark, shot: noise.shot };
         let anywhere = Matrix2::from_diagonal_element(WITHIN_A_PIXEL * WITHIN_A_PIXEL);
-        let balanced = centroid::balance(&self.patch, part.guess, window_px as f32, variance);
+        // What the border cuts has no balance.
+        let balanced = || centroid::balance(&self.patch, part.guess, window_px as f32, variance);
+        let balanced = if part.outline.cut { None } else { balanced() };
         let (centre, covariance) = balanced.unwrap_or((part.guess, anywhere));
         let saturated_px = f64::from(part.outline.saturated_px.max(5));
         let missing_px2 = match (part.outline.cut, part.outline.saturated_px > 0) {

@@ -1,5 +1,7 @@
 //! Real photos of LED grids: the optics of one half of the photos against the pixels of the other half. Skips without the data.
 
+#![allow(clippy::print_stderr, reason = "what is reached is to be seen with --nocapture")]
+
 use std::path::PathBuf;
 
 use photinus_calibrate::optics::{Collection, LearnError, Prediction, learn, predict};
@@ -23,11 +25,11 @@ fn half(folder: &str, ending: &str, first: usize) -> Option<Collection> {
 fn predicted(folder: &str, ending: &str) -> Option<Result<Prediction, LearnError>> {
     let (learned_from, tried_on) = (half(folder, ending, 0)?, half(folder, ending, 1)?);
     let learned = learn(&learned_from).map(|learned| {
-        println!("{folder}: {:?}, unseen {:?}", learned.optics.sensor, learned.unseen);
-        println!("  {} spots, error of shape {:.3}", learned.spots, learned.optics.spread.shape_error());
+        let error = learned.optics.spread.shape_error();
+        eprintln!("{folder}: {} spots, error of shape {error:.3}, {:?}", learned.spots, learned.unseen);
         predict(&learned.optics, &tried_on).expect("spots")
     });
-    println!("{folder}: {learned:?}");
+    eprintln!("{folder}: {learned:?}");
     Some(learned)
 }
 
@@ -35,12 +37,14 @@ fn predicted(folder: &str, ending: &str) -> Option<Result<Prediction, LearnError
 fn half_of_the_photos_of_a_wide_lens_predicts_the_other() {
     let Some(prediction) = predicted("grid-960x600", "png") else { return };
     let prediction = prediction.expect("700 LEDs");
-    assert!((0.7..1.4).contains(&prediction.chi_square), "{prediction:?}");
+    assert!((0.8..1.1).contains(&prediction.chi_square), "{prediction:?}");
 }
 
+/// Six photos of LEDs that stand near each other, black clipped, as JPEG: the fewest spots that make optics, wrong by a third of
+/// the light and known to be: what is claimed is too wide, not too narrow.
 #[test]
 fn half_of_the_photos_of_a_sharp_lens_predicts_the_other() {
     let Some(prediction) = predicted("grid-752x480", "jpg") else { return };
-    let Ok(prediction) = prediction else { return };
-    assert!((0.7..1.4).contains(&prediction.chi_square), "{prediction:?}");
+    let prediction = prediction.expect("100 LEDs");
+    assert!((0.4..1.1).contains(&prediction.chi_square), "{prediction:?}");
 }

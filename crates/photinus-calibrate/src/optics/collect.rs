@@ -77,7 +77,7 @@ struct Summit {
 }
 
 impl Summit {
-    fn from_px(&self, column: usize, row: usize) -> f64 {
+    fn distance_px(&self, column: usize, row: usize) -> f64 {
         libm::hypot(self.column as f64 - column as f64, self.row as f64 - row as f64)
     }
 }
@@ -109,7 +109,7 @@ impl Collection {
         for (index, summit) in summits.iter().enumerate() {
             let others = summits.iter().enumerate().filter(|(other, _)| *other != index);
             let nearest_px = others
-                .map(|(_, other)| other.from_px(summit.column, summit.row))
+                .map(|(_, other)| other.distance_px(summit.column, summit.row))
                 .fold(f64::INFINITY, f64::min);
             let is_seen = mask.is_none_or(|mask| !mask.ignores(summit.column, summit.row));
             if nearest_px >= ALONE_PX
@@ -135,7 +135,7 @@ impl Collection {
         };
         let (column, row) = (place(frame.width())?, place(frame.height())?);
         let middle = (column + PATCH_SIDE / 2, row + PATCH_SIDE / 2);
-        let is_unlit = summits.iter().all(|summit| summit.from_px(middle.0, middle.1) > UNLIT_PX);
+        let is_unlit = summits.iter().all(|summit| summit.distance_px(middle.0, middle.1) > UNLIT_PX);
         let is_seen = mask.is_none_or(|mask| !mask.ignores(middle.0, middle.1));
         (is_unlit && is_seen).then(|| {
             let pixel = |index: usize| frame.row(row + index / PATCH_SIDE)[column + index % PATCH_SIDE];
@@ -164,7 +164,7 @@ fn summits(frame: &FrameView<'_>) -> Vec<Summit> {
     summits.sort_by_key(|summit| std::cmp::Reverse(summit.value));
     let mut kept: Vec<Summit> = Vec::new();
     for summit in summits {
-        if kept.iter().all(|other| other.from_px(summit.column, summit.row) > SAME_PX) {
+        if kept.iter().all(|other| other.distance_px(summit.column, summit.row) > SAME_PX) {
             kept.push(summit);
         }
     }

@@ -25,8 +25,14 @@ pub(super) struct LightNoise {
     pub(super) dark_sigma: f64,
     pub(super) shot_sigma: f64,
     pub(super) shape_sigma: f64,
+    /// Whether shot noise stood out; otherwise it is what is believed, and the error of the shape explains the rest.
+    pub(super) is_shot_seen: bool,
 }
 
+/// What is believed of the shot noise of a sensor that nobody measured, grey levels^2 per grey level.
+pub(super) const SHOT_BELIEVED: Measured = Measured { value: 0.03, sigma: 0.03 };
+/// No sensor has less than an electron to a grey level of 8 bits: what asks for more is no noise of light.
+const MOST_SHOT: f64 = 1.0;
 const PARTS: usize = 10;
 const ROUNDS: usize = 6;
 /// A pixel whose fit takes more of its noise than this tells too little.
@@ -62,23 +68,35 @@ pub(super) fn residuals(spots: &[Spot<'_>], field: &Field, noise: &Noise) -> Vec
 /// Explains residuals; `dark_dn` is the noise of patches without light, where it is known.
 pub(super) fn explain(residuals: &[Residual], dark_dn: Option<Measured>, before: &Noise) -> LightNoise {
     let dark = dark_dn.map(|measured| measured.value * measured.value + ROUNDING);
-    let whole = solve(residuals, dark, before, |_| true);
+    let free = split(residuals, dark, None, before);
+    let is_shot_seen = free.noise.shot > 3.0 * free.shot_sigma && free.noise.shot < MOST_SHOT;
+    if is_shot_seen {
+        return LightNoise { is_shot_seen, ..free };
+    }
+    let held = split(residuals, dark, Some(SHOT_BELIEVED.value), before);
+    LightNoise { shot_sigma: SHOT_BELIEVED.sigma, is_shot_seen, ..held }
+}
+
+/// The noise of all spots, and how it scatters when tenths of them are left out.
+fn split(residuals: &[Residual], dark: Option<f64>, shot: Option<f64>, before: &Noise) -> LightNoise {
+    let solve = |is_used: &dyn Fn(&Residual) -> bool| solve(residuals, (dark, shot), before, is_used);
+    let whole = solve(&|_| true);
     let mut squares = [0.0; 3];
     for part in 0..PARTS {
-        let without = solve(residuals, dark, before, |residual| residual.part != part);
+        let without = solve(&|residual| residual.part != part);
         let changes = [without.dark - whole.dark, without.shot - whole.shot, without.shape - whole.shape];
         squares.iter_mut().zip(changes).for_each(|(sum, change)| *sum += change * change);
     }
     let [dark_sigma, shot_sigma, shape_sigma] =
         squares.map(|sum| (sum * (PARTS - 1) as f64 / PARTS as f64).sqrt());
-    LightNoise { noise: whole, dark_sigma, shot_sigma, shape_sigma }
+    LightNoise { noise: whole, dark_sigma, shot_sigma, shape_sigma, is_shot_seen: true }
 }
 
 /// Least squares of squared residuals on 1, light and its square, none below 0; a normal residual's square has twice its variance
 /// squared.
 fn solve(
     residuals: &[Residual],
-    dark: Option<f64>,
+    (dark, shot): (Option<f64>, Option<f64>),
     before: &Noise,
     is_used: impl Fn(&Residual) -> bool,
 ) -> Noise {
@@ -90,14 +108,16 @@ fn solve(
             let variance = noise.variance(residual.light);
             let weight = 0.5 / (variance * variance);
             let constant = if dark.is_some() { 0.0 } else { 1.0 };
-            let row = SVector::from([constant, residual.light, residual.light * residual.light]);
+            let linear = if shot.is_some() { 0.0 } else { residual.light };
+            let row = SVector::from([constant, linear, residual.light * residual.light]);
+            let known = dark.unwrap_or(0.0) + shot.unwrap_or(0.0) * residual.light;
             normal += row * row.transpose() * weight;
-            right += row * ((residual.square - dark.unwrap_or(0.0)) * weight);
+            right += row * ((residual.square - known) * weight);
         }
         let found = non_negative(&normal, &right);
         noise = Noise {
             dark: dark.unwrap_or(found[0].max(ROUNDING)),
-            shot: found[1].max(1e-5),
+            shot: shot.unwrap_or(found[1].max(1e-5)),
             shape: found[2].max(0.0).sqrt(),
         };
     }

@@ -129,7 +129,6 @@ const NOISE_AFTER: [usize; 2] = [8, 10];
 /// How far from a spot its place is told, px.
 const PLACE_REACH: usize = 8;
 /// What is believed of a sensor that nobody measured.
-const SHOT_BELIEVED: Measured = Measured { value: 0.03, sigma: 0.03 };
 const READ_NOISE_BELIEVED: Measured = Measured { value: 1.0, sigma: 1.0 };
 const SPILL_BELIEVED: Measured = Measured { value: 0.0, sigma: 0.5 };
 
@@ -141,7 +140,7 @@ pub fn learn(collection: &Collection) -> Result<Learned, LearnError> {
     let windows = &collection.windows.kept;
     let summits = saturation::summits(windows);
     let pile = saturation::find(&summits);
-    let full_from = pile.map_or(255, |pile| pile.from_dn());
+    let full_from = pile.map_or(255, |pile| pile.least_dn());
     let darkness = noise::darkness(&collection.patches.kept);
     let mut spots: Vec<Spot<'_>> = windows.iter().map(|window| Spot::new(window, full_from)).collect();
     let full: Vec<Spot<'_>> = spots.iter().filter(|spot| !spot.is_linear()).cloned().collect();
@@ -211,7 +210,7 @@ fn choose(spots: &mut Vec<Spot<'_>>) {
 
 fn first_noise(darkness: &Darkness) -> Noise {
     let read = darkness.noise_dn.map_or(READ_NOISE_BELIEVED.value, |noise| noise.value);
-    Noise { dark: read * read + ROUNDING, shot: SHOT_BELIEVED.value, shape: 0.02 }
+    Noise { dark: read * read + ROUNDING, shot: light::SHOT_BELIEVED.value, shape: 0.02 }
 }
 
 /// Nodes along columns and rows that so many spots allow.
@@ -262,12 +261,9 @@ fn sensor(
         }
     });
     let shot = Measured { value: light.noise.shot, sigma: light.shot_sigma };
-    let shot = if shot.value > 3.0 * shot.sigma {
-        shot
-    } else {
+    if !light.is_shot_seen {
         unseen.push(Unseen::ShotNoise);
-        Measured { value: shot.value, sigma: shot.sigma.min(SHOT_BELIEVED.sigma) }
-    };
+    }
     let saturation = pile.map_or(Saturation { level_dn: 255.0, spread_dn: 0.0 }, |pile| Saturation {
         level_dn: pile.level_dn.min(255.0),
         spread_dn: pile.spread_dn,

@@ -27,7 +27,7 @@ const WIDTH: usize = 12;
 
 impl Pile {
     /// Lowest grey level of a full pixel.
-    pub(super) fn from_dn(&self) -> u8 {
+    pub(super) fn least_dn(&self) -> u8 {
         (self.level_dn - 3.0 * self.spread_dn - 0.5).ceil().clamp(1.0, 255.0) as u8
     }
 }

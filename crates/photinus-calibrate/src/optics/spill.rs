@@ -53,7 +53,7 @@ struct Full<'a, 'b> {
 /// Learns the spill from spots of which some have full pixels; `None` where too few have.
 pub(super) fn learn(spots: &[Spot<'_>], field: &Field, noise: &Noise, pile: &Pile) -> Option<Spill> {
     let full = |spot: &&Spot<'_>| {
-        let count = spot.window.within(REACH).filter(|(.., value)| *value >= pile.from_dn()).count();
+        let count = spot.window.within(REACH).filter(|(.., value)| *value >= pile.least_dn()).count();
         !spot.is_linear() && spot.window.reach >= REACH && count <= MOST_FULL
     };
     let all: Vec<&Spot<'_>> = spots.iter().filter(full).collect();
@@ -96,7 +96,7 @@ pub(super) fn learn(spots: &[Spot<'_>], field: &Field, noise: &Noise, pile: &Pil
     let spills = share.value > 2.0 * share.sigma;
     let capacity_dn = pile.level_dn * well.value;
     let is_larger = spills && well.value > 1.05;
-    let well_dn = is_larger.then(|| Measured { value: capacity_dn, sigma: pile.level_dn * well.sigma });
+    let well_dn = is_larger.then_some(Measured { value: capacity_dn, sigma: pile.level_dn * well.sigma });
     Some(Spill { share, well_dn })
 }
 
@@ -178,7 +178,7 @@ impl Model<'_> {
             .zip(window)
             .map(|(&charge, (.., value))| {
                 let value = f64::from(value);
-                let is_full = value >= f64::from(self.pile.from_dn());
+                let is_full = value >= f64::from(self.pile.least_dn());
                 if is_full && charge >= reads {
                     return 0.0;
                 }
@@ -249,8 +249,8 @@ fn overflow(charge: &mut [f64], well: f64, share: f64) {
             return;
         }
         let part = 0.25 * share;
-        for index in 0..charge.len() {
-            let given = part * excess[index];
+        for (index, excess) in excess.iter().enumerate() {
+            let given = part * excess;
             if given > 0.0 {
                 let (column, row) = (index % SIDE, index / SIDE);
                 let beside = [

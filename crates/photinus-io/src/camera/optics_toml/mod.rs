@@ -201,7 +201,7 @@ mod tests {
                     ])
                 };
                 let zones: Vec<PointSpread> = zones.into_iter().map(spread).collect();
-                let columns = if zones.len() % 2 == 0 { 2 } else { zones.len() };
+                let columns = if zones.len().is_multiple_of(2) { 2 } else { zones.len() };
                 let spread = match zones.as_slice() {
                     [only] => SpreadField::even(only.clone(), error).unwrap(),
                     _ => SpreadField::new(zones, columns, 752.0, 480.0, error).unwrap(),

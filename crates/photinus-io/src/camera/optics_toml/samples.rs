@@ -53,7 +53,7 @@ pub(super) fn read(text: &str) -> Result<PointSpread, String> {
     let rows: Vec<Vec<f64>> =
         text.lines().filter(|line| !line.trim().is_empty()).map(row).collect::<Result<_, _>>()?;
     let side = rows.len();
-    if side % 2 == 0 || side > SIDE || rows.iter().any(|row| row.len() != side) {
+    if side.is_multiple_of(2) || side > SIDE || rows.iter().any(|row| row.len() != side) {
         return Err(format!(
             "{side} rows, of {} samples: it must be a square of an odd number, at most {SIDE}",
             rows.first().map_or(0, Vec::len)

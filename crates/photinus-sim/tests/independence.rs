@@ -82,9 +82,10 @@ fn what_renders_imports_nothing_of_what_detects() {
 fn no_number_that_tells_something_stands_in_both() {
     let renders = ["optics", "sensor", "render", "preset"].map(|room| format!("photinus-sim/src/{room}"));
     let renders = numbers(&renders.each_ref().map(String::as_str));
-    let detects = numbers(&["photinus/src/spots", "photinus/src/locator", "photinus/src/pose"]);
+    let detects =
+        numbers(&["photinus/src/optics", "photinus/src/spots", "photinus/src/locator", "photinus/src/pose"]);
     assert!(renders.len() > 30 && detects.len() > 50, "{} {}", renders.len(), detects.len());
-    assert!(detects.contains_key("2.3e0"), "the width of a halo in spots/halo.rs is read");
+    assert!(detects.contains_key("1.2e-1"), "what is least around a light in spots/measuring.rs is read");
     for (number, path) in renders.iter().filter(|(number, _)| !is_trivial(number)) {
         if let Some(other) = detects.get(number) {
             panic!("{number} stands in {} and in {}", path.display(), other.display());

@@ -11,10 +11,11 @@
 //! part           size, shape and first guess of a part; ledge: whether it goes on where the threshold is higher
 //! rejection      what is no marker by its outline, and why
 //! neighbourhood  how far a part's light is its own                -> room for a window
-//! measuring      background and pixels of a part (patch), centre with covariance (centring): by a model of core and halo
-//!                (halo), by a window (centroid) or by the skirt -> spots
+//! lessons        what the frame tells of the camera               -> point spread (learning), noise (noise_bins), full_level
+//! fitting        a window on each part, less its background (window, patch), and the camera's point spread in it (fit)
+//!                -> centre and light of a point, with covariances
+//! measuring      spots of those; what is no point's light by a balanced window (centroid) -> spots
 //! reflections    spots that are faint images of others
-//! parting        centres that parting two spots has moved
 //! ```
 //!
 //! Every pixel at or above its threshold belongs to exactly one part, and every part is either a [`Spot`] or a
@@ -24,12 +25,15 @@ mod background;
 mod centroid;
 mod detector;
 mod fit;
+mod fitting;
 mod full_level;
 mod grouping;
 mod learning;
 mod ledge;
+mod lessons;
 mod measuring;
 mod neighbourhood;
+mod noise_bins;
 mod part;
 mod patch;
 mod reflections;

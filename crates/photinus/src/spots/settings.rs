@@ -3,8 +3,8 @@
 /// How a pixel is found to be bright.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Brightness {
-    /// At or above a fixed value: the paper's rule, with 200. Fastest, blind to a raised background; centres of spots
-    /// narrower than a pixel are by a window, with a sigma of 0.07 px, for the fit of core and halo takes longer than all else.
+    /// At or above a fixed value: the paper's rule, with 200. Fastest, blind to a raised background; centres are by a balanced window,
+    /// with a sigma of 0.07 px, for fitting the point spread takes longer than all else.
     Threshold(u8),
     /// At least this many grey levels above the background around it, which is measured in the frame. Where noise or
     /// texture reaches further than that, the frame raises the step by itself. Default, with 20: a marker far below

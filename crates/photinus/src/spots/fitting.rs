@@ -1,0 +1,251 @@
+//! Parts -> points of light: each fitted with the camera's point spread, those beside each other in turn.
+//!
+//! In: the parts of a frame. Out: for each that may be a point's light its centre and light with covariances ([`Model`]); nothing for what is
+//! too wide for a window or fits no point spread. Point spread, noise and full level are those of the camera where they were measured, else
+//! what frames have told (`lessons`).
+
+use std::sync::Arc;
+
+use nalgebra::Matrix2;
+
+use super::fit::{self, Fitted, PixelNoise, PointSource};
+use super::full_level::FullLevel;
+use super::learning::Belief;
+use super::lessons::LEARNT_FRAMES;
+use super::neighbourhood::Neighbourhood;
+use super::part::Part;
+use super::patch::{self, Surroundings};
+use super::settings::{Brightness, Noise, Settings};
+use super::window::{Spill, WIDEST_PX, Window, nearest_pixel};
+use crate::camera::Pixel;
+use crate::frame::FrameView;
+use crate::optics::{Measured, Optics, PointSpread, Sensor};
+
+/// Error of measured charge that spills into a pixel, over that.
+const SPILL_ERROR: f64 = 0.1;
+/// A part whose disc is wider than this is no point's light, px.
+const WIDEST_POINT_PX: f64 = 7.5;
+/// Room around a part that a window takes in, px.
+const MARGIN_PX: f64 = 2.2;
+/// Light of another spot further away than this does not matter, px from the middle of one to the edge of the window.
+const OTHERS_PX: f64 = 5.0;
+/// How far the light of another spot is known, as a share of it.
+const OTHERS_KNOWN: f64 = 0.05;
+/// A source's own variance is believed to be about this, px^2.
+pub(super) const SIZE_PX2: f64 = 0.05;
+/// Pixels by whose number the scatter of a spot's own residuals counts against the noise that all tell.
+const PIXELS_OF_ALL: f64 = 30.0;
+/// A misfit (squared residuals over degrees of freedom) from which a spot is no point's light.
+pub(super) const NO_POINT: f64 = 25.0;
+/// Error of the centre of a saturated core of no pixels at all, px; it falls with the root of their number.
+pub(super) const SATURATION_BLUR_PX: f64 = 0.13;
+/// Error of light over that of the shape: of a spot that is seen whole, of one of which only the wings are.
+const WHOLE: f64 = 0.5;
+const WINGS: f64 = 1.0;
+/// Error of a centre that a wrong shape makes, px; it grows with the square of the shape's error.
+const MISSHAPEN_PX: f64 = 1.0;
+/// Error of the light of a spot whose charge spills, over the light and the share that spills.
+const SPILT_LIGHT: f64 = 0.3;
+/// Whether the light of others is taken away, pass by pass: their places are better known the second time.
+const PASSES: [bool; 3] = [false, true, true];
+
+/// A part as fitted.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Model {
+    pub(super) centre: Pixel,
+    pub(super) covariance_px2: Matrix2<f64>,
+    /// Light that windows see, and all of it.
+    pub(super) light: Measured,
+    all_light: f64,
+}
+
+/// Fits the parts of frames.
+#[derive(Debug)]
+pub(super) struct Fitter {
+    pub(super) optics: Option<Arc<Optics>>,
+    pub(super) noise: Noise,
+    pub(super) belief: Belief,
+    pub(super) full_level: FullLevel,
+    /// Whether parts are fitted at all: it takes time.
+    pub(super) fits: bool,
+    /// Frames that have told something of the camera.
+    pub(super) frames: u32,
+    pub(super) window: Window,
+    pub(super) widths: Vec<f64>,
+    models: Vec<Option<Model>>,
+}
+
+impl Fitter {
+    pub(super) fn new(settings: &Settings, optics: Option<Arc<Optics>>) -> Self {
+        Self {
+            optics,
+            noise: settings.noise,
+            belief: Belief::new(settings.noise, u8::MAX),
+            full_level: FullLevel::default(),
+            fits: matches!(settings.brightness, Brightness::Contrast(_)),
+            frames: 0,
+            window: Window::default(),
+            widths: Vec::new(),
+            models: Vec::new(),
+        }
+    }
+
+    /// Part `index` as fitted, if it was.
+    pub(super) fn fitted(&self, index: usize) -> Option<&Model> {
+        self.models.get(index)?.as_ref()
+    }
+
+    /// Fits all parts that may be points.
+    pub(super) fn fit(&mut self, frame: &FrameView<'_>, parts: &[Part], near: &Neighbourhood) {
+        self.models.clear();
+        self.models.resize(parts.len(), None);
+        if !self.fits {
+            return;
+        }
+        let full_from = self.full_from(frame, parts);
+        self.learn(frame, parts, near, full_from);
+        for others in PASSES {
+            for (index, part) in parts.iter().enumerate() {
+                if part.reason.is_some() || part.radius_px > WIDEST_POINT_PX {
+                    continue;
+                }
+                let room_px = near.room_px(index, part.most_room_px());
+                let is_alone = room_px >= radius_px(part) + OTHERS_PX - part.radius_px;
+                if others && is_alone {
+                    continue;
+                }
+                let (window_px, around) =
+                    self.open(frame, part, if others { f64::INFINITY } else { room_px }, full_from);
+                if others {
+                    let middle = self.window.place(0.0, 0.0);
+                    near.each_near(index, window_px + OTHERS_PX, |other, _| {
+                        if let Some(model) = self.models[other] {
+                            let spread = spread(self.optics.as_deref(), &self.belief, middle);
+                            self.window.add_other(spread, model.centre, model.all_light, OTHERS_KNOWN);
+                        }
+                    });
+                }
+                let model = self.model(part, around);
+                if model.is_some() || !others {
+                    self.models[index] = model;
+                }
+            }
+        }
+    }
+
+    /// Opens the window on a part.
+    pub(super) fn open(
+        &mut self,
+        frame: &FrameView<'_>,
+        part: &Part,
+        room_px: f64,
+        full_from: u8,
+    ) -> (f64, Surroundings) {
+        let window_px = radius_px(part).min(room_px.max(part.radius_px + 0.8).max(1.9));
+        let around = surroundings(frame, part, window_px);
+        self.window.read(frame, part.guess, window_px, &around, full_from);
+        (window_px, around)
+    }
+
+    /// Noise of a pixel, the frame's own where that is more.
+    pub(super) fn pixel_noise(&self, around: Surroundings) -> PixelNoise {
+        let noise = match &self.optics {
+            None => self.belief.noise(),
+            Some(optics) => {
+                let read_dn = optics.sensor.read_noise_dn.value;
+                PixelNoise {
+                    dark: (read_dn * read_dn + 1.0 / 12.0) as f32,
+                    shot: optics.sensor.shot.value as f32,
+                    shape: optics.spread.shape_error() as f32,
+                }
+            }
+        };
+        PixelNoise { dark: noise.dark.max(around.variance), ..noise }
+    }
+
+    /// What becomes of charge above a full well.
+    fn spill(&self) -> Spill {
+        self.optics.as_ref().map_or_else(|| self.belief.spill(), |optics| measured_spill(&optics.sensor))
+    }
+
+    pub(super) fn guess(&self, part: &Part) -> (f64, f64, f64) {
+        let (u, v) = self.window.local(part.guess);
+        (u, v, self.window.flux().max(1.0))
+    }
+
+    fn model(&mut self, part: &Part, around: Surroundings) -> Option<Model> {
+        let noise = self.pixel_noise(around);
+        let guess = self.guess(part);
+        let is_sure = self.optics.is_some() || self.belief.is_sure() || self.frames >= LEARNT_FRAMES;
+        if is_sure {
+            let spread = spread(self.optics.as_deref(), &self.belief, part.guess);
+            let spill = self.spill();
+            let fitted =
+                fit::fit(&mut self.window, &mut PointSource::new(spread, SIZE_PX2, spill), guess, noise)?;
+            self.told(&fitted, noise)
+        } else {
+            let fitted = fit::fit(&mut self.window, &mut self.belief.free(), guess, noise)?;
+            self.told(&fitted, noise)
+        }
+    }
+
+    /// What a fit says of a spot.
+    fn told<const N: usize>(&self, fitted: &Fitted<N>, noise: PixelNoise) -> Option<Model> {
+        let misfit = fitted.chi2 / fitted.freedom;
+        if misfit > NO_POINT {
+            return None;
+        }
+        let noisier = (fitted.chi2 + PIXELS_OF_ALL) / (fitted.freedom + PIXELS_OF_ALL);
+        let noisier = if misfit > 2.0 { misfit } else { noisier };
+        // How much of its light falls where it is seen is as unsure as the shape is, more so where only its wings are.
+        let shape = f64::from(noise.shape);
+        let is_full = self.window.full_px > 0;
+        let spills = if is_full { self.window.spilled_share() } else { 0.0 };
+        let unsure = fitted.light() * (shape * if is_full { WINGS } else { WHOLE } + SPILT_LIGHT * spills);
+        let seen = if self.optics.is_some() { 1.0 } else { self.belief.seen_share() };
+        let full_px = f64::from(self.window.full_px);
+        let blur_px2 = spills * SATURATION_BLUR_PX * SATURATION_BLUR_PX / (full_px + 4.0)
+            + (MISSHAPEN_PX * shape * shape) * (MISSHAPEN_PX * shape * shape);
+        Some(Model {
+            centre: self.window.place(fitted.numbers[0], fitted.numbers[1]),
+            covariance_px2: fitted.centre_covariance_px2() * noisier
+                + Matrix2::from_diagonal_element(blur_px2),
+            light: Measured {
+                value: seen * fitted.light(),
+                sigma: seen * (fitted.light_variance() * noisier + unsure * unsure).sqrt(),
+            },
+            all_light: fitted.light(),
+        })
+    }
+}
+
+/// The point spread at a place.
+fn spread<'a>(optics: Option<&'a Optics>, belief: &'a Belief, place: Pixel) -> &'a PointSpread {
+    optics.map_or_else(|| belief.spread(), |optics| optics.spread.at(place))
+}
+
+/// What spills, as measured.
+fn measured_spill(sensor: &Sensor) -> Spill {
+    let over = sensor.full_well_dn.map_or(1.0, |well| well.value / sensor.saturation.level_dn);
+    let ln_well = libm::log(over.max(1.0));
+    // What may spill widens, even where nothing is believed to.
+    let share = sensor.spill.value.max(0.5 * sensor.spill.sigma).min(1.0);
+    let relative_error = SPILL_ERROR.max(sensor.spill.sigma / share.max(1e-3));
+    Spill { share, ln_well, relative_error, numbers: None }
+}
+
+/// How far the window on a part reaches, px.
+fn radius_px(part: &Part) -> f64 {
+    (part.radius_px + MARGIN_PX).clamp(3.2, WIDEST_PX as f64)
+}
+
+/// The background around a window on a part.
+pub(super) fn surroundings(frame: &FrameView<'_>, part: &Part, window_px: f64) -> Surroundings {
+    let level = Surroundings { level: f32::from(part.level), slope: [0.0; 2], variance: 0.0 };
+    patch::surroundings(frame, nearest_pixel(part.guess), reach_px(window_px), part.bright).unwrap_or(level)
+}
+
+/// Pixels from the middle of a patch to its edge that hold a window of this radius, wherever in a pixel it settles.
+pub(super) fn reach_px(window_px: f64) -> i32 {
+    window_px as i32 + 2
+}

@@ -1,0 +1,158 @@
+//! What the spots of a frame teach of the camera, where nobody measured it.
+//!
+//! In: the parts of a frame, and the fitter. Out: the fitter's belief of the point spread and of noise, and the level of full pixels, one frame
+//! wiser. Spots and point spread are fitted to each other in turn; hot pixels, spots beside others and those that the border cuts
+//! teach nothing. After some frames there is nothing left to learn.
+
+use super::fit::{self, PixelNoise, PointSource, WIDTH};
+use super::fitting::{Fitter, NO_POINT, SIZE_PX2};
+use super::learning::{Belief, NUMBERS, Told};
+use super::neighbourhood::Neighbourhood;
+use super::part::Part;
+use crate::frame::FrameView;
+
+/// Levels of full pixels that differ by no more are one, grey levels.
+const SAME_LEVEL_DN: u8 = 4;
+/// Share of the light of its brightest pixel that the eight around it get of a point, at least.
+const LEAST_AROUND: f32 = 0.12;
+/// Share of spilled charge in a spot from which its residuals say nothing of noise.
+const LEAST_SPILT: f64 = 0.02;
+/// Spots of a frame that are learnt from, at most.
+const MOST_TELLING: usize = 40;
+/// Rounds in which a frame's spots and the point spread are fitted to each other.
+const ROUNDS: usize = 5;
+/// Frames after which a belief that is sure of itself learns no more of the spread.
+pub(super) const LEARNT_FRAMES: u32 = 32;
+/// A spot with less contrast than this says little of the spread, grey levels.
+const TELLING_DN: f64 = 30.0;
+
+impl Fitter {
+    /// Whether frames still tell something of the camera.
+    pub(super) fn learns(&self) -> bool {
+        self.fits && self.optics.is_none() && self.frames < LEARNT_FRAMES
+    }
+
+    /// The lowest level that may be that of a full pixel.
+    pub(super) fn full_from(&mut self, frame: &FrameView<'_>, parts: &[Part]) -> u8 {
+        if let Some(optics) = &self.optics {
+            return optics.sensor.full_from_dn();
+        }
+        if self.frames < LEARNT_FRAMES {
+            for part in parts.iter().filter(|part| part.reason.is_none() && part.outline.area_px > 2) {
+                self.full_level.add(frame, &part.outline.extent, part.outline.peak);
+            }
+            let before = self.full_level.lowest();
+            self.full_level.settle();
+            // What was learnt of spots whose tops were cut off unnoticed was wrong.
+            if self.full_level.lowest().abs_diff(before) > SAME_LEVEL_DN {
+                self.belief = Belief::new(self.noise, self.full_level.lowest());
+                self.frames = 0;
+            }
+        }
+        self.full_level.lowest()
+    }
+
+    /// Whether light fell on the window: no lens is so sharp that, wherever in a pixel a point's light falls, the eight pixels around the
+    /// brightest get less than [`LEAST_AROUND`] of what it gets. What is sharper is a hot pixel.
+    fn is_light(&self, noise: PixelNoise) -> bool {
+        let (peak, around) = self.window.peak_and_around();
+        around > LEAST_AROUND * peak + 3.0 * (8.0 * noise.dark).sqrt()
+    }
+
+    /// Takes in what the frame's spots say of the point spread and of noise.
+    pub(super) fn learn(
+        &mut self,
+        frame: &FrameView<'_>,
+        parts: &[Part],
+        near: &Neighbourhood,
+        full_from: u8,
+    ) {
+        if !self.learns() {
+            return;
+        }
+        let tells = |index: usize, part: &Part| {
+            let height = f64::from(part.outline.peak) - f64::from(part.level);
+            let is_plain = part.reason.is_none() && !part.outline.cut && part.radius_px < 6.5;
+            is_plain && height > TELLING_DN && near.room_px(index, 9.0) >= 9.0
+        };
+        if self.frames == 0 {
+            let widths = parts.iter().enumerate().filter(|(index, part)| tells(*index, part));
+            self.widths.clear();
+            self.widths.extend(widths.map(|(_, part)| part.width_px(f32::from(part.level))));
+            self.widths.sort_unstable_by(f64::total_cmp);
+            if let Some(&width_px) = self.widths.get(self.widths.len() / 2) {
+                self.belief.begin(width_px);
+            }
+        }
+        let mut any = false;
+        for round in 0..ROUNDS {
+            let mut told = Told::default();
+            let numbers = self.belief.numbers();
+            let is_last = round + 1 == ROUNDS;
+            let mut telling = MOST_TELLING;
+            for (index, part) in parts.iter().enumerate() {
+                if telling == 0 || !tells(index, part) {
+                    continue;
+                }
+                telling -= 1;
+                let (_, around) = self.open(frame, part, f64::INFINITY, full_from);
+                let (noise, guess) = (self.pixel_noise(around), self.guess(part));
+                if !self.is_light(noise) {
+                    continue;
+                }
+                let mut shape = self.belief.free();
+                let weights = shape.weights;
+                let Some(fitted) = fit::fit(&mut self.window, &mut shape, guess, noise) else { continue };
+                let misfit = fitted.chi2 / fitted.freedom;
+                if misfit < NO_POINT {
+                    let widths = fitted.covariance.fixed_view::<NUMBERS, NUMBERS>(WIDTH, WIDTH).into_owned();
+                    told.add(&fitted.numbers, &widths, weights, 1.0 / misfit.max(1.0));
+                    any = true;
+                }
+            }
+            if !any {
+                return;
+            }
+            let moved = self.belief.take(&told);
+            if !moved || is_last {
+                self.belief.keep(&told, numbers);
+                break;
+            }
+        }
+        self.learn_noise(frame, parts, &tells, full_from);
+        self.frames += 1;
+    }
+
+    fn learn_noise(
+        &mut self,
+        frame: &FrameView<'_>,
+        parts: &[Part],
+        tells: &dyn Fn(usize, &Part) -> bool,
+        full_from: u8,
+    ) {
+        let mut telling = MOST_TELLING;
+        for (index, part) in parts.iter().enumerate() {
+            if telling == 0 || !tells(index, part) {
+                continue;
+            }
+            telling -= 1;
+            let (_, around) = self.open(frame, part, f64::INFINITY, full_from);
+            if !self.is_light(self.pixel_noise(around)) {
+                continue;
+            }
+            let (noise, guess) = (self.belief.noise(), self.guess(part));
+            let mut bins = *self.belief.noise_bins();
+            let mut shape = PointSource::new(self.belief.spread(), SIZE_PX2, self.belief.spill());
+            if let Some(fitted) = fit::fit(&mut self.window, &mut shape, guess, noise) {
+                let spills = self.window.full_px > 0 && self.window.spilled_share() > LEAST_SPILT;
+                if fitted.chi2 / fitted.freedom < NO_POINT && !spills {
+                    fit::residuals(&self.window, &mut shape, &fitted, noise, |light, square| {
+                        bins.add(light, square)
+                    });
+                }
+            }
+            *self.belief.noise_bins() = bins;
+        }
+        self.belief.noise_bins().solve();
+    }
+}

@@ -147,7 +147,7 @@ impl Fitter {
                 let spills = self.window.full_px > 0 && self.window.spilled_share() > LEAST_SPILT;
                 if fitted.chi2 / fitted.freedom < NO_POINT && !spills {
                     fit::residuals(&self.window, &mut shape, &fitted, noise, |light, square| {
-                        bins.add(light, square)
+                        bins.add(light, square);
                     });
                 }
             }

@@ -166,7 +166,7 @@ impl Window {
         });
         self.spill(spill.share, well_dn * (1.0 + SPILL_STEP as f32), stride);
         self.told(spill.share, stride, |four, spilled| {
-            four.by_spill[1] = (spilled - four.spilled) * per_step
+            four.by_spill[1] = (spilled - four.spilled) * per_step;
         });
     }
 

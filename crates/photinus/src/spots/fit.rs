@@ -19,12 +19,13 @@ use crate::optics::{PointSpread, Shares};
 
 /// Steps of Gauss and Newton at most; of a spot with full pixels, whose set of pixels that count changes.
 const STEPS: usize = 8;
-const STEPS_OF_FULL: usize = 8;
+const STEPS_OF_FULL: usize = 12;
 /// Steps that are never damped.
 const UNDAMPED: usize = 3;
 /// Longest step of the centre, px.
 const LONGEST_PX: f64 = 0.5;
-/// A step shorter than this is the last, px, if it changes the light by less than this share.
+/// A step shorter than this is the last, px and sigmas, if it changes the light by less than this share.
+const DONE_SIGMAS: f64 = 0.3;
 const DONE_PX: f64 = 0.03;
 const DONE_SHARE: f64 = 0.03;
 /// A last step longer than this has not settled, px.
@@ -198,7 +199,9 @@ fn fit_from<const N: usize>(
         step *= gain;
         numbers += step;
         previous = step;
-        let is_done = step_px < DONE_PX && step[LIGHT].abs() < DONE_SHARE * before;
+        // No covariance is less than one over the information.
+        let sigmas = step_px * matrix[(U, U)].max(matrix[(V, V)]).sqrt();
+        let is_done = step_px < DONE_PX && sigmas < DONE_SIGMAS && step[LIGHT].abs() < DONE_SHARE * before;
         let mut cost = sums.log_variances;
         for number in WIDTH..N {
             let (mean, weight) = shape.believed(number);

@@ -24,7 +24,7 @@ use crate::optics::{Measured, Optics, PointSpread, Sensor};
 /// Error of measured charge that spills into a pixel, over that.
 const SPILL_ERROR: f64 = 0.1;
 /// A part whose disc is wider than this is no point's light, px.
-const WIDEST_POINT_PX: f64 = 7.5;
+pub(super) const WIDEST_POINT_PX: f64 = 6.5;
 /// Room around a part that a window takes in, px.
 const MARGIN_PX: f64 = 2.2;
 /// Light of another spot further away than this does not matter, px from the middle of one to the edge of the window.
@@ -48,6 +48,12 @@ const MISSHAPEN_PX: f64 = 1.0;
 const SPILT_LIGHT: f64 = 0.3;
 /// Whether the light of others is taken away, pass by pass: their places are better known the second time.
 const PASSES: [bool; 3] = [false, true, true];
+
+/// Where the point spread is wrong by more of the light than this, it is none of the shapes that are known.
+const SHAPELESS: f32 = 0.15;
+/// A point is no further from the centroid of its part, px and radii of the part: what is has taken the light of another for its own.
+const OFF_PX: f64 = 0.3;
+const OFF_RADII: f64 = 0.1;
 
 /// A part as fitted.
 #[derive(Clone, Copy, Debug)]
@@ -90,6 +96,18 @@ impl Fitter {
         }
     }
 
+    /// Whether the point spread is known as well as it will be.
+    fn is_sure(&self) -> bool {
+        self.optics.is_some() || self.belief.is_sure() || self.frames >= LEARNT_FRAMES
+    }
+
+    /// Whether a part may be a point's light, as far as that can be told: where nobody measured the point spread, not what the border cuts, and
+    /// nothing at all where points are of no shape that is known.
+    fn may_be_point(&self, part: &Part) -> bool {
+        let knows_shape = || !part.outline.cut && self.belief.noise().shape < SHAPELESS;
+        part.reason.is_none() && part.radius_px <= WIDEST_POINT_PX && (self.optics.is_some() || knows_shape())
+    }
+
     /// Part `index` as fitted, if it was.
     pub(super) fn fitted(&self, index: usize) -> Option<&Model> {
         self.models.get(index)?.as_ref()
@@ -104,14 +122,18 @@ impl Fitter {
         }
         let full_from = self.full_from(frame, parts);
         self.learn(frame, parts, near, full_from);
-        for others in PASSES {
+        let passes = if self.is_sure() { &PASSES[..] } else { &PASSES[..1] };
+        for &others in passes {
             for (index, part) in parts.iter().enumerate() {
-                if part.reason.is_some() || part.radius_px > WIDEST_POINT_PX {
+                if !self.may_be_point(part) {
                     continue;
                 }
                 let room_px = near.room_px(index, part.most_room_px());
-                let is_alone = room_px >= radius_px(part) + OTHERS_PX - part.radius_px;
-                if others && is_alone {
+                let alone_px = radius_px(part) + OTHERS_PX - part.radius_px;
+                let is_alone = near.room_px(index, alone_px) >= alone_px;
+                // Light beside it and a point spread that is not known yet are not told apart.
+                let is_unclear = !is_alone && !self.is_sure();
+                if is_unclear || (others && is_alone) {
                     continue;
                 }
                 let (window_px, around) =
@@ -176,23 +198,25 @@ impl Fitter {
     fn model(&mut self, part: &Part, around: Surroundings) -> Option<Model> {
         let noise = self.pixel_noise(around);
         let guess = self.guess(part);
-        let is_sure = self.optics.is_some() || self.belief.is_sure() || self.frames >= LEARNT_FRAMES;
-        if is_sure {
+        if self.is_sure() {
             let spread = spread(self.optics.as_deref(), &self.belief, part.guess);
             let spill = self.spill();
             let fitted =
                 fit::fit(&mut self.window, &mut PointSource::new(spread, SIZE_PX2, spill), guess, noise)?;
-            self.told(&fitted, noise)
+            self.told(&fitted, noise, part)
         } else {
             let fitted = fit::fit(&mut self.window, &mut self.belief.free(), guess, noise)?;
-            self.told(&fitted, noise)
+            self.told(&fitted, noise, part)
         }
     }
 
     /// What a fit says of a spot.
-    fn told<const N: usize>(&self, fitted: &Fitted<N>, noise: PixelNoise) -> Option<Model> {
+    fn told<const N: usize>(&self, fitted: &Fitted<N>, noise: PixelNoise, part: &Part) -> Option<Model> {
         let misfit = fitted.chi2 / fitted.freedom;
-        if misfit > NO_POINT {
+        let centre = self.window.place(fitted.numbers[0], fitted.numbers[1]);
+        let off_px = libm::hypot(centre.u - part.guess.u, centre.v - part.guess.v);
+        let is_off = !part.outline.cut && off_px > OFF_PX + OFF_RADII * part.radius_px;
+        if misfit > NO_POINT || is_off {
             return None;
         }
         let noisier = (fitted.chi2 + PIXELS_OF_ALL) / (fitted.freedom + PIXELS_OF_ALL);
@@ -207,7 +231,7 @@ impl Fitter {
         let blur_px2 = spills * SATURATION_BLUR_PX * SATURATION_BLUR_PX / (full_px + 4.0)
             + (MISSHAPEN_PX * shape * shape) * (MISSHAPEN_PX * shape * shape);
         Some(Model {
-            centre: self.window.place(fitted.numbers[0], fitted.numbers[1]),
+            centre,
             covariance_px2: fitted.centre_covariance_px2() * noisier
                 + Matrix2::from_diagonal_element(blur_px2),
             light: Measured {

@@ -5,7 +5,7 @@
 //! teach nothing. After some frames there is nothing left to learn.
 
 use super::fit::{self, PixelNoise, PointSource, WIDTH};
-use super::fitting::{Fitter, NO_POINT, SIZE_PX2};
+use super::fitting::{Fitter, NO_POINT, SIZE_PX2, WIDEST_POINT_PX};
 use super::learning::{Belief, NUMBERS, Told};
 use super::neighbourhood::Neighbourhood;
 use super::part::Part;
@@ -72,7 +72,7 @@ impl Fitter {
         }
         let tells = |index: usize, part: &Part| {
             let height = f64::from(part.outline.peak) - f64::from(part.level);
-            let is_plain = part.reason.is_none() && !part.outline.cut && part.radius_px < 6.5;
+            let is_plain = part.reason.is_none() && !part.outline.cut && part.radius_px < WIDEST_POINT_PX;
             is_plain && height > TELLING_DN && near.room_px(index, 9.0) >= 9.0
         };
         if self.frames == 0 {

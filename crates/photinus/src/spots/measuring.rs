@@ -1,7 +1,8 @@
 //! The light of parts -> spots.
 //!
 //! In: the parts of a frame. Out: for each a spot, or the reason that it is none after all. Its centre and light are those of a point of light
-//! where it fits one (`fitting`); what is wider, or of another shape, is centred by a balanced window (`centroid`).
+//! where it fits one (`fitting`); what is wider, or of another shape, is centred by its skirt (`skirt`) or a
+//! balanced window (`centroid`).
 
 use std::sync::Arc;
 
@@ -9,12 +10,13 @@ use nalgebra::Matrix2;
 
 use super::Spot;
 use super::centroid::{self, PixelVariance};
-use super::fitting::{Fitter, SATURATION_BLUR_PX, reach_px, surroundings};
+use super::fitting::{Fitter, Model, SATURATION_BLUR_PX, reach_px, surroundings};
 use super::neighbourhood::Neighbourhood;
 use super::part::Part;
 use super::patch::{Patch, Surroundings};
 use super::rejection::Reason;
 use super::settings::{Brightness, Settings};
+use super::skirt::{self, Fit};
 use super::window::nearest_pixel;
 use crate::camera::Pixel;
 use crate::frame::FrameView;
@@ -22,8 +24,16 @@ use crate::optics::Optics;
 
 /// Standard deviation of a place known to lie somewhere in one pixel, px.
 const WITHIN_A_PIXEL: f64 = 0.288_675_134_594_812_9;
-/// Error of the centre of what has no shape that is known, px.
+/// Error of the centre of what has no shape that is known, and is so narrow that the grid of pixels pulls its window, or
+/// whose window is cut short by another spot, px.
 const SHAPELESS_PX: f64 = 0.07;
+const NARROW_PX: f64 = 0.7;
+/// A skirt that fits as well as this (squared misfit over degrees of freedom) is that of a Gaussian.
+const GAUSSIAN_MISFIT: f64 = 1.5;
+/// A skirt that fits no better than this is not that of a Gaussian: its summit says less than its formal covariance.
+const LARGEST_MISFIT: f64 = 5.0;
+/// Radius around the summit of a spot that the border cuts, or that stands in the light of another, in which its light tells, px.
+const SUMMIT_PX: f64 = 1.8;
 
 /// Measures the light of the parts of one frame after the other.
 #[derive(Debug)]
@@ -69,8 +79,8 @@ impl Meter {
         let flux = self.patch.flux(part.guess, window_px as f32);
         let model = self.fitter.fitted(index).copied();
         let (centre, covariance_px2) = match model {
-            Some(model) => (model.centre, model.covariance_px2),
-            None => self.balanced(part, window_px, around),
+            Some(model) => self.surer(part, room_px, window_px, around, &model),
+            None => self.shapeless(part, room_px, window_px, around),
         };
         let anywhere = Matrix2::from_diagonal_element(WITHIN_A_PIXEL * WITHIN_A_PIXEL);
         Ok(Spot {
@@ -87,20 +97,76 @@ impl Meter {
         })
     }
 
-    /// By a balanced window: what is no point's light.
-    fn balanced(&self, part: &Part, window_px: f64, around: Surroundings) -> (Pixel, Matrix2<f64>) {
+    /// A point's light by its fit, or by its skirt where that is surer: of a Gaussian that is full in the middle it tells all that there is,
+    /// whatever spills there.
+    fn surer(
+        &self,
+        part: &Part,
+        room_px: f64,
+        window_px: f64,
+        around: Surroundings,
+        model: &Model,
+    ) -> (Pixel, Matrix2<f64>) {
+        let by_fit = (model.centre, model.covariance_px2);
+        let is_alone = part.outline.saturated_px > 0 && !part.outline.cut && room_px >= part.most_room_px();
+        let by_skirt = if is_alone { self.skirt(part, window_px, around) } else { None };
+        let is_surer = |fit: &Fit| {
+            fit.misfit < GAUSSIAN_MISFIT && fit.covariance_px2.trace() < model.covariance_px2.trace()
+        };
+        by_skirt.filter(is_surer).map_or(by_fit, |fit| (fit.centre, fit.covariance_px2))
+    }
+
+    /// By the parabola through the logarithm of the light that shows, of a spot that is full in the middle or cut by the border.
+    fn skirt(&self, part: &Part, window_px: f64, around: Surroundings) -> Option<Fit> {
         let noise = self.fitter.pixel_noise(around);
         let variance = PixelVariance { dark: noise.dark, shot: noise.shot };
+        // The lowest signal that a pixel at 255 can have anywhere in the window.
+        let tilt = around.slope[0].abs() + around.slope[1].abs();
+        let full_dn = f32::from(u8::MAX) - around.level - tilt * reach_px(window_px) as f32;
+        let radius_px = match (part.outline.cut, part.outline.saturated_px > 0) {
+            (true, _) => SUMMIT_PX.max(part.radius_px),
+            (false, true) => (part.radius_px + 2.5).min(window_px + 1.0),
+            (false, false) => SUMMIT_PX,
+        };
+        skirt::fit(&self.patch, part.guess, radius_px as f32, full_dn, variance)
+    }
+
+    /// What is no point's light: by the parabola through the logarithm of the light that shows, or by a balanced window.
+    fn shapeless(
+        &self,
+        part: &Part,
+        room_px: f64,
+        window_px: f64,
+        around: Surroundings,
+    ) -> (Pixel, Matrix2<f64>) {
+        let noise = self.fitter.pixel_noise(around);
+        let variance = PixelVariance { dark: noise.dark, shot: noise.shot };
+        let outline = &part.outline;
+        let blur_px2 =
+            SATURATION_BLUR_PX * SATURATION_BLUR_PX / (f64::from(outline.saturated_px.max(5)) + 4.0);
+        let is_crowded = room_px < part.most_room_px();
+        let has_skirt = outline.cut || outline.saturated_px > 0 || is_crowded;
+        let by_skirt = has_skirt.then(|| self.skirt(part, window_px, around));
+        let tells = |fit: &Fit| {
+            outline.cut
+                || outline.saturated_px == 0
+                || (fit.misfit < LARGEST_MISFIT && fit.covariance_px2.trace() < 2.0 * blur_px2)
+        };
+        let by_skirt = by_skirt.flatten().filter(tells);
+        let shapeless = Matrix2::from_diagonal_element(SHAPELESS_PX * SHAPELESS_PX);
+        if let Some(fit) = by_skirt {
+            let is_sure = outline.cut || outline.saturated_px > 0;
+            return (fit.centre, if is_sure { fit.covariance_px2 } else { fit.covariance_px2 + shapeless });
+        }
         let anywhere = Matrix2::from_diagonal_element(WITHIN_A_PIXEL * WITHIN_A_PIXEL);
-        // What the border cuts has no balance.
-        let balanced = || centroid::balance(&self.patch, part.guess, window_px as f32, variance);
-        let balanced = if part.outline.cut { None } else { balanced() };
+        let balanced = centroid::balance(&self.patch, part.guess, window_px as f32, variance);
         let (centre, covariance) = balanced.unwrap_or((part.guess, anywhere));
-        let saturated_px = f64::from(part.outline.saturated_px.max(5));
-        let missing_px2 = match (part.outline.cut, part.outline.saturated_px > 0) {
+        let unclear = is_crowded || part.width_px(around.level) < NARROW_PX;
+        let missing_px2 = match (outline.cut, outline.saturated_px > 0) {
             (true, _) => part.radius_px * part.radius_px / 4.0,
-            (false, true) => SATURATION_BLUR_PX * SATURATION_BLUR_PX / (saturated_px + 4.0),
-            (false, false) => SHAPELESS_PX * SHAPELESS_PX,
+            (false, true) => blur_px2,
+            (false, false) if unclear => SHAPELESS_PX * SHAPELESS_PX,
+            (false, false) => 0.0,
         };
         (centre, covariance + Matrix2::from_diagonal_element(missing_px2))
     }

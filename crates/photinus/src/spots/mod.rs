@@ -14,7 +14,8 @@
 //! lessons        what the frame tells of the camera               -> point spread (learning), noise (noise_bins), full_level
 //! fitting        a window on each part, less its background (window, patch), and the camera's point spread in it (fit)
 //!                -> centre and light of a point, with covariances
-//! measuring      spots of those; what is no point's light by a balanced window (centroid) -> spots
+//! measuring      spots of those; what is no point's light by its skirt (skirt) or a balanced window (centroid)
+//!                -> spots
 //! reflections    spots that are faint images of others
 //! ```
 //!
@@ -41,6 +42,7 @@ mod rejection;
 mod ring;
 mod runs;
 mod settings;
+mod skirt;
 mod splitting;
 mod summits;
 mod tiles;

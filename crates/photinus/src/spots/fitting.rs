@@ -8,6 +8,7 @@ use std::sync::Arc;
 
 use nalgebra::Matrix2;
 
+use super::centroid::PixelVariance;
 use super::fit::{self, Fitted, PixelNoise, PointSource};
 use super::full_level::FullLevel;
 use super::learning::Belief;
@@ -167,6 +168,14 @@ impl Fitter {
         let around = surroundings(frame, part, window_px);
         self.window.read(frame, part.guess, window_px, &around, full_from);
         (window_px, around)
+    }
+
+    /// Noise of a pixel for what has no shape that is known: as the settings tell it, for what fits leave says nothing of such pixels; the
+    /// frame's own where that is more.
+    pub(super) fn told_noise(&self, around: Surroundings) -> PixelVariance {
+        let Noise { read_dn, shot } = self.noise;
+        let dark = (read_dn * read_dn + 1.0 / 12.0) as f32;
+        PixelVariance { dark: dark.max(around.variance), shot: shot as f32 }
     }
 
     /// Noise of a pixel, the frame's own where that is more.

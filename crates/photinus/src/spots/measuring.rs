@@ -9,7 +9,7 @@ use std::sync::Arc;
 use nalgebra::Matrix2;
 
 use super::Spot;
-use super::centroid::{self, PixelVariance};
+use super::centroid;
 use super::fitting::{Fitter, Model, SATURATION_BLUR_PX, reach_px, surroundings};
 use super::neighbourhood::Neighbourhood;
 use super::part::Part;
@@ -67,8 +67,7 @@ impl Meter {
         settings: &Settings,
     ) -> Result<Spot, Reason> {
         let outline = &part.outline;
-        let window_px = (part.radius_px + 2.5).min(room_px.max(part.radius_px + 0.8).max(1.9));
-        let around = surroundings(frame, part, window_px);
+        let (window_px, around) = open_window(frame, part, room_px);
         let height = f64::from(outline.peak) - f64::from(around.level);
         if let Brightness::Contrast(step) = settings.brightness
             && 2.0 * height < f64::from(step)
@@ -118,8 +117,7 @@ impl Meter {
 
     /// By the parabola through the logarithm of the light that shows, of a spot that is full in the middle or cut by the border.
     fn skirt(&self, part: &Part, window_px: f64, around: Surroundings) -> Option<Fit> {
-        let noise = self.fitter.pixel_noise(around);
-        let variance = PixelVariance { dark: noise.dark, shot: noise.shot };
+        let variance = self.fitter.told_noise(around);
         // The lowest signal that a pixel at 255 can have anywhere in the window.
         let tilt = around.slope[0].abs() + around.slope[1].abs();
         let full_dn = f32::from(u8::MAX) - around.level - tilt * reach_px(window_px) as f32;
@@ -139,12 +137,11 @@ impl Meter {
         window_px: f64,
         around: Surroundings,
     ) -> (Pixel, Matrix2<f64>) {
-        let noise = self.fitter.pixel_noise(around);
-        let variance = PixelVariance { dark: noise.dark, shot: noise.shot };
+        let variance = self.fitter.told_noise(around);
         let outline = &part.outline;
         let blur_px2 =
             SATURATION_BLUR_PX * SATURATION_BLUR_PX / (f64::from(outline.saturated_px.max(5)) + 4.0);
-        let is_crowded = room_px < part.most_room_px();
+        let is_crowded = room_px < part.most_room_px().min(3.5 * part.width_px(around.level));
         let has_skirt = outline.cut || outline.saturated_px > 0 || is_crowded;
         let by_skirt = has_skirt.then(|| self.skirt(part, window_px, around));
         let tells = |fit: &Fit| {
@@ -170,4 +167,16 @@ impl Meter {
         };
         (centre, covariance + Matrix2::from_diagonal_element(missing_px2))
     }
+}
+
+/// A window as wide as the spot is, or as its skirt where it is saturated, with the background around it.
+fn open_window(frame: &FrameView<'_>, part: &Part, room_px: f64) -> (f64, Surroundings) {
+    let room_px = room_px.max(part.radius_px + 0.8).max(1.9);
+    let narrow_px = (part.radius_px + 2.5).min(room_px);
+    let around = surroundings(frame, part, narrow_px);
+    let whole_px = (3.5 * part.width_px(around.level) + 1.0).min(room_px);
+    if part.outline.saturated_px > 0 || whole_px <= narrow_px {
+        return (narrow_px, around);
+    }
+    (whole_px, surroundings(frame, part, whole_px))
 }

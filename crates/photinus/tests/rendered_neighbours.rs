@@ -80,7 +80,7 @@ fn expose(light: &[f64], rng: &mut Pcg64) -> Vec<u8> {
 fn truth_never_leaves_the_bounds_of_a_rendered_neighbour() {
     let camera = camera();
     let down: Unit<Vector3<f64>> = Vector3::y_axis();
-    for (airframe, reached) in [(hexarotor(), 1.05), (quadrotor(), 0.46)] {
+    for (airframe, reached) in [(hexarotor(), 0.73), (quadrotor(), 0.46)] {
         let mut rng = Pcg64::new(11, 3);
         let mut locator =
             Locator::new(camera.clone(), &airframe, None, Settings::default()).expect("a locator");

@@ -46,7 +46,7 @@ const WINGS: f64 = 1.0;
 /// Error of a centre that a wrong shape makes, px; it grows with the square of the shape's error.
 const MISSHAPEN_PX: f64 = 1.0;
 /// Error of the light of a spot whose charge spills, over the light and the share that spills.
-const SPILT_LIGHT: f64 = 0.3;
+const SPILT_LIGHT: f64 = 0.1;
 /// Whether the light of others is taken away, pass by pass: their places are better known the second time.
 const PASSES: [bool; 3] = [false, true, true];
 
@@ -237,7 +237,7 @@ impl Fitter {
         let unsure = fitted.light() * (shape * if is_full { WINGS } else { WHOLE } + SPILT_LIGHT * spills);
         let seen = if self.optics.is_some() { 1.0 } else { self.belief.seen_share() };
         let full_px = f64::from(self.window.full_px);
-        let blur_px2 = spills * SATURATION_BLUR_PX * SATURATION_BLUR_PX / (full_px + 4.0)
+        let blur_px2 = 0.25 * spills * SATURATION_BLUR_PX * SATURATION_BLUR_PX / (full_px + 4.0)
             + (MISSHAPEN_PX * shape * shape) * (MISSHAPEN_PX * shape * shape);
         Some(Model {
             centre,

@@ -1,9 +1,9 @@
 //! How bright a spot is, and how sure that is.
 //!
-//! In: sightings with their spots, and the reflections among what was rejected. Out: the logarithm of the light of each,
-//! with what a saturated core hides put back. Its variance was fitted to rendered frames (eight ranges, two airframes,
-//! 39 000 spots): a part that all have, one that falls with the light, the light of others in the window, and what they cut
-//! off it.
+//! In: sightings with their spots, and the reflections among what was rejected. Out: the logarithm of the light of each. Where the camera's
+//! point spread told a spot's light, that is it, with its sigma. Where none did (spots of other detectors, the fixed threshold, what is no point),
+//! the light in the window stands for it: its variance was fitted to rendered frames of one camera (eight ranges, two airframes, 39 000
+//! spots): a part that all have, one that falls with the light, the light of others in the window, and what they cut off it.
 
 use super::Sighting;
 use crate::pose::LogLight;

@@ -58,7 +58,7 @@ pub(super) trait Shape<const N: usize> {
     fn shares(&self, row: usize, column: usize, widths: &SVector<f64, N>) -> (Lanes, [Lanes; N]);
 
     /// Places the spread `u`, `v` px from the middle of the window.
-    fn place(&mut self, u: f64, v: f64, widths: &SVector<f64, N>, reach: usize);
+    fn place(&mut self, u: f64, v: f64, reach: usize);
 
     /// What is believed of the numbers of width: mean and one over the variance, each by itself.
     fn believed(&self, number: usize) -> (f64, f64);
@@ -163,7 +163,7 @@ fn fit_from<const N: usize>(
     let steps = if window.full_px > 0 { STEPS_OF_FULL } else { STEPS };
     let (mut last, mut previous, mut gain) = (None, SVector::<f64, N>::zeros(), 1.0_f64);
     for step_number in 0..steps {
-        shape.place(numbers[U], numbers[V], &numbers, window.reach);
+        shape.place(numbers[U], numbers[V], window.reach);
         if window.full_px > 0 {
             overflow(window, shape, &numbers);
         }
@@ -300,8 +300,8 @@ fn weighed<const N: usize>(
     (columns, residual, four.counts * tells / variance)
 }
 
-/// Residuals, what their variance should be without that of the shape, and the own light of each pixel that counts, once a spot is
-/// fitted; each residual squared is over 1 less the share of it that the fit took away.
+/// Tells of each pixel that counts and is not full the own light of a spot that is fitted, and its squared residual, over 1 less the share of
+/// it that the fit took away.
 pub(super) fn residuals<const N: usize>(
     window: &Window,
     shape: &mut impl Shape<N>,
@@ -310,7 +310,7 @@ pub(super) fn residuals<const N: usize>(
     mut with: impl FnMut(f32, f32),
 ) {
     let numbers = &fitted.numbers;
-    shape.place(numbers[U], numbers[V], numbers, window.reach);
+    shape.place(numbers[U], numbers[V], window.reach);
     let (light, level) = (Lanes::splat(numbers[LIGHT] as f32), Lanes::splat(numbers[LEVEL] as f32));
     let spilling = shape.spill(numbers).numbers;
     for four in &window.fours {
@@ -334,9 +334,9 @@ pub(super) fn residuals<const N: usize>(
 
 /// A point, or a source of some size.
 pub(super) struct PointSource<'a> {
-    pub(super) spread: &'a PointSpread,
+    spread: &'a PointSpread,
     /// Standard deviation that a source's own variance is believed to have, px^2.
-    pub(super) size_px2: f64,
+    size_px2: f64,
     spill: Spill,
     placed: Option<crate::optics::Placed<'a>>,
 }
@@ -356,7 +356,7 @@ impl Shape<5> for PointSource<'_> {
         (share, [by_u, by_v, Lanes::ZERO, Lanes::ZERO, by_variance])
     }
 
-    fn place(&mut self, u: f64, v: f64, _: &SVector<f64, 5>, reach: usize) {
+    fn place(&mut self, u: f64, v: f64, reach: usize) {
         self.placed = Some(self.spread.placed(u as f32, v as f32, reach));
     }
 

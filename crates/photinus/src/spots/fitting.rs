@@ -99,7 +99,7 @@ impl Fitter {
 
     /// Whether the point spread is known as well as it will be.
     fn is_sure(&self) -> bool {
-        self.optics.is_some() || self.belief.is_sure() || self.frames >= LEARNT_FRAMES
+        self.optics.is_some() || self.frames >= LEARNT_FRAMES || self.belief.is_sure()
     }
 
     /// Whether a part may be a point's light, as far as that can be told: where nobody measured the point spread, not what the border cuts, and
@@ -123,7 +123,8 @@ impl Fitter {
         }
         let full_from = self.full_from(frame, parts);
         self.learn(frame, parts, near, full_from);
-        let passes = if self.is_sure() { &PASSES[..] } else { &PASSES[..1] };
+        let is_sure = self.is_sure();
+        let passes = if is_sure { &PASSES[..] } else { &PASSES[..1] };
         for &others in passes {
             for (index, part) in parts.iter().enumerate() {
                 if !self.may_be_point(part) {
@@ -133,7 +134,7 @@ impl Fitter {
                 let alone_px = radius_px(part) + OTHERS_PX - part.radius_px;
                 let is_alone = near.room_px(index, alone_px) >= alone_px;
                 // Light beside it and a point spread that is not known yet are not told apart.
-                let is_unclear = !is_alone && !self.is_sure();
+                let is_unclear = !is_alone && !is_sure;
                 if is_unclear || (others && is_alone) {
                     continue;
                 }
@@ -148,7 +149,7 @@ impl Fitter {
                         }
                     });
                 }
-                let model = self.model(part, around);
+                let model = self.model(part, around, is_sure);
                 if model.is_some() || !others {
                     self.models[index] = model;
                 }
@@ -204,10 +205,10 @@ impl Fitter {
         (u, v, self.window.flux().max(1.0))
     }
 
-    fn model(&mut self, part: &Part, around: Surroundings) -> Option<Model> {
+    fn model(&mut self, part: &Part, around: Surroundings, is_sure: bool) -> Option<Model> {
         let noise = self.pixel_noise(around);
         let guess = self.guess(part);
-        if self.is_sure() {
+        if is_sure {
             let spread = spread(self.optics.as_deref(), &self.belief, part.guess);
             let spill = self.spill();
             let fitted =

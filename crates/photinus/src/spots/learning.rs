@@ -238,7 +238,7 @@ impl Shape<UNKNOWNS> for FreeSpread<'_> {
         (share, columns)
     }
 
-    fn place(&mut self, u: f64, v: f64, _: &SVector<f64, UNKNOWNS>, reach: usize) {
+    fn place(&mut self, u: f64, v: f64, reach: usize) {
         let [a, b, c] = &self.belief.by_number;
         let spreads = [&self.belief.spread, a, b, c];
         self.placed = Some(spreads.map(|spread| spread.placed(u as f32, v as f32, reach)));

@@ -1,11 +1,11 @@
 //! The world against the program: what faults, cameras and crowds do to it with default options.
 //!
 //! ```text
-//! cargo run --release -p photinus-evaluate --example world -- faults|cameras|crowds [frames] [--update]
+//! cargo run --release -p photinus-evaluate --example world -- faults|cameras|crowds [frames] [--only=PART...] [--update]
 //! cargo run --release -p photinus-evaluate --example world -- snapshot [--update]
 //! ```
 //!
-//! Prints a table of neighbours and a table of spots. With `--update` the tables take the place of those in docs/world.md, or of
+//! Prints a table of neighbours and a table of spots, of the rows whose names have one of the parts in them, if any is given. With `--update` the tables take the place of those in docs/world.md, or of
 //! the committed snapshot. The columns are explained in docs/world.md.
 
 #![expect(clippy::print_stdout, clippy::print_stderr, reason = "an example prints its table")]
@@ -32,11 +32,12 @@ const USAGE: &str = "give faults, cameras or crowds, a number of frames per row 
 fn main() -> ExitCode {
     let mut words: Vec<String> = std::env::args().skip(1).collect();
     let update = words.iter().any(|word| word == "--update");
-    words.retain(|word| word != "--update");
+    let only: Vec<String> = words.iter().filter_map(|word| word.strip_prefix("--only=")).map(str::to_owned).collect();
+    words.retain(|word| !word.starts_with("--"));
     let frames = words.get(1).map_or(Some(500), |text| text.parse().ok().filter(|&frames| frames > 0));
     let (Some(what), Some(frames)) = (words.first(), frames) else { return usage() };
     let single = |rows: Vec<Row>| rows.into_iter().map(|row| (row, frames)).collect();
-    let rows: Vec<(Row, u64)> = match what.as_str() {
+    let mut rows: Vec<(Row, u64)> = match what.as_str() {
         "faults" => single(faults::rows(&cameras::paper())),
         "cameras" => single(cameras::rows(0)),
         "optics" => single(cameras::rows(200)),
@@ -44,10 +45,12 @@ fn main() -> ExitCode {
         "snapshot" => return take_snapshot(update),
         _ => return usage(),
     };
+    rows.retain(|(row, _)| only.is_empty() || only.iter().any(|part| row.name.contains(part.as_str())));
     let outcomes: Vec<Outcome> = rows.iter().map(|(row, frames)| told(row.run(*frames))).collect();
     let tables = [Table::of_neighbours(&outcomes), Table::of_spots(&outcomes)];
     println!("{}\nspots\n{}", tables[0].aligned(), tables[1].aligned());
     let notes = if what == "cameras" { cameras::about() + "\n" } else { String::new() };
+    let update = update && only.is_empty();
     let written = if update { document::update(what, frames, &tables, &notes) } else { Ok(()) };
     written.map_or_else(failed, |()| ExitCode::SUCCESS)
 }

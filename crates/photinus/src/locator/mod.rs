@@ -12,83 +12,46 @@
 //! together and which markers they may be. From there [`crate::pose`] finds every pose that explains them and how sure each
 //! is; the bounds are strict and come from [`crate::ranging::DistanceBounds`] and spot sizes alone.
 
+mod alternatives;
 mod brightness;
+mod candidates;
+mod clutter;
+mod context;
+mod error;
+mod explanation;
 mod grouping;
 mod matching;
+mod neighbour;
 mod pairs;
 mod posing;
+mod settings;
 mod sighting;
+mod telling;
 mod views;
 
-use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
+use nalgebra::{Unit, Vector3};
 
 use crate::airframe::Airframe;
-use crate::camera::{Bearing, Camera, Watched};
-use crate::frame::{FrameError, FrameView, Mask};
-use crate::pose::{self, LogLight, Mode};
-use crate::ranging::{DistanceBounds, Estimate, Interval, SpotCurve};
-use crate::spots::{self, Detector, Reason, Rejected, Spot};
+use crate::camera::{Camera, Watched};
+use crate::frame::{FrameView, Mask};
+use crate::ranging::SpotCurve;
+use crate::spots::{Detector, Reason, Rejected, Spot};
+use alternatives::Alternatives;
+use candidates::Candidates;
+use clutter::Clutter;
+use context::Context;
+pub use error::{LocateError, LocatorError};
+use explanation::Explanation;
 use grouping::Groups;
 use matching::Matcher;
+pub use neighbour::{Distance, Located, Neighbour, Orientation, Position, RunnerUp};
 use posing::Poser;
+pub use settings::Settings;
+pub use sighting::Sighting;
+use telling::Telling;
 
-/// What a user may choose about locating.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Settings {
-    /// What is a spot.
-    pub spots: spots::Settings,
-    /// Largest tilt of a neighbour against the vertical that the bounds allow for, rad. Default 15 deg. Only with gravity
-    /// does it say anything: without, any attitude is allowed.
-    pub max_tilt_rad: f64,
-    /// What is believed of a neighbour's pose beforehand.
-    pub pose: pose::Settings,
-}
-
-impl Default for Settings {
-    fn default() -> Self {
-        Self {
-            spots: spots::Settings::default(),
-            max_tilt_rad: DistanceBounds::DEFAULT_MAX_TILT_RAD,
-            pose: pose::Settings::default(),
-        }
-    }
-}
-
-/// Why a locator cannot be made.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum LocatorError {
-    /// A setting of the detector has no meaning.
-    #[error("{0}")]
-    Spots(#[from] spots::SettingsError),
-    /// A prior or tolerance of the pose has no meaning.
-    #[error("{0}")]
-    Pose(#[from] pose::SettingsError),
-    /// A tilt limit that is no angle from 0 to 180 deg.
-    #[error("a tilt limit of {0} rad: it must be an angle from 0 to pi")]
-    Tilt(f64),
-    /// A mask of another size than the camera's image.
-    #[error("{0}")]
-    Mask(FrameError),
-}
-
-/// Why a frame cannot be located.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum LocateError {
-    /// A frame of another size than the camera was calibrated for.
-    #[error("the frame is {width}x{height}, the camera {camera_width}x{camera_height}")]
-    Size {
-        /// Columns of the frame.
-        width: usize,
-        /// Rows of the frame.
-        height: usize,
-        /// Columns of the camera's image.
-        camera_width: usize,
-        /// Rows of the camera's image.
-        camera_height: usize,
-    },
-}
+/// Rounds of telling how dense clutter is from what is explained, and what is explained from that.
+const CLUTTER_ROUNDS: usize = 2;
 
 /// A stage of the flow, named when it ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -103,109 +66,6 @@ pub enum Stage {
     Posing,
 }
 
-/// A spot and where it lies.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Sighting {
-    /// The spot.
-    pub spot: Spot,
-    /// Which of the airframe's signals it was seen to blink, where that is known.
-    pub signal: Option<u32>,
-    /// Its light, in units that are the same all over the frame, with what a saturated core hides put back; `None` where none
-    /// was measured.
-    pub log_light: Option<LogLight>,
-    /// Its direction in the camera frame.
-    pub bearing: Bearing,
-    /// Covariance of the direction, rad^2, tangent to the sphere (rank 2): from the spot and, where the camera's file says
-    /// how sure it is, from the calibration.
-    pub covariance_rad2: Matrix3<f64>,
-    /// The part of it that comes from the spot, and differs from spot to spot.
-    pub spot_covariance_rad2: Matrix3<f64>,
-    /// How far the direction turns per pixel there, where it turns most, rad/px.
-    pub rad_per_px: f64,
-    /// The marker's true direction is no further from the bearing, rad: its light falls within the box of pixels that its
-    /// spot spans. The camera's calibration is taken as exact.
-    pub bound_rad: f64,
-    /// Distances at which a spot of this size is possible, where the curve of spot sizes is known.
-    pub range: Option<Interval>,
-}
-
-/// How far away a neighbour is: from the camera's centre to the airframe's origin.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Distance {
-    /// Mean and standard deviation of the posterior; `None` only where no pose explains the spots.
-    pub estimate: Option<Estimate>,
-    /// Truth never leaves these, see [`DistanceBounds`]; the far end may be infinite.
-    pub bounds: Interval,
-    /// The paper's l_A of the widest pair of neighbouring markers, m; only for rings.
-    pub perpendicular_m: Option<f64>,
-    /// The paper's l_B of the same pair, m.
-    pub inline_m: Option<f64>,
-}
-
-/// Where a neighbour is, in the camera frame.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Position {
-    /// Mean, m.
-    pub mean_m: Vector3<f64>,
-    /// Covariance, m^2.
-    pub covariance_m2: Matrix3<f64>,
-}
-
-/// How a neighbour is turned.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Orientation {
-    /// Maps the body's coordinates to the camera's. Yaw is one of those that the airframe's symmetry makes equal; where
-    /// signals of spots are known, one of those that they do not tell apart.
-    pub camera_from_body: Rotation3<f64>,
-    /// Covariance as a small rotation in the body frame (its third axis is yaw), rad^2.
-    pub covariance_rad2: Matrix3<f64>,
-}
-
-/// Another robot.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Neighbour {
-    /// Direction of the airframe's origin in the camera frame.
-    pub bearing: Bearing,
-    /// How far away.
-    pub distance: Distance,
-    /// Where, over all modes.
-    pub position: Option<Position>,
-    /// How turned, over all modes.
-    pub orientation: Option<Orientation>,
-    first_member: usize,
-    members: usize,
-    first_mode: usize,
-    modes: usize,
-}
-
-/// What one frame told.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Located {
-    /// Spots with their bearings.
-    pub sightings: Vec<Sighting>,
-    /// What is bright and no marker.
-    pub rejected: Vec<Rejected>,
-    /// Who is there, in the order of their first sighting.
-    pub neighbours: Vec<Neighbour>,
-    members: Vec<usize>,
-    modes: Vec<Mode>,
-}
-
-impl Located {
-    /// Which sightings are this neighbour, ascending.
-    pub fn members(&self, neighbour: &Neighbour) -> &[usize] {
-        self.members
-            .get(neighbour.first_member..)
-            .and_then(|rest| rest.get(..neighbour.members))
-            .unwrap_or(&[])
-    }
-
-    /// The ways in which this neighbour's spots can be its airframe, the likeliest first.
-    pub fn modes(&self, neighbour: &Neighbour) -> &[Mode] {
-        self.modes.get(neighbour.first_mode..).and_then(|rest| rest.get(..neighbour.modes)).unwrap_or(&[])
-    }
-}
-
 /// Locates neighbours of one kind of airframe in the frames of one camera. Keeps its room from frame to frame, so that a
 /// warm locator allocates nothing.
 #[derive(Debug)]
@@ -217,7 +77,15 @@ pub struct Locator {
     matcher: Matcher,
     poser: Poser,
     groups: Groups,
-    group: Vec<usize>,
+    /// How dense clutter is if everything is, and with what is explained.
+    at_first: Clutter,
+    clutter: Clutter,
+    candidates: Candidates,
+    alternatives: Alternatives,
+    explanation: Explanation,
+    telling: Telling,
+    use_brightness: bool,
+    min_probability: f64,
     order: Vec<usize>,
     located: Located,
 }
@@ -236,6 +104,9 @@ impl Locator {
         if !(0.0..=std::f64::consts::PI).contains(&settings.max_tilt_rad) {
             return Err(LocatorError::Tilt(settings.max_tilt_rad));
         }
+        if !(0.0..=1.0).contains(&settings.min_probability) {
+            return Err(LocatorError::Probability(settings.min_probability));
+        }
         let detector = Detector::with_optics(settings.spots, camera.optics().cloned())?;
         Ok(Self {
             camera,
@@ -245,7 +116,14 @@ impl Locator {
             matcher: Matcher::new(airframe, settings.max_tilt_rad),
             poser: Poser::new(airframe, settings.pose, &settings.spots)?,
             groups: Groups::default(),
-            group: Vec::with_capacity(airframe.markers().len()),
+            at_first: Clutter::default(),
+            clutter: Clutter::default(),
+            candidates: Candidates::default(),
+            alternatives: Alternatives::default(),
+            explanation: Explanation::default(),
+            telling: Telling::default(),
+            use_brightness: settings.pose.use_brightness,
+            min_probability: settings.min_probability,
             order: Vec::new(),
             located: Located::default(),
         })
@@ -358,27 +236,35 @@ impl Locator {
         gravity: Option<&Unit<Vector3<f64>>>,
         finished: &mut dyn FnMut(Stage),
     ) -> &Located {
-        self.groups.sort_out(&self.located.sightings, gravity, &mut self.matcher);
-        finished(Stage::Grouping);
+        let size = [self.camera.width(), self.camera.height()];
+        let sightings = &self.located.sightings;
+        // Until somebody is seen everything is clutter: what stands out of that is clear.
+        self.at_first.measure(sightings, size, self.use_brightness, |_| 1.0);
         let watched = Watched::new(&self.camera, self.mask.as_ref());
-        let Located { sightings, neighbours, members, modes, .. } = &mut self.located;
-        neighbours.clear();
-        members.clear();
-        modes.clear();
-        for group in self.groups.iter() {
-            self.group.clear();
-            self.group.extend_from_slice(group);
-            let (neighbour, its_modes) =
-                self.poser.tell(sightings, &mut self.group, gravity, watched, &mut self.matcher);
-            neighbours.push(Neighbour {
-                first_member: members.len(),
-                first_mode: modes.len(),
-                modes: its_modes.len(),
-                ..neighbour
-            });
-            members.extend_from_slice(&self.group);
-            modes.extend_from_slice(its_modes);
+        let context = Context { sightings, gravity, watched, power: None, clutter: self.at_first.log_density() };
+        let power = self.groups.sort_out(&context, &mut self.matcher);
+        let context = Context { power, ..context };
+        finished(Stage::Grouping);
+        self.candidates.clear();
+        for group in 0..self.groups.len() {
+            self.poser.weigh(&context, self.groups.group(group), &mut self.matcher, &mut self.candidates);
         }
+        self.explanation.explain(&self.candidates, context.clutter);
+        self.clutter.measure(sightings, size, self.use_brightness, |spot| self.explanation.clutter(spot));
+        let context = Context { clutter: self.clutter.log_density(), ..context };
+        for group in 0..self.groups.len() {
+            if self.candidates.is_doubtful(self.groups.group(group), context.clutter) {
+                let Self { alternatives, groups, matcher, poser, candidates, .. } = self;
+                alternatives.around(&context, groups, group, matcher, |handful, matcher| {
+                    poser.weigh(&context, handful, matcher, candidates);
+                });
+            }
+        }
+        for _ in 0..CLUTTER_ROUNDS {
+            self.explanation.explain(&self.candidates, self.clutter.log_density());
+            self.clutter.measure(sightings, size, self.use_brightness, |spot| self.explanation.clutter(spot));
+        }
+        self.telling.tell(&self.candidates, &self.explanation, self.min_probability, &mut self.located);
         finished(Stage::Posing);
         &self.located
     }

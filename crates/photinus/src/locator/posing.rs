@@ -1,25 +1,33 @@
-//! The spots of one neighbour -> its pose, and what a user wants to know of it.
+//! The spots of what may be one neighbour -> its pose, what a user wants to know of it, and how well it explains them.
 //!
-//! In: the sightings of one group. Out: the neighbour and its modes. The bounds are strict and come from
+//! In: the sightings of one group. Out: a candidate with its modes. The bounds are strict and come from
 //! [`crate::ranging::DistanceBounds`] and spot sizes alone; the posterior of [`crate::pose`] is cut off at them.
+
+use core::f64::consts::TAU;
 
 use nalgebra::{Matrix3, Unit, Vector3};
 
+use super::Sighting;
+use super::candidates::{Candidates, Told};
+use super::context::Context;
 use super::grouping::CLEAR_SPOTS;
 use super::matching::Matcher;
+use super::neighbour::{Distance, Orientation, Position};
 use super::pairs::Pairs;
-use super::{Distance, Neighbour, Orientation, Position, Sighting};
 use crate::airframe::Airframe;
-use crate::camera::{Bearing, Watched};
+use crate::camera::Bearing;
 use crate::pose::{
-    self, Estimator, Hypotheses, Known, LogDistance, Observation, Pose, Posterior, SettingsError, Summary,
-    Visible,
+    self, Estimator, Hypotheses, Known, LogDistance, Observation, POWER_RANGE, Pose, Posterior, SettingsError, Summary, Visible,
 };
 use crate::ranging::Interval;
 use crate::spots::{self, Brightness};
 
-/// A spot far from the pose, in sigma: the group is looked at without it.
-const STRANGE_SIGMAS: f64 = 5.0;
+/// How many neighbours there are per sr: one in the field of a wide lens.
+pub(super) const NEIGHBOURS_PER_SR: f64 = 0.16;
+/// Logarithm of the farthest over the nearest distance of a neighbour: they are even over it.
+pub(super) const LOG_RANGE: f64 = 4.6;
+/// Light of the wrong power does not rule out what geometry is sure of, nats.
+const MOST_POWER_NATS: f64 = 12.0;
 /// Two markers so far apart are told apart half of the time, px (rendered frames).
 const RESOLUTION_PX: f64 = 2.5;
 /// Light of a spot that is found half of the time over the step that makes a pixel bright, px (rendered frames).
@@ -41,7 +49,8 @@ pub(super) struct Poser {
     observations: Vec<Observation>,
     pairs: Pairs,
     visible: Visible<'static>,
-    without: Vec<usize>,
+    within: Vec<usize>,
+    others: Vec<Bearing>,
 }
 
 impl Poser {
@@ -57,84 +66,71 @@ impl Poser {
             observations: Vec::with_capacity(airframe.markers().len()),
             pairs: Pairs::new(airframe),
             visible: visible(spots),
-            without: Vec::with_capacity(airframe.markers().len()),
+            within: Vec::with_capacity(airframe.markers().len()),
+            others: Vec::new(),
         })
     }
 
-    /// The neighbour that a group is, with its modes; a spot that cannot be its marker leaves the group.
-    pub(super) fn tell(
+    /// Adds the candidate that a group, ascending, is; an observation that cannot be its marker is none of it. Nothing is added where the group
+    /// cannot be one neighbour.
+    pub(super) fn weigh(
         &mut self,
-        sightings: &[Sighting],
-        group: &mut Vec<usize>,
-        gravity: Option<&Unit<Vector3<f64>>>,
-        watched: Watched<'_>,
+        context: &Context<'_>,
+        group: &[usize],
         matcher: &mut Matcher,
-    ) -> (Neighbour, &[pose::Mode]) {
-        let mut bounds = self.estimate(sightings, group, gravity, watched, matcher);
-        if group.len() > 2 && self.estimator.posterior().worst_sigma > STRANGE_SIGMAS {
-            bounds = self.leave_out_a_stranger(sightings, group, gravity, watched, matcher);
+        candidates: &mut Candidates,
+    ) {
+        if group.is_empty() || candidates.find(group).is_some() {
+            return;
         }
-        self.describe(sightings, group, bounds)
+        let Some(bounds) = self.estimate(context, group, matcher) else { return };
+        let markers = &self.estimator.posterior().markers;
+        if markers.contains(&None) {
+            let mut within = std::mem::take(&mut self.within);
+            within.clear();
+            within.extend(group.iter().zip(markers).filter(|(_, marker)| marker.is_some()).map(|(&spot, _)| spot));
+            self.weigh(context, &within, matcher, candidates);
+            self.within = within;
+            return;
+        }
+        self.describe(context, group, bounds, candidates);
     }
 
-    /// Estimates the posterior of a group and returns its strict bounds.
-    fn estimate(
-        &mut self,
-        sightings: &[Sighting],
-        group: &[usize],
-        gravity: Option<&Unit<Vector3<f64>>>,
-        watched: Watched<'_>,
-        matcher: &mut Matcher,
-    ) -> Interval {
-        let any = Interval::new(matcher.near_m(), f64::INFINITY);
-        let bounds = matcher.bounds(sightings, group, gravity).or(any);
-        let bounds = bounds.expect("from the near limit to infinity is an interval");
+    /// Estimates the posterior of a group and returns its strict bounds; `None` where it cannot be one neighbour.
+    fn estimate(&mut self, context: &Context<'_>, group: &[usize], matcher: &mut Matcher) -> Option<Interval> {
+        let sightings = context.sightings;
+        let bounds = matcher.bounds(context, group)?;
         self.observations.clear();
-        self.observations.extend(group.iter().map(|&index| observe(&sightings[index])));
-        let up = gravity.map(|down| -*down);
+        self.observations.extend(group.iter().map(|&index| observe(&sightings[index], context.clutter[index])));
+        let up = context.gravity.map(|down| -*down);
         let mut size = None;
         if let [only] = group {
             let distance = matcher.lone_distance(&sightings[*only], &bounds);
             self.suppose_one_marker(&sightings[*only], up, distance);
             size = Some(distance);
         } else {
-            matcher.hypotheses(sightings, group, gravity, &mut self.hypotheses);
+            matcher.hypotheses(context, group, &mut self.hypotheses);
         }
+        self.gather_others(context, group, matcher);
         // Who tells the light of the frame's LEDs is not told by it.
-        let power = if group.len() < CLEAR_SPOTS { matcher.known_power() } else { None };
-        let known =
-            Known { up, bounds, size, power, visible: Visible { watched: Some(watched), ..self.visible } };
-        self.estimator.estimate(&self.observations, &mut self.hypotheses, &known);
-        bounds
+        let power = if group.len() < CLEAR_SPOTS { context.power } else { None };
+        let visible = Visible { watched: Some(context.watched), others: &self.others, ..self.visible };
+        let known = Known { up, bounds, size, power, visible };
+        let posterior = self.estimator.estimate(&self.observations, &mut self.hypotheses, &known);
+        posterior.summary.is_some().then_some(bounds)
     }
 
-    /// Leaves out the spot without which the others are the likeliest, if that explains more than a stranger costs.
-    fn leave_out_a_stranger(
-        &mut self,
-        sightings: &[Sighting],
-        group: &mut Vec<usize>,
-        gravity: Option<&Unit<Vector3<f64>>>,
-        watched: Watched<'_>,
-        matcher: &mut Matcher,
-    ) -> Interval {
-        let mut best = (self.estimator.posterior().log_evidence, None);
-        let mut without = std::mem::take(&mut self.without);
-        for stranger in 0..group.len() {
-            without.clear();
-            without.extend(
-                group.iter().enumerate().filter(|(index, _)| *index != stranger).map(|(_, &spot)| spot),
-            );
-            self.estimate(sightings, &without, gravity, watched, matcher);
-            let log_evidence = self.estimator.posterior().log_evidence + pose::STRANGER_LOG_DENSITY;
-            if log_evidence > best.0 {
-                best = (log_evidence, Some(stranger));
-            }
-        }
-        self.without = without;
-        if let Some(stranger) = best.1 {
-            group.remove(stranger);
-        }
-        self.estimate(sightings, group, gravity, watched, matcher)
+    /// The directions of observations that are not of a group but near it.
+    fn gather_others(&mut self, context: &Context<'_>, group: &[usize], matcher: &Matcher) {
+        let sightings = context.sightings;
+        let middle = sightings[group[0]].bearing.vector();
+        let widest = |&spot: &usize| matcher.widest_rad(&sightings[spot]);
+        let reach_rad = group.iter().map(widest).fold(f64::INFINITY, f64::min);
+        let is_near = |sighting: &Sighting| (sighting.bearing.vector() - middle).norm() < reach_rad;
+        self.others.clear();
+        self.others.extend(
+            sightings.iter().enumerate().filter(|(index, seen)| is_near(seen) && !group.contains(index)).map(|(_, seen)| seen.bearing),
+        );
     }
 
     /// A lone spot is any of the markers, turned to the camera.
@@ -160,50 +156,52 @@ impl Poser {
         }
     }
 
-    fn describe(
-        &self,
-        sightings: &[Sighting],
-        group: &[usize],
-        bounds: Interval,
-    ) -> (Neighbour, &[pose::Mode]) {
-        let Posterior { summary, modes, markers, .. } = self.estimator.posterior();
-        let mut neighbour = Neighbour {
-            bearing: sightings[group[0]].bearing,
-            distance: Distance { estimate: None, bounds, perpendicular_m: None, inline_m: None },
-            position: None,
-            orientation: None,
-            first_member: 0,
-            members: group.len(),
-            first_mode: 0,
-            modes: 0,
-        };
-        let Some(Summary { pose, mut position_covariance_m2, orientation_covariance_rad2, mut distance }) =
-            *summary
+    /// Adds the candidate whose posterior was estimated last.
+    fn describe(&self, context: &Context<'_>, group: &[usize], bounds: Interval, candidates: &mut Candidates) {
+        let Posterior { summary, modes, markers, log_evidence, misfit, worst_sigma, log_power } =
+            self.estimator.posterior();
+        let Some(Summary { pose, mut position_covariance_m2, orientation_covariance_rad2, mut distance }) = *summary
         else {
-            return (neighbour, &[]);
+            return;
         };
         let length_m = pose.position_m.norm();
-        let (of_position_m2, of_distance_m2) = of_calibration(sightings, group, &pose.position_m);
+        let (of_position_m2, of_distance_m2) = of_calibration(context.sightings, group, &pose.position_m);
         position_covariance_m2 += of_position_m2;
         distance.sigma_m = (distance.sigma_m * distance.sigma_m + of_distance_m2).sqrt();
-        if let Some(bearing) = Bearing::new(pose.position_m) {
-            neighbour.bearing = bearing;
-        }
         distance.distance_m = distance.distance_m.clamp(bounds.min_m(), bounds.max_m());
         let within_m = length_m.clamp(bounds.min_m(), bounds.max_m());
-        neighbour.distance.estimate = Some(distance);
-        neighbour.position = Some(Position {
-            mean_m: pose.position_m * (within_m / length_m),
-            covariance_m2: position_covariance_m2,
-        });
-        neighbour.orientation = Some(Orientation {
-            camera_from_body: pose.camera_from_body,
-            covariance_rad2: orientation_covariance_rad2,
-        });
-        [neighbour.distance.perpendicular_m, neighbour.distance.inline_m] =
-            self.pairs.distances_m(sightings, group, markers);
-        (neighbour, modes)
+        let [perpendicular_m, inline_m] = self.pairs.distances_m(context.sightings, group, markers);
+        let told = Told {
+            bearing: Bearing::new(pose.position_m).unwrap_or(context.sightings[group[0]].bearing),
+            distance: Distance { estimate: Some(distance), bounds, perpendicular_m, inline_m },
+            position: Some(Position {
+                mean_m: pose.position_m * (within_m / length_m),
+                covariance_m2: position_covariance_m2,
+            }),
+            orientation: Some(Orientation {
+                camera_from_body: pose.camera_from_body,
+                covariance_rad2: orientation_covariance_rad2,
+            }),
+            misfit: *misfit,
+            worst_sigma: *worst_sigma,
+            log_density: log_evidence + log_neighbours(group.len()) + power_agreement(context, group, *log_power),
+        };
+        candidates.push(group, markers, modes, told);
     }
+}
+
+/// Logarithm of how many neighbours there are per sr, and per unit of the logarithm of distance where spot size does not tell it.
+fn log_neighbours(spots: usize) -> f64 {
+    let range = if spots == 1 { 1.0 } else { LOG_RANGE };
+    libm::log(NEIGHBOURS_PER_SR / range)
+}
+
+/// What it is worth that the light of a group that tells the power of its own LEDs is that of the frame's others, as a logarithm.
+fn power_agreement(context: &Context<'_>, group: &[usize], log_power: Option<f64>) -> f64 {
+    let (Some(known), Some(own)) = (context.power.filter(|_| group.len() >= CLEAR_SPOTS), log_power) else { return 0.0 };
+    let off = (own - known.value) / known.sigma;
+    let log_density = -0.5 * off * off - 0.5 * libm::log(TAU * known.sigma * known.sigma);
+    log_density.max(-MOST_POWER_NATS) + libm::log(POWER_RANGE)
 }
 
 /// What the camera's calibration leaves of a neighbour's position, m^2, and the part of it along the line of sight.
@@ -229,16 +227,17 @@ fn visible(settings: &spots::Settings) -> Visible<'static> {
     };
     let faintest_light = FAINTEST_PX * step;
     let certain = CERTAIN_PX * settings.shape.faint_dn / faintest_light;
-    Visible { faintest_light, outshone, certain, watched: None }
+    Visible { faintest_light, outshone, certain, watched: None, others: &[] }
 }
 
-fn observe(sighting: &Sighting) -> Observation {
+fn observe(sighting: &Sighting, clutter_log_density: f64) -> Observation {
     Observation {
         bearing: sighting.bearing,
         covariance_rad2: sighting.spot_covariance_rad2,
         log_light: sighting.log_light,
         resolution_rad: RESOLUTION_PX * sighting.rad_per_px,
         signal: sighting.signal,
+        clutter_log_density,
     }
 }
 

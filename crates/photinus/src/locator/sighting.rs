@@ -1,9 +1,37 @@
 //! A spot -> where it lies: bearing, covariance, bound, and the distances its size allows.
 
-use super::Sighting;
-use crate::camera::{Camera, largest_rad_per_px};
-use crate::ranging::SpotCurve;
+use nalgebra::Matrix3;
+
+use crate::camera::{Bearing, Camera, largest_rad_per_px};
+use crate::pose::LogLight;
+use crate::ranging::{Interval, SpotCurve};
 use crate::spots::Spot;
+
+/// A spot and where it lies.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sighting {
+    /// The spot.
+    pub spot: Spot,
+    /// Which of the airframe's signals it was seen to blink, where that is known.
+    pub signal: Option<u32>,
+    /// Its light, in units that are the same all over the frame, with what a saturated core hides put back; `None` where none
+    /// was measured.
+    pub log_light: Option<LogLight>,
+    /// Its direction in the camera frame.
+    pub bearing: Bearing,
+    /// Covariance of the direction, rad^2, tangent to the sphere (rank 2): from the spot and, where the camera's file says
+    /// how sure it is, from the calibration.
+    pub covariance_rad2: Matrix3<f64>,
+    /// The part of it that comes from the spot, and differs from spot to spot.
+    pub spot_covariance_rad2: Matrix3<f64>,
+    /// How far the direction turns per pixel there, where it turns most, rad/px.
+    pub rad_per_px: f64,
+    /// The marker's true direction is no further from the bearing, rad: its light falls within the box of pixels that its
+    /// spot spans. The camera's calibration is taken as exact.
+    pub bound_rad: f64,
+    /// Distances at which a spot of this size is possible, where the curve of spot sizes is known.
+    pub range: Option<Interval>,
+}
 
 /// How much the scale of the image may grow across half a spot: what a bound is widened by.
 const SCALE_CHANGE: f64 = 1.05;

@@ -1,5 +1,6 @@
-//! What a pose costs, and how the cost changes: the negative logarithm of the posterior density of one assignment of spots
-//! to markers, with the normal equations of its Gauss-Newton step.
+//! What a pose costs, and how the cost changes: the negative logarithm of the density of the spots and the attitude under one assignment of
+//! spots to markers, with the normal equations of its Gauss-Newton step. Densities are per steradian for a direction and per unit of its logarithm
+//! for light, all factors kept: costs of groups of different spots compare with each other, and with clutter.
 //!
 //! Terms, each with unit variance when the pose is true:
 //!
@@ -11,12 +12,14 @@
 //! size      (ln distance - mean) / sigma                                  one, where nothing else tells distance
 //! ```
 
+use core::f64::consts::TAU;
+
 use nalgebra::{Matrix3, Vector6};
 
 use super::known::LogDistance;
 use super::light::Light;
 use super::melting::LightCentre;
-use super::observation::Whitened;
+use super::observation::{Observation, Whitened};
 use super::problem::{Normal, Pose, Problem};
 
 /// Beyond so many sigma the pull of a bearing no longer grows.
@@ -26,17 +29,16 @@ const ELEVATION_SIGMA: f64 = 0.6;
 /// Without gravity: how far a neighbour is from upright in the image, the sine's sigma. It keeps what nothing tells from
 /// being anything.
 const IMAGE_TILT_SIGMA: f64 = 1.0;
-/// What it costs, nats, that a spot among an airframe's own is none of its markers: a spot that is one is likelier by its
-/// sigma of a third of a milliradian against the few hundredths of a radian around the others, and strangers are rare.
-const STRANGER_NATS: f64 = 14.0;
-/// The same as a density over directions, for groups of different size.
-pub(crate) const STRANGER_LOG_DENSITY: f64 = 2.0;
+/// Logarithm of the mean over all directions of what [`ELEVATION_SIGMA`] leaves of them: sqrt(pi / 2) sigma erf(1 / (sqrt(2) sigma)).
+const LOG_ELEVATION_SHARE: f64 = -0.384;
 
 impl Problem<'_> {
     /// Cost and normal equations at a pose.
     pub(super) fn normal(&self, pose: &Pose) -> Normal {
         let mut normal = Normal::zero();
-        normal.nats = STRANGER_NATS * self.markers.iter().filter(|marker| marker.is_none()).count() as f64;
+        let is_clutter = |(_, marker): &(&Observation, &Option<u16>)| marker.is_none();
+        let clutter = self.observations.iter().zip(self.markers).filter(is_clutter);
+        normal.nats = clutter.map(|(seen, _)| -seen.clutter_log_density).sum();
         self.add_bearings(pose, &mut normal);
         if self.settings.use_brightness {
             let light = Light::of(self, pose);
@@ -49,6 +51,7 @@ impl Problem<'_> {
             let direction = pose.position_m / (distance_m * sigma);
             let row = Vector6::new(direction.x, direction.y, direction.z, 0.0, 0.0, 0.0);
             normal.add((libm::log(distance_m) - mean) / sigma, &row);
+            normal.nats += 0.5 * libm::log(TAU * sigma * sigma);
         }
         normal.finish();
         normal
@@ -71,7 +74,8 @@ impl Problem<'_> {
             let place_m = camera_from_body * at_m + pose.position_m;
             let range_m = place_m.norm();
             let seen = place_m / range_m;
-            let Whitened { direction, map, .. } = &self.whitened[spot];
+            let Whitened { direction, map, log_sigmas } = &self.whitened[spot];
+            normal.nats += log_sigmas + libm::log(TAU);
             if factor < 1.0 {
                 normal.nats -= 2.0 * libm::log(factor);
             }
@@ -110,6 +114,7 @@ impl Problem<'_> {
             // Upside down: as far from level as can be, whatever the horizontal part says.
             normal.nats += 0.5 / (sigma * sigma);
         }
+        normal.nats += libm::log(TAU * sigma * sigma);
         // d(exp(-omega) up) = up x omega.
         let by_turn = up.cross_matrix() / sigma;
         for axis in 0..2 {
@@ -128,5 +133,6 @@ impl Problem<'_> {
             (Matrix3::identity() - away * away.transpose()).row(2) * body_from_camera / ELEVATION_SIGMA;
         let row = Vector6::new(by_step[0], by_step[1], by_step[2], by_turn[0], by_turn[1], by_turn[2]);
         normal.add(away.z / ELEVATION_SIGMA, &row);
+        normal.nats += LOG_ELEVATION_SHARE;
     }
 }

@@ -1,9 +1,12 @@
 //! Observations and hypotheses of one neighbour -> its posterior.
 
+use core::f64::consts::TAU;
+
 use super::along_yaw;
 use super::assignment::Assignment;
 use super::hypotheses::Hypotheses;
 use super::known::Known;
+use super::misfit::Misfit;
 use super::mixture::{self, Component, Mode, Summary};
 use super::observation::{Observation, Whitened};
 use super::problem::{Pose, Problem};
@@ -24,12 +27,18 @@ pub struct Posterior {
     pub summary: Option<Summary>,
     /// The modes, the heaviest first.
     pub modes: Vec<Mode>,
-    /// Logarithm of the probability density of the observations, up to a constant per spot.
+    /// Logarithm of the density of the observations, given that a neighbour is in this direction and at this distance: per sr of each spot and per
+    /// unit of the logarithm of its light, times 1 sr and 1 unit of the logarithm of the neighbour's distance. With how many neighbours a sr and a unit
+    /// hold it compares with the density of the same spots as clutter.
     pub log_evidence: f64,
     /// The markers that the spots are in the best hypothesis.
     pub markers: Vec<Option<u16>>,
     /// Largest misfit in the best mode, in sigma: of a spot, or of the bounds on distance.
     pub worst_sigma: f64,
+    /// The misfit of the best mode.
+    pub misfit: Misfit,
+    /// Logarithm of the light of an LED of intensity 1 at 1 m in the best mode, where a spot has a light.
+    pub log_power: Option<f64>,
 }
 
 /// Estimates poses of one kind of airframe. Keeps its room, so that a warm one allocates nothing.
@@ -119,6 +128,8 @@ impl Estimator {
                 .assigned(hypotheses.markers(index), &mode.pose);
             if index == best {
                 let misfit = |(spot, marker)| problem.misfit(&mode.pose, spot, marker);
+                self.posterior.misfit = problem.misfit_of_all(&mode.pose);
+                self.posterior.log_power = mode.normal.log_power;
                 self.posterior.worst_sigma = problem.used().map(misfit).fold(0.0, f64::max).sqrt();
             }
             let first = self.components.len();
@@ -190,11 +201,12 @@ impl Estimator {
     }
 
     fn tell(&mut self, observations: &[Observation], known: &Known<'_>) {
-        let Self { components, posterior, whitened, .. } = self;
+        let Self { components, posterior, .. } = self;
         posterior.worst_sigma = posterior.worst_sigma.max(mixture::beyond_sigmas(components, &known.bounds));
         mixture::truncate(components, &known.bounds);
-        let log_sigmas: f64 = whitened.iter().map(|seen| seen.log_sigmas).sum();
-        posterior.log_evidence = mixture::log_evidence(components) - log_sigmas;
+        // Any yaw is as likely as any other, and hypotheses are one of those that symmetry makes equal.
+        let log_yaws = libm::log(TAU / self.symmetry.turns() as f64);
+        posterior.log_evidence = mixture::log_evidence(components) - log_yaws;
         if !mixture::normalise(components) {
             return;
         }

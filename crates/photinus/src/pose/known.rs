@@ -3,7 +3,7 @@
 use nalgebra::{Unit, Vector3};
 
 use super::observation::LogLight;
-use crate::camera::Watched;
+use crate::camera::{Bearing, Watched};
 use crate::ranging::Interval;
 
 /// What is known of a neighbour besides its spots.
@@ -41,4 +41,6 @@ pub struct Visible<'a> {
     pub certain: f64,
     /// Where the camera looks; everywhere where that is `None`.
     pub watched: Option<Watched<'a>>,
+    /// Spots that are not this neighbour's, near it: a marker beside one of them may be merged with it.
+    pub others: &'a [Bearing],
 }

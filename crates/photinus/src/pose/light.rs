@@ -1,5 +1,7 @@
 //! What brightness says: two markers' ratio tells yaw.
 
+use core::f64::consts::TAU;
+
 use nalgebra::Vector6;
 
 use super::observation::LogLight;
@@ -10,6 +12,8 @@ use super::problem::{Normal, Pose, Problem};
 const INDEPENDENT: f64 = 4.0;
 /// A marker that shines with less than this towards the camera shines away.
 const DARK: f64 = 0.01;
+/// Where nothing tells the power of the LEDs it may be anything over so many units of its logarithm: a factor of 20,000.
+pub(crate) const POWER_RANGE: f64 = 10.0;
 
 /// The light of the spots in use against that of their markers.
 pub(super) struct Light {
@@ -32,9 +36,13 @@ impl Light {
             normal: Normal::zero(),
             log_sigmas: 0.0,
         };
-        if let Some(LogLight { value, sigma }) = problem.known.power {
-            light.add(1.0 / (sigma * sigma), value, &Vector6::zeros());
-        }
+        light.log_sigmas = match problem.known.power {
+            Some(LogLight { value, sigma }) => {
+                light.add(1.0 / (sigma * sigma), value, &Vector6::zeros());
+                0.5 * libm::log(TAU * sigma * sigma)
+            }
+            None => libm::log(POWER_RANGE),
+        };
         let shared = (problem.used().count() as f64 / INDEPENDENT).max(1.0);
         let camera_in_body_m = pose.camera_in_body_m();
         let camera_from_body = pose.camera_from_body.matrix();
@@ -54,7 +62,7 @@ impl Light {
             let lobe = problem.settings.lobe_sigma / shines;
             let unit = problem.settings.unit_sigma;
             let variance = (seen.sigma * seen.sigma + unit * unit + lobe * lobe) * shared;
-            light.log_sigmas += 0.5 * libm::log(variance / (unit * unit));
+            light.log_sigmas += 0.5 * libm::log(TAU * variance);
             // The camera in the body frame moves by -R' distance delta, and by c x omega.
             let by_delta = camera_from_body * by_camera * -distance_m;
             let by_omega = by_camera.cross(&camera_in_body_m);
@@ -79,10 +87,15 @@ impl Light {
         (self.weight > 0.0).then(|| self.first / self.weight)
     }
 
+    /// Squares of what is left when the power of the LEDs is solved for.
+    pub(super) fn misfit(&self) -> f64 {
+        self.log_power().map_or(0.0, |power| (self.second - self.first * power).max(0.0))
+    }
+
     /// Adds what is left when the power of the LEDs is solved for.
     pub(super) fn add_to(&self, normal: &mut Normal) {
         let Some(power) = self.log_power() else { return };
-        normal.nats += 0.5 * (self.second - self.first * power) + self.log_sigmas;
+        normal.nats += 0.5 * (self.second - self.first * power) + self.log_sigmas + 0.5 * libm::log(self.weight / TAU);
         normal.gradient += self.normal.gradient - self.slope * power;
         for column in 0..6 {
             for line in 0..=column {

@@ -24,7 +24,11 @@ const ROOM: f64 = 1.5;
 
 /// How likely two markers at a squared gap are one spot: the odds fall with the sixth power of the gap, to nothing at
 /// [`FAR`].
-fn one_spot(gap2: f64) -> f64 {
+pub(super) fn one_spot(gap2: f64) -> f64 {
+    // No resolution is no number, and far.
+    if gap2.is_nan() {
+        return 0.0;
+    }
     let even = |gap2: f64| 1.0 / (1.0 + gap2 * gap2 * gap2);
     let least = even(FAR * FAR);
     (even(gap2) - least).max(0.0) / (1.0 - least)

@@ -22,6 +22,9 @@ pub struct Observation {
     pub resolution_rad: f64,
     /// Which of the airframe's signals it was seen to blink, where that was decoded.
     pub signal: Option<u32>,
+    /// Logarithm of the density of such a spot as clutter, per sr and per unit of the logarithm of its light where that is known: what it is
+    /// worth to be no marker.
+    pub clutter_log_density: f64,
 }
 
 /// A logarithm of light, and how far its measurement can be off.
@@ -45,7 +48,7 @@ impl Observation {
 pub(super) struct Whitened {
     pub(super) direction: Vector3<f64>,
     pub(super) map: Matrix2x3<f64>,
-    /// Logarithm of the density's normaliser, up to a constant: half the logarithm of the covariance's determinant.
+    /// Half the logarithm of the covariance's determinant: the density's normaliser but for 2 pi.
     pub(super) log_sigmas: f64,
 }
 
@@ -92,7 +95,7 @@ mod tests {
         let jacobian = nalgebra::Matrix3x2::from_columns(&[across + 0.5 * along, 0.3 * along]) * 1e-3;
         let covariance_rad2 = jacobian * jacobian.transpose();
         let observation =
-            Observation { bearing, covariance_rad2, log_light: None, resolution_rad: 0.0, signal: None };
+            Observation { bearing, covariance_rad2, log_light: None, resolution_rad: 0.0, signal: None, clutter_log_density: 0.0 };
         let whitened = Whitened::of(&observation, 0.0);
         let white = whitened.map * covariance_rad2 * whitened.map.transpose();
         assert!((white - nalgebra::Matrix2::identity()).norm() < 1e-4, "{white}");

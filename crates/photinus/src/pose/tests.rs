@@ -31,6 +31,7 @@ fn observation(direction: Vector3<f64>, sigma_rad: f64, light: f64) -> Observati
         log_light: Some(LogLight { value: libm::log(light), sigma: 0.05 }),
         resolution_rad: 0.0,
         signal: None,
+        clutter_log_density: 0.0,
     }
 }
 

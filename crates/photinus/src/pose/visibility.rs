@@ -2,6 +2,7 @@
 
 use nalgebra::Vector3;
 
+use super::melting::one_spot;
 use super::problem::{Pose, Problem};
 use crate::camera::Bearing;
 
@@ -53,7 +54,7 @@ impl Problem<'_> {
                 self.melted(spot, seen, marker, &camera_m) * probability(odds(other / shines))
             };
             let melted = if self.melting { self.used().map(into).fold(0.0, f64::max) } else { 0.0 };
-            -libm::log(1.0 - found * (1.0 - melted))
+            -libm::log(1.0 - found * (1.0 - melted) * (1.0 - self.merged_with_others(pose, marker)))
         };
         (0..self.airframe.markers().len()).map(nats).sum::<f64>() + self.told_apart_nats(&camera_m)
     }
@@ -72,6 +73,19 @@ impl Problem<'_> {
                 -libm::log((1.0 - self.melted(spot, seen, other, camera_m)).max(1e-9))
             })
             .sum()
+    }
+
+    /// How likely a marker is part of a spot that is not this neighbour's.
+    fn merged_with_others(&self, pose: &Pose, marker: usize) -> f64 {
+        let others = self.known.visible.others;
+        let Some(resolution_rad) = self.observations.first().map(|seen| seen.resolution_rad).filter(|_| !others.is_empty())
+        else {
+            return 0.0;
+        };
+        let place_m = pose.camera_from_body * self.airframe.markers()[marker].position_m + pose.position_m;
+        let direction = place_m.normalize();
+        let gap2 = |other: &Bearing| (other.vector() - direction).norm_squared() / (resolution_rad * resolution_rad);
+        others.iter().map(|other| one_spot(gap2(other))).fold(0.0, f64::max)
     }
 
     fn is_watched(&self, pose: &Pose, marker: usize) -> bool {

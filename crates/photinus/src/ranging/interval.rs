@@ -28,6 +28,11 @@ impl Interval {
         (self.min_m..=self.max_m).contains(&distance_m)
     }
 
+    /// The distances from the nearest of both to the farthest.
+    pub fn hull(&self, other: &Self) -> Self {
+        Self { min_m: self.min_m.min(other.min_m), max_m: self.max_m.max(other.max_m) }
+    }
+
     /// The distances that are in both; `None` when there are none.
     pub fn intersect(&self, other: &Self) -> Option<Self> {
         Self::new(self.min_m.max(other.min_m), self.max_m.min(other.max_m))

@@ -47,6 +47,7 @@ fn observation() -> impl Strategy<Value = Observation> {
             log_light,
             resolution_rad,
             signal,
+            clutter_log_density: 0.0,
         },
     )
 }
@@ -66,7 +67,7 @@ fn known() -> impl Strategy<Value = Known<'static>> {
     let light = || prop_oneof![Just(0.0), scale(-6.0..9.0)];
     (up(), interval(), size, log_light(), light(), light(), light()).prop_map(
         |(up, bounds, size, power, faintest_light, outshone, certain)| {
-            let visible = Visible { faintest_light, outshone, certain, watched: None };
+            let visible = Visible { faintest_light, outshone, certain, watched: None, others: &[] };
             Known { up, bounds, size, power, visible }
         },
     )

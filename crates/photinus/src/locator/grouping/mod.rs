@@ -11,10 +11,12 @@
 mod partition;
 mod tree;
 
-use nalgebra::{Unit, Vector3};
+use nalgebra::Vector3;
 
 use super::Sighting;
-use super::matching::{Matcher, NEIGHBOUR_NATS};
+use super::context::Context;
+use super::matching::{LOG_POWER_SIGMA, Matcher, NEIGHBOUR_NATS};
+use crate::pose::LogLight;
 use partition::{MOST_PARTITIONED, Partition};
 use tree::Tree;
 
@@ -36,6 +38,7 @@ pub(super) struct Groups {
     partition: Partition,
     circles: Vec<Circle>,
     near: Vec<usize>,
+    nearest: Vec<(f64, usize)>,
     /// Logarithms of the light of clear neighbours.
     powers: Vec<f64>,
 }
@@ -84,56 +87,80 @@ impl GroupList {
 }
 
 impl Groups {
-    /// Finds the groups of `sightings`.
+    /// Finds the groups of a frame's observations, and what the clear ones tell of the light of its LEDs.
     pub(super) fn sort_out(
         &mut self,
-        sightings: &[Sighting],
-        gravity: Option<&Unit<Vector3<f64>>>,
+        context: &Context<'_>,
         matcher: &mut Matcher,
-    ) {
+    ) -> Option<LogLight> {
         self.list.clear();
-        if sightings.is_empty() {
-            return;
+        if context.sightings.is_empty() {
+            return None;
         }
-        self.tree.grow(sightings);
-        matcher.set_log_power(None);
-        self.cut_tree(sightings, gravity, matcher);
-        let log_power = self.log_power(sightings, gravity, matcher);
-        matcher.set_log_power(log_power);
-        if log_power.is_some() && (0..self.list.len()).any(|group| self.is_doubtful(group)) {
-            self.cut_tree(sightings, gravity, matcher);
+        self.tree.grow(context.sightings);
+        self.cut_tree(context, matcher);
+        let log_power = self.log_power(context, matcher);
+        let power = log_power.map(|value| LogLight { value, sigma: LOG_POWER_SIGMA });
+        let context = &Context { power, ..*context };
+        if power.is_some() && (0..self.list.len()).any(|group| self.is_doubtful(group)) {
+            self.cut_tree(context, matcher);
         }
-        self.part_overlapping(sightings, gravity, matcher);
+        self.part_overlapping(context, matcher);
         self.put_in_order();
+        power
     }
 
-    /// The groups, each ascending, in the order of their first member.
-    pub(super) fn iter(&self) -> impl Iterator<Item = &[usize]> {
-        (0..self.list.len()).map(|group| self.list.group(group))
+    /// How many there are.
+    pub(super) fn len(&self) -> usize {
+        self.list.len()
+    }
+
+    /// A group, ascending; groups are in the order of their first member.
+    pub(super) fn group(&self, group: usize) -> &[usize] {
+        self.list.group(group)
+    }
+
+    /// Calls `with` for the other groups with a member within `reach_rad` of the first of `group`, the nearest first.
+    pub(super) fn each_near(
+        &mut self,
+        sightings: &[Sighting],
+        group: usize,
+        reach_rad: f64,
+        mut with: impl FnMut(&[usize]),
+    ) {
+        let Self { list, nearest, .. } = self;
+        let own = sightings[list.group(group)[0]].bearing.vector();
+        let gap = |other: usize| {
+            let gap = |&spot: &usize| (sightings[spot].bearing.vector() - own).norm_squared();
+            list.group(other).iter().map(gap).fold(f64::INFINITY, f64::min)
+        };
+        nearest.clear();
+        nearest.extend((0..list.len()).filter(|&other| other != group).map(|other| (gap(other), other)));
+        nearest.retain(|&(gap, _)| gap < reach_rad * reach_rad);
+        nearest.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        nearest.iter().for_each(|&(_, other)| with(list.group(other)));
     }
 
     fn cut_tree(
         &mut self,
-        sightings: &[Sighting],
-        gravity: Option<&Unit<Vector3<f64>>>,
+        context: &Context<'_>,
         matcher: &mut Matcher,
     ) {
         self.list.clear();
-        self.tree.cost(|group| matcher.nats(sightings, group, gravity));
+        self.tree.cost(|group| matcher.nats(context, group));
         self.tree.cut(|group, nats| self.list.push(group.iter().copied(), nats));
     }
 
     /// What the clear neighbours of the frame tell of its LEDs' light: the median of their logarithms.
     fn log_power(
         &mut self,
-        sightings: &[Sighting],
-        gravity: Option<&Unit<Vector3<f64>>>,
+        context: &Context<'_>,
         matcher: &mut Matcher,
     ) -> Option<f64> {
         self.powers.clear();
         for group in 0..self.list.len() {
             if self.list.group(group).len() >= CLEAR_SPOTS && !self.is_doubtful(group) {
-                self.powers.extend(matcher.log_power(sightings, self.list.group(group), gravity));
+                self.powers.extend(matcher.log_power(context, self.list.group(group)));
             }
         }
         self.powers.sort_unstable_by(f64::total_cmp);
@@ -147,25 +174,24 @@ impl Groups {
     /// Takes groups that overlap in the image apart and puts them together anew, at the least cost.
     fn part_overlapping(
         &mut self,
-        sightings: &[Sighting],
-        gravity: Option<&Unit<Vector3<f64>>>,
+        context: &Context<'_>,
         matcher: &mut Matcher,
     ) {
         if matcher.most_visible() > LARGEST_ORDERED {
             return;
         }
         let (mut rounds, mut first) = (0, 0);
-        self.measure_circles(sightings, matcher);
+        self.measure_circles(context.sightings, matcher);
         while first < self.list.len() && rounds < MOST_ROUNDS {
             self.gather_around(first);
             let mut parted = false;
             if self.partition.groups() > 1 {
                 rounds += 1;
-                parted = self.partition.improve(|group| matcher.nats(sightings, group, gravity));
+                parted = self.partition.improve(|group| matcher.nats(context, group));
             }
             if parted {
                 self.replace_partitioned();
-                self.measure_circles(sightings, matcher);
+                self.measure_circles(context.sightings, matcher);
                 first = 0;
             } else {
                 first += 1;

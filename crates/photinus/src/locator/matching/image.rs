@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Rotation3, Unit, Vector2, Vector3};
 
-use crate::locator::Sighting;
+use crate::locator::context::Context;
 use crate::locator::views::{Outline, firmness, view_axes};
 use crate::pose::Pose;
 
@@ -26,11 +26,11 @@ pub(super) struct Image<'a> {
 
 impl<'a> Image<'a> {
     pub(super) fn of(
-        sightings: &[Sighting],
+        context: &Context<'_>,
         group: &[usize],
-        gravity: Option<&Unit<Vector3<f64>>>,
         places: &'a mut Vec<Vector2<f64>>,
     ) -> Option<Self> {
+        let Context { sightings, gravity, .. } = *context;
         let members = || group.iter().map(|&index| &sightings[index]);
         let sum: Vector3<f64> = members().map(|sighting| sighting.bearing.vector()).sum();
         let ahead = Unit::try_new(sum, 1e-6)?;

@@ -10,13 +10,17 @@ mod outlined;
 mod size;
 mod triples;
 
-use nalgebra::{Unit, Vector2, Vector3};
+use core::f64::consts::TAU;
+
+use nalgebra::Vector2;
 
 use super::Sighting;
+use super::context::Context;
+use super::posing::{LOG_RANGE, NEIGHBOURS_PER_SR};
 use super::views::{Arrangement, ELEVATION_STEP_RAD, Spread, UNSEEN_NATS, Views};
 use crate::airframe::Airframe;
 use crate::lanes::{self, LANES, Lanes};
-use crate::pose::{Hypotheses, LogDistance, LogLight, Pose, Symmetry};
+use crate::pose::{POWER_RANGE, Hypotheses, LogDistance, LogLight, Pose, Symmetry};
 use crate::ranging::{BoundedBearing, DistanceBounds, Interval};
 use image::Image;
 use ordered::Ordered;
@@ -30,11 +34,13 @@ pub(super) const NEIGHBOUR_NATS: f64 = 8.0;
 /// they cost as coarse.
 const POOR_NATS: f32 = 9.0;
 /// Spread of the logarithm of light between neighbours: lobes, units, the lens towards its edge.
-const LOG_POWER_SIGMA: f64 = 0.35;
+pub(super) const LOG_POWER_SIGMA: f64 = 0.35;
 /// Light alone does not rule a neighbour out.
 const MOST_POWER_NATS: f64 = 30.0;
 /// An outline that costs so much, nats, may be that of a neighbour that is not seen whole.
 const POOR_OUTLINE_NATS: f64 = 6.0;
+/// A lone spot's other markers are not seen for so much, nats, by a first look.
+const LONE_NATS: f64 = 2.0;
 /// So many spots have closed forms.
 const FEWEST_IN_PART: usize = 3;
 /// What cannot be, nats.
@@ -48,7 +54,6 @@ pub(super) struct Matcher {
     bounds: DistanceBounds,
     symmetry: Symmetry,
     tilt_sigma_rad: f64,
-    log_power: Option<f64>,
     bearings: Vec<BoundedBearing>,
     places: Vec<Vector2<f64>>,
     costs: Vec<Lanes>,
@@ -65,7 +70,6 @@ impl Matcher {
             bounds: DistanceBounds::new(airframe, max_tilt_rad),
             // The tilt limit is taken for two sigma; the grid of views adds half a step.
             tilt_sigma_rad: libm::hypot(max_tilt_rad / 2.0, grid_rad),
-            log_power: None,
             bearings: Vec::new(),
             places: Vec::new(),
             costs: Vec::new(),
@@ -94,10 +98,10 @@ impl Matcher {
     /// The distances that angles and sizes of these spots allow, strictly; `None` when they cannot be one neighbour.
     pub(super) fn bounds(
         &mut self,
-        sightings: &[Sighting],
+        context: &Context<'_>,
         group: &[usize],
-        gravity: Option<&Unit<Vector3<f64>>>,
     ) -> Option<Interval> {
+        let Context { sightings, gravity, .. } = *context;
         self.bearings.clear();
         let bounded = |&index: &usize| {
             let Sighting { bearing, bound_rad, .. } = sightings[index];
@@ -123,57 +127,39 @@ impl Matcher {
         LogDistance { mean: libm::log(mean_m), sigma: (square_m2 / (mean_m * mean_m) - 1.0).max(1e-6).sqrt() }
     }
 
-    /// Sets what is known of the light of this frame's LEDs: the logarithm of that of one straight ahead at 1 m.
-    pub(super) fn set_log_power(&mut self, log_power: Option<f64>) {
-        self.log_power = log_power;
-    }
-
-    /// What is known of the light of this frame's LEDs, as a logarithm with its spread.
-    pub(super) fn known_power(&self) -> Option<LogLight> {
-        self.log_power.map(|value| LogLight { value, sigma: LOG_POWER_SIGMA })
-    }
-
     /// The light that an LED of a group would have straight ahead at 1 m if it is the neighbour it looks like, as a logarithm.
     pub(super) fn log_power(
         &mut self,
-        sightings: &[Sighting],
+        context: &Context<'_>,
         group: &[usize],
-        gravity: Option<&Unit<Vector3<f64>>>,
     ) -> Option<f64> {
-        let image = Image::of(sightings, group, gravity, &mut self.places)?;
+        let sightings = context.sightings;
+        let image = Image::of(context, group, &mut self.places)?;
         let arrangements = self.views.arrangements(group.len())?;
         let seen = Ordered::of(&image, sightings, group);
         let best = seen.costs(&arrangements.quads, &image, self.tilt_sigma_rad, &mut self.costs);
         Likeness::of(&seen, &image, &arrangements.all[best.arrangement]).log_power(sightings, group)
     }
 
-    /// What it costs that spots of this light are so far away, nats.
-    fn power_nats(&self, sightings: &[Sighting], group: &[usize], likeness: &Likeness) -> f64 {
-        let own = likeness.log_power(sightings, group);
-        let Some((known, own)) = self.log_power.zip(own) else { return 0.0 };
-        let off = own - known;
-        (0.5 * (off / LOG_POWER_SIGMA) * (off / LOG_POWER_SIGMA)).min(MOST_POWER_NATS)
-    }
-
     /// What the claim costs that these spots, at least one, are one neighbour, nats.
     pub(super) fn nats(
         &mut self,
-        sightings: &[Sighting],
+        context: &Context<'_>,
         group: &[usize],
-        gravity: Option<&Unit<Vector3<f64>>>,
     ) -> f64 {
         if group.len() == 1 {
             return NEIGHBOUR_NATS + self.views.lone_nats;
         }
-        if group.len() > self.views.most_visible || self.bounds(sightings, group, gravity).is_none() {
+        if group.len() > self.views.most_visible || self.bounds(context, group).is_none() {
             return IMPOSSIBLE;
         }
-        let Some(image) = Image::of(sightings, group, gravity, &mut self.places) else { return IMPOSSIBLE };
+        let sightings = context.sightings;
+        let Some(image) = Image::of(context, group, &mut self.places) else { return IMPOSSIBLE };
         let Some(arrangements) = self.views.arrangements(group.len()) else {
             let whole = outlined_nats(&self.views, &image, self.tilt_sigma_rad);
             let part = match whole {
                 Some((nats, _)) if nats < POOR_OUTLINE_NATS => None,
-                _ => self.partly_seen_nats(sightings, group, gravity),
+                _ => self.partly_seen_nats(context, group),
             };
             let cheapest = whole.into_iter().chain(part).min_by(|a, b| a.0.total_cmp(&b.0));
             return cheapest.map_or(IMPOSSIBLE, |(nats, distance_m)| {
@@ -191,22 +177,55 @@ impl Matcher {
         NEIGHBOUR_NATS
             + views
             + size_nats(sightings, group, likeness.distance_m)
-            + self.power_nats(sightings, group, &likeness)
+            + power_nats(context, group, &likeness)
+    }
+
+    /// A first look at how likely a handful is one neighbour: the logarithm of its density, as [`crate::pose::Posterior::log_evidence`] has it but from the
+    /// grid of views, with how many neighbours there are; `None` where it cannot be one, or too many show to be put in order.
+    ///
+    /// Of the places of k spots four numbers are the neighbour's own (two of direction, distance and turn); the others are off the grid by its error.
+    pub(super) fn log_density(&mut self, context: &Context<'_>, group: &[usize]) -> Option<f64> {
+        let neighbours = libm::log(NEIGHBOURS_PER_SR / LOG_RANGE);
+        if group.len() == 1 {
+            return Some(libm::log(NEIGHBOURS_PER_SR) - libm::log(POWER_RANGE) - LONE_NATS);
+        }
+        if group.len() > self.views.most_visible || self.bounds(context, group).is_none() {
+            return None;
+        }
+        let sightings = context.sightings;
+        let image = Image::of(context, group, &mut self.places)?;
+        let arrangements = self.views.arrangements(group.len())?;
+        let seen = Ordered::of(&image, sightings, group);
+        let best = seen.costs(&arrangements.quads, &image, self.tilt_sigma_rad, &mut self.costs);
+        let weight = self
+            .costs
+            .iter()
+            .fold(Lanes::ZERO, |sum, &four| sum + lanes::exp(Lanes::splat(best.nats) - four));
+        let views = f64::from(best.nats) - libm::log(f64::from(lanes::sum(weight)));
+        let likeness = Likeness::of(&seen, &image, &arrangements.all[best.arrangement]);
+        let turn_sigma_rad = if context.gravity.is_some() { self.tilt_sigma_rad } else { TAU.sqrt() };
+        let count = group.len() as f64;
+        let places = -(count - 2.0) * libm::log(TAU * seen.variance(&image))
+            - libm::log(count)
+            - 2.0 * libm::log(image.size)
+            - 0.5 * libm::log(TAU * turn_sigma_rad * turn_sigma_rad);
+        let lit = group.iter().filter(|&&spot| sightings[spot].log_light.is_some()).count();
+        let light = if lit == 0 { 0.0 } else { -(lit as f64 - 1.0) * seen.log_light_width() - libm::log(POWER_RANGE) };
+        Some(neighbours + places + light - views - power_nats(context, group, &likeness) - size_nats(sightings, group, likeness.distance_m))
     }
 
     /// What it costs that a group is some of the markers of a view, nats, and the distance at which it fits best, m.
     fn partly_seen_nats(
         &self,
-        sightings: &[Sighting],
+        context: &Context<'_>,
         group: &[usize],
-        gravity: Option<&Unit<Vector3<f64>>>,
     ) -> Option<(f64, f64)> {
         if !self.may_be_a_part(group) {
             return None;
         }
         let missing = self.views.most_visible - group.len();
         let mut best: Option<(f64, f64)> = None;
-        self.triples.each_start(sightings, group, gravity, self.tilt_sigma_rad, |start| {
+        self.triples.each_start(context, group, self.tilt_sigma_rad, |start| {
             if best.is_none_or(|(nats, _)| start.nats < nats) {
                 best = Some((start.nats, start.pose.position_m.norm()));
             }
@@ -222,13 +241,13 @@ impl Matcher {
     /// Which markers the spots of a group of at least two may be.
     pub(super) fn hypotheses(
         &mut self,
-        sightings: &[Sighting],
+        context: &Context<'_>,
         group: &[usize],
-        gravity: Option<&Unit<Vector3<f64>>>,
         hypotheses: &mut Hypotheses,
     ) {
+        let Context { sightings, gravity, .. } = *context;
         hypotheses.begin(group.len());
-        let Some(image) = Image::of(sightings, group, gravity, &mut self.places) else { return };
+        let Some(image) = Image::of(context, group, &mut self.places) else { return };
         let Some(arrangements) = self.views.arrangements(group.len()) else {
             let spread = Spread::of(image.places.iter().copied());
             for outline in &self.views.outlines {
@@ -242,7 +261,7 @@ impl Matcher {
                 }
             }
             if self.may_be_a_part(group) {
-                self.triples.each_start(sightings, group, gravity, self.tilt_sigma_rad, |start| {
+                self.triples.each_start(context, group, self.tilt_sigma_rad, |start| {
                     hypotheses.offer_loose(start.pose, start.nats);
                 });
             }
@@ -299,6 +318,14 @@ fn outlined_nats(views: &Views, image: &Image<'_>, tilt_sigma_rad: f64) -> Optio
     let best = fits().min_by(|a, b| a.nats.total_cmp(&b.nats))?;
     let weight: f64 = fits().map(|fit| libm::exp(best.nats - fit.nats)).sum();
     Some((best.nats - libm::log(weight), best.place_m.norm()))
+}
+
+/// What it costs that spots of this light are so far away, nats.
+fn power_nats(context: &Context<'_>, group: &[usize], likeness: &Likeness) -> f64 {
+    let own = likeness.log_power(context.sightings, group);
+    let Some((LogLight { value, sigma }, own)) = context.power.zip(own) else { return 0.0 };
+    let off = (own - value) / sigma;
+    (0.5 * off * off).min(MOST_POWER_NATS)
 }
 
 fn widened(range: &Interval, reach_m: f64) -> Option<Interval> {

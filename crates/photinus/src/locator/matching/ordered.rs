@@ -91,6 +91,17 @@ impl Ordered {
         Best { nats, arrangement: of_best.unwrap_or(0) }
     }
 
+    /// Variance of a place per axis, in the image, with the error of the grid of views.
+    pub(super) fn variance(&self, image: &Image<'_>) -> f64 {
+        let sigma = self.shape_sigma * image.size;
+        sigma * sigma
+    }
+
+    /// Logarithm of the width of the distribution of a light against the others': of its standard deviation times sqrt(2 pi).
+    pub(super) fn log_light_width(&self) -> f64 {
+        libm::log(self.log_flux_sigma) + 0.5 * libm::log(core::f64::consts::TAU)
+    }
+
     /// The place of the airframe if the spots are these markers, each as much larger in the image as it is nearer, and the
     /// turn of the image (cosine, sine) against the view.
     pub(super) fn place(&self, arrangement: &Arrangement, image: &Image<'_>) -> (Vector3<f64>, Vector2<f64>) {

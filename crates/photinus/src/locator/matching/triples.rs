@@ -8,6 +8,7 @@ use nalgebra::{Unit, Vector3};
 
 use crate::airframe::Airframe;
 use crate::locator::Sighting;
+use crate::locator::context::Context;
 use crate::pose::{Pose, Symmetry, p3p_with_near_misses};
 
 /// Most choices of three markers in an order: the time of a group is bounded.
@@ -55,12 +56,12 @@ impl Triples {
     /// camera.
     pub(super) fn each_start(
         &self,
-        sightings: &[Sighting],
+        context: &Context<'_>,
         group: &[usize],
-        gravity: Option<&Unit<Vector3<f64>>>,
         tilt_sigma_rad: f64,
         mut with: impl FnMut(Start),
     ) {
+        let Context { sightings, gravity, .. } = *context;
         let corners = corners(sightings, group);
         let bearings = corners.map(|spot| *sightings[spot].bearing.vector());
         for choice in &self.choices {

@@ -1,0 +1,124 @@
+//! Groups of observations that may be a neighbour, each with its pose and how well it explains them: kept until the frame is explained as a whole.
+
+use super::neighbour::{Distance, Orientation, Position};
+use crate::camera::Bearing;
+use crate::pose::{Misfit, Mode};
+
+/// A candidate is clear that is likelier than clutter by so much, nats, ...
+const CLEAR_GAIN: f64 = 12.0;
+/// ... whose misfit is no more than this, in sigma of any one observation, and no rarer than that as a whole.
+const CLEAR_SIGMAS: f64 = 5.0;
+const CLEAR_P_VALUE: f64 = 1e-4;
+
+/// Observations that may be one neighbour, and what it then is.
+#[derive(Clone, Debug)]
+pub(super) struct Candidate {
+    pub(super) bearing: Bearing,
+    pub(super) distance: Distance,
+    pub(super) position: Option<Position>,
+    pub(super) orientation: Option<Orientation>,
+    pub(super) misfit: Misfit,
+    /// Largest misfit, in sigma.
+    pub(super) worst_sigma: f64,
+    /// Logarithm of the density of its observations as this neighbour, with how many neighbours there are: per sr and per unit of the logarithm
+    /// of light each.
+    pub(super) log_density: f64,
+    first_member: usize,
+    members: usize,
+    first_mode: usize,
+    modes: usize,
+}
+
+/// What is told of a candidate besides which observations it is of.
+pub(super) struct Told {
+    pub(super) bearing: Bearing,
+    pub(super) distance: Distance,
+    pub(super) position: Option<Position>,
+    pub(super) orientation: Option<Orientation>,
+    pub(super) misfit: Misfit,
+    pub(super) worst_sigma: f64,
+    pub(super) log_density: f64,
+}
+
+/// The candidates of a frame.
+#[derive(Debug, Default)]
+pub(super) struct Candidates {
+    all: Vec<Candidate>,
+    members: Vec<usize>,
+    markers: Vec<Option<u16>>,
+    modes: Vec<Mode>,
+}
+
+impl Candidates {
+    pub(super) fn clear(&mut self) {
+        self.all.clear();
+        self.members.clear();
+        self.markers.clear();
+        self.modes.clear();
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.all.len()
+    }
+
+    pub(super) fn get(&self, index: usize) -> &Candidate {
+        &self.all[index]
+    }
+
+    /// Its observations, ascending.
+    pub(super) fn members(&self, index: usize) -> &[usize] {
+        let Candidate { first_member, members, .. } = self.all[index];
+        &self.members[first_member..first_member + members]
+    }
+
+    /// Which marker each of its observations is in the best mode.
+    pub(super) fn markers(&self, index: usize) -> &[Option<u16>] {
+        let Candidate { first_member, members, .. } = self.all[index];
+        &self.markers[first_member..first_member + members]
+    }
+
+    /// The ways in which its observations can be the airframe, the likeliest first.
+    pub(super) fn modes(&self, index: usize) -> &[Mode] {
+        let Candidate { first_mode, modes, .. } = self.all[index];
+        &self.modes[first_mode..first_mode + modes]
+    }
+
+    /// The candidate of just these observations, ascending.
+    pub(super) fn find(&self, group: &[usize]) -> Option<usize> {
+        (0..self.all.len()).find(|&index| self.members(index) == group)
+    }
+
+    /// Whether these observations may be something else than one neighbour, for all that is known.
+    pub(super) fn is_doubtful(&self, group: &[usize], clutter_log_density: &[f64]) -> bool {
+        let Some(index) = self.find(group) else { return true };
+        let Candidate { log_density, misfit, worst_sigma, .. } = &self.all[index];
+        let clutter: f64 = group.iter().map(|&spot| clutter_log_density[spot]).sum();
+        let is_clear = group.len() > 1
+            && log_density - clutter > CLEAR_GAIN
+            && *worst_sigma < CLEAR_SIGMAS
+            && misfit.p_value() > CLEAR_P_VALUE;
+        !is_clear
+    }
+
+    /// Adds a candidate.
+    pub(super) fn push(&mut self, group: &[usize], markers: &[Option<u16>], modes: &[Mode], told: Told) {
+        let Told { bearing, distance, position, orientation, misfit, worst_sigma, log_density } = told;
+        self.all.push(Candidate {
+            bearing,
+            distance,
+            position,
+            orientation,
+            misfit,
+            worst_sigma,
+            log_density,
+            first_member: self.members.len(),
+            members: group.len(),
+            first_mode: self.modes.len(),
+            modes: modes.len(),
+        });
+        self.members.extend_from_slice(group);
+        self.markers.extend_from_slice(markers);
+        self.markers.resize(self.members.len(), None);
+        self.modes.extend_from_slice(modes);
+    }
+}

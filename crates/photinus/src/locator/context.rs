@@ -1,0 +1,21 @@
+//! What a frame tells before anybody is looked for: handed down, never changed in passing.
+
+use nalgebra::{Unit, Vector3};
+
+use super::Sighting;
+use crate::camera::Watched;
+use crate::pose::LogLight;
+
+/// A frame's observations, and what bears on all of them.
+#[derive(Clone, Copy)]
+pub(super) struct Context<'a> {
+    pub(super) sightings: &'a [Sighting],
+    /// Down in the camera frame, where it is known.
+    pub(super) gravity: Option<&'a Unit<Vector3<f64>>>,
+    /// Where the camera looks.
+    pub(super) watched: Watched<'a>,
+    /// Light of an LED straight ahead at 1 m, where the frame tells it.
+    pub(super) power: Option<LogLight>,
+    /// Logarithm of the density of each observation as clutter, per sr and per unit of the logarithm of its light.
+    pub(super) clutter: &'a [f64],
+}

@@ -1,0 +1,101 @@
+//! What is told of a frame: its observations, and its neighbours with their evidence.
+
+use nalgebra::{Matrix3, Rotation3, Vector3};
+
+use super::Sighting;
+use crate::camera::Bearing;
+use crate::pose::{Misfit, Mode};
+use crate::ranging::{Estimate, Interval};
+use crate::spots::Rejected;
+
+/// How far away a neighbour is: from the camera's centre to the airframe's origin.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Distance {
+    /// Mean and standard deviation of the posterior; `None` only where no pose explains the spots.
+    pub estimate: Option<Estimate>,
+    /// Truth never leaves these, see [`crate::ranging::DistanceBounds`]; the far end may be infinite.
+    pub bounds: Interval,
+    /// The paper's l_A of the widest pair of neighbouring markers, m; only for rings.
+    pub perpendicular_m: Option<f64>,
+    /// The paper's l_B of the same pair, m.
+    pub inline_m: Option<f64>,
+}
+
+/// Where a neighbour is, in the camera frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Position {
+    /// Mean, m.
+    pub mean_m: Vector3<f64>,
+    /// Covariance, m^2.
+    pub covariance_m2: Matrix3<f64>,
+}
+
+/// How a neighbour is turned.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Orientation {
+    /// Maps the body's coordinates to the camera's. Yaw is one of those that the airframe's symmetry makes equal; where
+    /// signals of spots are known, one of those that they do not tell apart.
+    pub camera_from_body: Rotation3<f64>,
+    /// Covariance as a small rotation in the body frame (its third axis is yaw), rad^2.
+    pub covariance_rad2: Matrix3<f64>,
+}
+
+/// The likeliest other explanation of a neighbour's observations.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RunnerUp {
+    /// How likely it is.
+    pub probability: f64,
+    /// Distance of the neighbour that it then is, m; `None` where the observations are clutter.
+    pub distance_m: Option<f64>,
+}
+
+/// Another robot.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Neighbour {
+    /// Direction of the airframe's origin in the camera frame.
+    pub bearing: Bearing,
+    /// How far away.
+    pub distance: Distance,
+    /// Where, over all modes.
+    pub position: Option<Position>,
+    /// How turned, over all modes.
+    pub orientation: Option<Orientation>,
+    /// How likely it is there at all.
+    pub probability: f64,
+    /// How well its best mode fits.
+    pub misfit: Misfit,
+    /// What its observations may be otherwise.
+    pub runner_up: RunnerUp,
+    pub(super) first_member: usize,
+    pub(super) members: usize,
+    pub(super) first_mode: usize,
+    pub(super) modes: usize,
+}
+
+/// What one frame told.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Located {
+    /// Spots with their bearings.
+    pub sightings: Vec<Sighting>,
+    /// What is bright and no marker.
+    pub rejected: Vec<Rejected>,
+    /// Who is there, in the order of their first sighting.
+    pub neighbours: Vec<Neighbour>,
+    pub(super) members: Vec<usize>,
+    pub(super) modes: Vec<Mode>,
+}
+
+impl Located {
+    /// Which sightings are this neighbour, ascending.
+    pub fn members(&self, neighbour: &Neighbour) -> &[usize] {
+        self.members
+            .get(neighbour.first_member..)
+            .and_then(|rest| rest.get(..neighbour.members))
+            .unwrap_or(&[])
+    }
+
+    /// The ways in which this neighbour's spots can be its airframe, the likeliest first.
+    pub fn modes(&self, neighbour: &Neighbour) -> &[Mode] {
+        self.modes.get(neighbour.first_mode..).and_then(|rest| rest.get(..neighbour.modes)).unwrap_or(&[])
+    }
+}

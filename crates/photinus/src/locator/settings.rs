@@ -1,0 +1,30 @@
+//! What a user may choose about locating: effect, unit and default of each.
+
+use crate::pose;
+use crate::ranging::DistanceBounds;
+use crate::spots;
+
+/// What a user may choose about locating.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings {
+    /// What is a spot.
+    pub spots: spots::Settings,
+    /// Largest tilt of a neighbour against the vertical that the bounds allow for, rad. Default 15 deg. Only with gravity
+    /// does it say anything: without, any attitude is allowed.
+    pub max_tilt_rad: f64,
+    /// What is believed of a neighbour's pose beforehand.
+    pub pose: pose::Settings,
+    /// Neighbours less likely than this are not told, 0 to 1. Default 0.5.
+    pub min_probability: f64,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            spots: spots::Settings::default(),
+            max_tilt_rad: DistanceBounds::DEFAULT_MAX_TILT_RAD,
+            pose: pose::Settings::default(),
+            min_probability: 0.5,
+        }
+    }
+}

@@ -1,0 +1,153 @@
+//! Candidates with their probabilities -> the neighbours of a frame.
+//!
+//! The likeliest candidates that share no observation are neighbours. Others of the same observations that are at the same place are the same
+//! neighbour, seen by more or fewer of its markers: they add to its probability, widen its covariance and stand among its modes. Those at another
+//! place are what it may be otherwise.
+
+use nalgebra::Matrix3;
+
+use super::candidates::Candidates;
+use super::explanation::Explanation;
+use super::neighbour::{Located, Neighbour, Position, RunnerUp};
+use crate::pose::Mode;
+use crate::ranging::{Estimate, Interval};
+
+/// Candidates of one observation that are apart by more than this, in sigma, are different neighbours.
+const SAME_SIGMAS: f64 = 5.0;
+/// What is less likely than this takes no part.
+const NEGLIGIBLE: f64 = 1e-3;
+
+/// Room to tell neighbours in.
+#[derive(Debug, Default)]
+pub(super) struct Telling {
+    order: Vec<usize>,
+    taken: Vec<bool>,
+    /// Candidates that are the neighbour, with their probabilities.
+    same: Vec<(usize, f64)>,
+}
+
+impl Telling {
+    /// Puts the neighbours that are at least so likely into `located`, in the order of their first observation.
+    pub(super) fn tell(&mut self, candidates: &Candidates, explanation: &Explanation, least: f64, located: &mut Located) {
+        located.neighbours.clear();
+        located.members.clear();
+        located.modes.clear();
+        self.taken.clear();
+        self.taken.resize(located.sightings.len(), false);
+        self.order.clear();
+        self.order.extend((0..candidates.len()).filter(|&index| explanation.probability(index) > NEGLIGIBLE));
+        self.order.sort_unstable_by(|&a, &b| {
+            explanation.probability(b).total_cmp(&explanation.probability(a)).then(a.cmp(&b))
+        });
+        for place in 0..self.order.len() {
+            let index = self.order[place];
+            if candidates.members(index).iter().any(|&spot| self.taken[spot]) {
+                continue;
+            }
+            let runner_up = self.gather(candidates, explanation, index);
+            let probability = self.same.iter().map(|&(_, probability)| probability).sum::<f64>().min(1.0);
+            for &spot in candidates.members(index) {
+                self.taken[spot] = true;
+            }
+            if probability >= least {
+                self.put(candidates, index, probability, runner_up, located);
+            }
+        }
+        let Located { neighbours, members, .. } = located;
+        neighbours.sort_unstable_by_key(|neighbour| members[neighbour.first_member]);
+    }
+
+    /// Gathers the candidates that are the same neighbour as `own`; the likeliest that shares an observation but is another is the runner-up,
+    /// unless it is likelier that there is nothing but clutter.
+    fn gather(&mut self, candidates: &Candidates, explanation: &Explanation, own: usize) -> RunnerUp {
+        let shares = |other: &usize| {
+            let members = candidates.members(own);
+            candidates.members(*other).iter().any(|spot| members.contains(spot))
+        };
+        self.same.clear();
+        let mut other = RunnerUp { probability: 0.0, distance_m: None };
+        let mut all = 0.0;
+        for &index in self.order.iter().filter(|index| shares(index)) {
+            let probability = explanation.probability(index);
+            all += probability;
+            if is_same(candidates, own, index) {
+                self.same.push((index, probability));
+            } else if probability > other.probability {
+                let distance_m = candidates.get(index).distance.estimate.map(|estimate| estimate.distance_m);
+                other = RunnerUp { probability, distance_m };
+            }
+        }
+        let clutter = (1.0 - all).max(0.0);
+        if clutter >= other.probability { RunnerUp { probability: clutter, distance_m: None } } else { other }
+    }
+
+    /// Adds a neighbour: the mixture of the candidates that it is.
+    fn put(&self, candidates: &Candidates, own: usize, probability: f64, runner_up: RunnerUp, located: &mut Located) {
+        let candidate = candidates.get(own);
+        let first_mode = located.modes.len();
+        for &(index, share) in &self.same {
+            let weigh = |mode: &Mode| Mode { weight: mode.weight * share, ..*mode };
+            located.modes.extend(candidates.modes(index).iter().map(weigh));
+        }
+        let modes = &mut located.modes[first_mode..];
+        modes.sort_unstable_by(|a, b| b.weight.total_cmp(&a.weight));
+        let total: f64 = modes.iter().map(|mode| mode.weight).sum();
+        modes.iter_mut().for_each(|mode| mode.weight /= total);
+        let (position, estimate, bounds) = self.mixture(candidates);
+        let mut distance = candidate.distance;
+        distance.estimate = estimate.or(distance.estimate);
+        distance.bounds = bounds.unwrap_or(distance.bounds);
+        located.neighbours.push(Neighbour {
+            bearing: candidate.bearing,
+            distance,
+            position: position.or(candidate.position),
+            orientation: candidate.orientation,
+            probability,
+            misfit: candidate.misfit,
+            runner_up,
+            first_member: located.members.len(),
+            members: candidates.members(own).len(),
+            first_mode,
+            modes: located.modes.len() - first_mode,
+        });
+        located.members.extend_from_slice(candidates.members(own));
+    }
+
+    /// Mean and covariance over the candidates, and bounds that hold for each of them.
+    fn mixture(&self, candidates: &Candidates) -> (Option<Position>, Option<Estimate>, Option<Interval>) {
+        if let [(only, _)] = self.same[..] {
+            let candidate = candidates.get(only);
+            return (candidate.position, candidate.distance.estimate, Some(candidate.distance.bounds));
+        }
+        let total: f64 = self.same.iter().map(|&(_, share)| share).sum();
+        let (mut mean_m, mut square_m2) = (nalgebra::Vector3::zeros(), Matrix3::zeros());
+        let (mut distance_m, mut distance2_m2) = (0.0, 0.0);
+        let mut bounds: Option<Interval> = None;
+        for &(index, share) in &self.same {
+            let candidate = candidates.get(index);
+            let (Some(position), Some(estimate)) = (candidate.position, candidate.distance.estimate) else { continue };
+            let weight = share / total;
+            mean_m += position.mean_m * weight;
+            square_m2 += (position.covariance_m2 + position.mean_m * position.mean_m.transpose()) * weight;
+            distance_m += estimate.distance_m * weight;
+            distance2_m2 += (estimate.sigma_m * estimate.sigma_m + estimate.distance_m * estimate.distance_m) * weight;
+            let own = candidate.distance.bounds;
+            bounds = Some(bounds.map_or(own, |all| all.hull(&own)));
+        }
+        let position = Position { mean_m, covariance_m2: square_m2 - mean_m * mean_m.transpose() };
+        let sigma_m = (distance2_m2 - distance_m * distance_m).max(0.0).sqrt();
+        (Some(position), Some(Estimate { distance_m, sigma_m }), bounds)
+    }
+}
+
+/// Whether two candidates that share an observation are one neighbour: no further apart than they are unsure.
+fn is_same(candidates: &Candidates, a: usize, b: usize) -> bool {
+    if a == b {
+        return true;
+    }
+    let (Some(first), Some(second)) = (candidates.get(a).position, candidates.get(b).position) else { return false };
+    let off_m = first.mean_m - second.mean_m;
+    let covariance_m2 = first.covariance_m2 + second.covariance_m2 + Matrix3::identity() * 1e-9;
+    let squared = covariance_m2.cholesky().map(|factor| off_m.dot(&factor.solve(&off_m)));
+    squared.is_some_and(|squared| squared < SAME_SIGMAS * SAME_SIGMAS)
+}

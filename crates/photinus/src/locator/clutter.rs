@@ -1,16 +1,19 @@
 //! How dense clutter is: bright points that are no neighbour's markers.
 //!
-//! In: how likely each observation of the frame is clutter. Out: the density of clutter where each observation is, from the others: those of the frame
-//! as a whole and those around it, for glints and hot pixels come in crowds. A density is per sr of direction and per unit of the logarithm of light.
+//! In: how likely each observation of the frame is clutter, and which belong together if they are none. Out: the density of clutter at each
+//! observation, from the others: those of the frame as a whole and those around it, for glints and hot pixels come in crowds. Observations that belong
+//! together are clutter together or not at all: the first of them is as dense as what is around, each further one as if those before were clutter
+//! (a Poisson process whose rate is not known), and each gets the mean of the logarithms. A density is per sr and per unit of the logarithm of light.
 
 use super::Sighting;
+use super::grouping::Groups;
 
 /// Clutter of a frame before it is seen: so many points, worth so many frames.
 const BEFOREHAND: f64 = 0.2;
 const WORTH_FRAMES: f64 = 0.3;
 /// Side of the cells in which clutter is counted, px: an observation's surroundings are three by three of them.
 const CELL_PX: f64 = 64.0;
-/// The surroundings are as good as the whole frame's mean over so many times their area.
+/// The mean of the whole frame is worth what the surroundings tell over so many times their area.
 const WORTH_SURROUNDINGS: f64 = 1.0;
 /// The light of clutter may be anything over so many units of its logarithm: a factor of 3,000.
 const LIGHT_RANGE: f64 = 8.0;
@@ -22,47 +25,96 @@ pub(super) struct Clutter {
     cells: Vec<f64>,
 }
 
+/// An image that is divided into cells.
+#[derive(Clone, Copy)]
+struct Cells {
+    columns: usize,
+    rows: usize,
+}
+
+impl Cells {
+    fn of([width, height]: [usize; 2]) -> Self {
+        let count = |side: usize| (side as f64 / CELL_PX).ceil().max(1.0) as usize;
+        Self { columns: count(width), rows: count(height) }
+    }
+
+    fn of_observation(&self, sighting: &Sighting) -> [usize; 2] {
+        let at = |px: f64, cells: usize| ((px / CELL_PX).max(0.0) as usize).min(cells - 1);
+        [at(sighting.spot.centre.u, self.columns), at(sighting.spot.centre.v, self.rows)]
+    }
+
+    /// The cells around and with one.
+    fn around(self, [column, row]: [usize; 2]) -> impl Iterator<Item = usize> + Clone {
+        let across = column.saturating_sub(1)..(column + 2).min(self.columns);
+        let down = row.saturating_sub(1)..(row + 2).min(self.rows);
+        down.flat_map(move |row| across.clone().map(move |column| row * self.columns + column))
+    }
+}
+
 impl Clutter {
     /// Logarithm of the density at each observation.
     pub(super) fn log_density(&self) -> &[f64] {
         &self.log_density
     }
 
-    /// Measures the density, in an image of `width` by `height` px, where `share` tells how likely an observation is clutter. Without
+    /// Measures the density, in an image of `size` (width, height) px, where `share` tells how likely an observation is clutter. Without
     /// `with_light` the density is one of directions alone.
     pub(super) fn measure(
         &mut self,
         sightings: &[Sighting],
-        [width, height]: [usize; 2],
+        groups: &Groups,
+        size: [usize; 2],
         with_light: bool,
         share: impl Fn(usize) -> f64,
     ) {
-        let [columns, rows] = [width, height].map(|side| (side as f64 / CELL_PX).ceil().max(1.0) as usize);
-        let cell = |sighting: &Sighting| {
-            let at = |px: f64, cells: usize| ((px / CELL_PX).max(0.0) as usize).min(cells - 1);
-            [at(sighting.spot.centre.u, columns), at(sighting.spot.centre.v, rows)]
-        };
+        let cells = Cells::of(size);
         self.cells.clear();
-        self.cells.resize(columns * rows, 0.0);
+        self.cells.resize(cells.columns * cells.rows, 0.0);
         let mut all = 0.0;
         for (index, sighting) in sightings.iter().enumerate() {
-            let [column, row] = cell(sighting);
-            self.cells[row * columns + column] += share(index);
+            let [column, row] = cells.of_observation(sighting);
+            self.cells[row * cells.columns + column] += share(index);
             all += share(index);
         }
-        let frame_px = (width * height) as f64;
         self.log_density.clear();
-        for (index, sighting) in sightings.iter().enumerate() {
-            let own = share(index);
-            let [column, row] = cell(sighting);
-            let (across, down) = (column.saturating_sub(1)..(column + 2).min(columns), row.saturating_sub(1)..(row + 2).min(rows));
-            let area_px = (across.len() * down.len()) as f64 * CELL_PX * CELL_PX;
-            let around: f64 = down.flat_map(|row| across.clone().map(move |column| row * columns + column)).map(|cell| self.cells[cell]).sum();
-            let mean = (BEFOREHAND * WORTH_FRAMES + (all - own).max(0.0)) / (frame_px * (1.0 + WORTH_FRAMES));
-            let here = (mean * area_px * WORTH_SURROUNDINGS + (around - own).max(0.0)) / (area_px * (1.0 + WORTH_SURROUNDINGS));
-            let rad2_per_px = (sighting.rad_per_px * sighting.rad_per_px).max(1e-12);
-            let light = if with_light && sighting.log_light.is_some() { libm::log(LIGHT_RANGE) } else { 0.0 };
-            self.log_density.push(libm::log(here / rad2_per_px) - light);
+        self.log_density.resize(sightings.len(), 0.0);
+        for group in 0..groups.len() {
+            let members = groups.group(group);
+            let own: f64 = members.iter().map(|&index| share(index)).sum();
+            for &index in members {
+                let sighting = &sightings[index];
+                let around = cells.around(cells.of_observation(sighting));
+                let area_px = around.clone().count() as f64 * CELL_PX * CELL_PX;
+                let near = Surroundings {
+                    frame_px: (size[0] * size[1]) as f64,
+                    in_frame: (all - own).max(0.0),
+                    area_px,
+                    in_area: (around.map(|cell| self.cells[cell]).sum::<f64>() - own).max(0.0),
+                };
+                let each = own / members.len() as f64;
+                let log_per_px2 =
+                    (0..members.len()).map(|before| near.log_per_px2(before as f64 * each)).sum::<f64>() / members.len() as f64;
+                let rad2_per_px = (sighting.rad_per_px * sighting.rad_per_px).max(1e-12);
+                let light = if with_light && sighting.log_light.is_some() { libm::log(LIGHT_RANGE) } else { 0.0 };
+                self.log_density[index] = log_per_px2 - libm::log(rad2_per_px) - light;
+            }
         }
+    }
+}
+
+/// Clutter in a frame and around an observation, without what belongs to it.
+struct Surroundings {
+    frame_px: f64,
+    in_frame: f64,
+    area_px: f64,
+    in_area: f64,
+}
+
+impl Surroundings {
+    /// Logarithm of the density per px^2, with so many more points at the same place.
+    fn log_per_px2(&self, more: f64) -> f64 {
+        let mean = (BEFOREHAND * WORTH_FRAMES + self.in_frame + more) / (self.frame_px * (1.0 + WORTH_FRAMES));
+        let here = mean * self.area_px * WORTH_SURROUNDINGS + self.in_area + more;
+        libm::log(here / (self.area_px * (1.0 + WORTH_SURROUNDINGS)))
     }
 }

@@ -238,19 +238,19 @@ impl Locator {
     ) -> &Located {
         let size = [self.camera.width(), self.camera.height()];
         let sightings = &self.located.sightings;
-        // Until somebody is seen everything is clutter: what stands out of that is clear.
-        self.at_first.measure(sightings, size, self.use_brightness, |_| 1.0);
         let watched = Watched::new(&self.camera, self.mask.as_ref());
-        let context = Context { sightings, gravity, watched, power: None, clutter: self.at_first.log_density() };
+        let context = Context { sightings, gravity, watched, power: None, clutter: &[] };
         let power = self.groups.sort_out(&context, &mut self.matcher);
-        let context = Context { power, ..context };
+        // Until somebody is seen everything is clutter: what stands out of that is clear.
+        self.at_first.measure(sightings, &self.groups, size, self.use_brightness, |_| 1.0);
+        let context = Context { power, clutter: self.at_first.log_density(), ..context };
         finished(Stage::Grouping);
         self.candidates.clear();
         for group in 0..self.groups.len() {
             self.poser.weigh(&context, self.groups.group(group), &mut self.matcher, &mut self.candidates);
         }
         self.explanation.explain(&self.candidates, context.clutter);
-        self.clutter.measure(sightings, size, self.use_brightness, |spot| self.explanation.clutter(spot));
+        self.clutter.measure(sightings, &self.groups, size, self.use_brightness, |spot| self.explanation.clutter(spot));
         let context = Context { clutter: self.clutter.log_density(), ..context };
         for group in 0..self.groups.len() {
             if self.candidates.is_doubtful(self.groups.group(group), context.clutter) {
@@ -262,7 +262,17 @@ impl Locator {
         }
         for _ in 0..CLUTTER_ROUNDS {
             self.explanation.explain(&self.candidates, self.clutter.log_density());
-            self.clutter.measure(sightings, size, self.use_brightness, |spot| self.explanation.clutter(spot));
+            self.clutter.measure(sightings, &self.groups, size, self.use_brightness, |spot| self.explanation.clutter(spot));
+        }
+        if std::env::var("PDBG").is_ok() {
+            eprintln!("FRAME {} spots power {power:?}", self.located.sightings.len());
+            for i in 0..self.candidates.len() {
+                let c = self.candidates.get(i);
+                let cl: f64 = self.candidates.members(i).iter().map(|&k| self.clutter.log_density()[k]).sum();
+                eprintln!("  {:?} ld {:.1} gain {:.1} P {:.4} d {:?} misfit {:.1}/{} worst {:.1} light {:?}", self.candidates.members(i), c.log_density, c.log_density - cl, self.explanation.probability(i),
+                    c.distance.estimate.map(|e| (e.distance_m, e.sigma_m)), c.misfit.chi_square, c.misfit.degrees, c.worst_sigma,
+                    self.candidates.members(i).iter().map(|&k| self.located.sightings[k].log_light.map(|l| (l.value*100.0).round()/100.0)).collect::<Vec<_>>());
+            }
         }
         self.telling.tell(&self.candidates, &self.explanation, self.min_probability, &mut self.located);
         finished(Stage::Posing);

@@ -7,8 +7,9 @@
 
 use super::Sighting;
 use super::grouping::Groups;
+use super::memory::Memory;
 
-/// Clutter of a frame before it is seen: so many points, worth so many frames.
+/// Clutter of a frame before any was seen: so many points, worth so many frames.
 const BEFOREHAND: f64 = 0.2;
 const WORTH_FRAMES: f64 = 0.3;
 /// Side of the cells in which clutter is counted, px: an observation's surroundings are three by three of them.
@@ -52,19 +53,31 @@ impl Cells {
 }
 
 impl Clutter {
+    /// How many cells an image of `size` (width, height) px has.
+    pub(super) fn cells_of(size: [usize; 2]) -> usize {
+        let Cells { columns, rows } = Cells::of(size);
+        columns * rows
+    }
+
+    /// The clutter in every cell, as measured last.
+    pub(super) fn cells(&self) -> &[f64] {
+        &self.cells
+    }
+
     /// Logarithm of the density at each observation.
     pub(super) fn log_density(&self) -> &[f64] {
         &self.log_density
     }
 
-    /// Measures the density, in an image of `size` (width, height) px, where `share` tells how likely an observation is clutter. Without
-    /// `with_light` the density is one of directions alone.
+    /// Measures the density, in an image of `size` (width, height) px, where `share` tells how likely an observation is clutter, after the frames
+    /// that are remembered, if any. Without `with_light` the density is one of directions alone.
     pub(super) fn measure(
         &mut self,
         sightings: &[Sighting],
         groups: &Groups,
         size: [usize; 2],
         with_light: bool,
+        memory: Option<&Memory>,
         share: impl Fn(usize) -> f64,
     ) {
         let cells = Cells::of(size);
@@ -76,6 +89,9 @@ impl Clutter {
             self.cells[row * cells.columns + column] += share(index);
             all += share(index);
         }
+        let frames = memory.map_or(0, Memory::frames) as f64;
+        let remembered = |cell: usize| memory.map_or(0.0, |memory| memory.clutter(cell));
+        let ever: f64 = (0..self.cells.len()).map(remembered).sum();
         self.log_density.clear();
         self.log_density.resize(sightings.len(), 0.0);
         for group in 0..groups.len() {
@@ -87,9 +103,11 @@ impl Clutter {
                 let area_px = around.clone().count() as f64 * CELL_PX * CELL_PX;
                 let near = Surroundings {
                     frame_px: (size[0] * size[1]) as f64,
-                    in_frame: (all - own).max(0.0),
+                    frames: 1.0 + frames,
+                    in_frame: (all - own).max(0.0) + ever,
                     area_px,
-                    in_area: (around.map(|cell| self.cells[cell]).sum::<f64>() - own).max(0.0),
+                    in_area: (around.clone().map(|cell| self.cells[cell]).sum::<f64>() - own).max(0.0)
+                        + around.map(remembered).sum::<f64>(),
                 };
                 let each = own / members.len() as f64;
                 let log_per_px2 =
@@ -102,8 +120,9 @@ impl Clutter {
     }
 }
 
-/// Clutter in a frame and around an observation, without what belongs to it.
+/// Clutter in some frames and around an observation, without what belongs to it.
 struct Surroundings {
+    frames: f64,
     frame_px: f64,
     in_frame: f64,
     area_px: f64,
@@ -113,8 +132,8 @@ struct Surroundings {
 impl Surroundings {
     /// Logarithm of the density per px^2, with so many more points at the same place.
     fn log_per_px2(&self, more: f64) -> f64 {
-        let mean = (BEFOREHAND * WORTH_FRAMES + self.in_frame + more) / (self.frame_px * (1.0 + WORTH_FRAMES));
+        let mean = (BEFOREHAND * WORTH_FRAMES + self.in_frame + more) / (self.frame_px * (self.frames + WORTH_FRAMES));
         let here = mean * self.area_px * WORTH_SURROUNDINGS + self.in_area + more;
-        libm::log(here / (self.area_px * (1.0 + WORTH_SURROUNDINGS)))
+        libm::log(here / (self.area_px * (self.frames + WORTH_SURROUNDINGS)))
     }
 }

@@ -21,6 +21,7 @@ mod error;
 mod explanation;
 mod grouping;
 mod matching;
+mod memory;
 mod neighbour;
 mod pairs;
 mod posing;
@@ -44,6 +45,7 @@ pub use error::{LocateError, LocatorError};
 use explanation::Explanation;
 use grouping::Groups;
 use matching::Matcher;
+use memory::Memory;
 pub use neighbour::{Distance, Located, Neighbour, Orientation, Position, RunnerUp};
 use posing::Poser;
 pub use settings::Settings;
@@ -77,8 +79,9 @@ pub struct Locator {
     matcher: Matcher,
     poser: Poser,
     groups: Groups,
-    /// How dense clutter is if everything is, and with what is explained.
-    at_first: Clutter,
+    memory: Memory,
+    /// Clutter after a first look, and with what is explained.
+    first_clutter: Clutter,
     clutter: Clutter,
     candidates: Candidates,
     alternatives: Alternatives,
@@ -108,6 +111,7 @@ impl Locator {
             return Err(LocatorError::Probability(settings.min_probability));
         }
         let detector = Detector::with_optics(settings.spots, camera.optics().cloned())?;
+        let memory = Memory::new(Clutter::cells_of([camera.width(), camera.height()]));
         Ok(Self {
             camera,
             curve,
@@ -116,7 +120,8 @@ impl Locator {
             matcher: Matcher::new(airframe, settings.max_tilt_rad),
             poser: Poser::new(airframe, settings.pose, &settings.spots)?,
             groups: Groups::default(),
-            at_first: Clutter::default(),
+            memory,
+            first_clutter: Clutter::default(),
             clutter: Clutter::default(),
             candidates: Candidates::default(),
             alternatives: Alternatives::default(),
@@ -237,21 +242,22 @@ impl Locator {
         finished: &mut dyn FnMut(Stage),
     ) -> &Located {
         let size = [self.camera.width(), self.camera.height()];
-        let sightings = &self.located.sightings;
+        let (sightings, with_light) = (&self.located.sightings, self.use_brightness);
         let watched = Watched::new(&self.camera, self.mask.as_ref());
         let context = Context { sightings, gravity, watched, power: None, clutter: &[] };
-        let power = self.groups.sort_out(&context, &mut self.matcher);
-        // Until somebody is seen everything is clutter: what stands out of that is clear.
-        self.at_first.measure(sightings, &self.groups, size, self.use_brightness, |_| 1.0);
-        let context = Context { power, clutter: self.at_first.log_density(), ..context };
+        let of_frame = self.groups.sort_out(&context, &mut self.matcher);
+        // Until somebody is seen everything is clutter: what stands out of that by a first look is not.
+        self.clutter.measure(sightings, &self.groups, size, with_light, None, |_| 1.0);
+        let context = Context { clutter: self.clutter.log_density(), ..context };
+        self.groups.look(&context, &mut self.matcher);
+        self.first_clutter.measure(sightings, &self.groups, size, with_light, None, |spot| self.groups.clutter(spot));
         finished(Stage::Grouping);
+        let power = self.memory.power().or(of_frame);
+        let context = Context { power, clutter: self.first_clutter.log_density(), ..context };
         self.candidates.clear();
         for group in 0..self.groups.len() {
             self.poser.weigh(&context, self.groups.group(group), &mut self.matcher, &mut self.candidates);
         }
-        self.explanation.explain(&self.candidates, context.clutter);
-        self.clutter.measure(sightings, &self.groups, size, self.use_brightness, |spot| self.explanation.clutter(spot));
-        let context = Context { clutter: self.clutter.log_density(), ..context };
         for group in 0..self.groups.len() {
             if self.candidates.is_doubtful(self.groups.group(group), context.clutter) {
                 let Self { alternatives, groups, matcher, poser, candidates, .. } = self;
@@ -260,10 +266,13 @@ impl Locator {
                 });
             }
         }
+        self.explanation.explain(&self.candidates, context.clutter);
         for _ in 0..CLUTTER_ROUNDS {
+            let memory = Some(&self.memory);
+            self.clutter.measure(sightings, &self.groups, size, with_light, memory, |spot| self.explanation.clutter(spot));
             self.explanation.explain(&self.candidates, self.clutter.log_density());
-            self.clutter.measure(sightings, &self.groups, size, self.use_brightness, |spot| self.explanation.clutter(spot));
         }
+        self.memory.remember(self.first_clutter.cells(), of_frame.map(|power| power.value));
         if std::env::var("PDBG").is_ok() {
             eprintln!("FRAME {} spots power {power:?}", self.located.sightings.len());
             for i in 0..self.candidates.len() {

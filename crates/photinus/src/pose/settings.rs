@@ -14,7 +14,7 @@ pub struct Settings {
     /// decide nothing. Default 0.02: an LED mounted a degree askew.
     pub lobe_sigma: f64,
     /// How often a marker that must show does not: dead, occluded, taken for something else. It keeps alive the explanation of
-    /// two spots that a marker between them is missing. Default 0.02.
+    /// two spots that a marker between them is missing. Default 0.05.
     pub missed: f64,
     /// Whether brightness counts. Default yes.
     pub use_brightness: bool,
@@ -27,7 +27,7 @@ impl Default for Settings {
             marker_sigma_m: 0.001,
             unit_sigma: 0.12,
             lobe_sigma: 0.02,
-            missed: 0.02,
+            missed: 0.05,
             use_brightness: true,
         }
     }

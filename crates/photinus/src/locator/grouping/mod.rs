@@ -15,7 +15,8 @@ use nalgebra::Vector3;
 
 use super::Sighting;
 use super::context::Context;
-use super::matching::{LOG_POWER_SIGMA, Matcher, NEIGHBOUR_NATS};
+use super::matching::{Matcher, NEIGHBOUR_NATS};
+use super::memory::LOG_POWER_SIGMA;
 use crate::pose::LogLight;
 use partition::{MOST_PARTITIONED, Partition};
 use tree::Tree;
@@ -41,6 +42,8 @@ pub(super) struct Groups {
     nearest: Vec<(f64, usize)>,
     /// Logarithms of the light of clear neighbours.
     powers: Vec<f64>,
+    /// How likely each observation is clutter, by a first look.
+    clutter: Vec<f64>,
 }
 
 /// Groups of spots, one after the other.
@@ -108,6 +111,29 @@ impl Groups {
         self.part_overlapping(context, matcher);
         self.put_in_order();
         power
+    }
+
+    /// Takes a first look at how likely each group is clutter.
+    pub(super) fn look(&mut self, context: &Context<'_>, matcher: &mut Matcher) {
+        self.clutter.clear();
+        self.clutter.resize(context.sightings.len(), 0.0);
+        for group in 0..self.list.len() {
+            let members = self.list.group(group);
+            let clutter: f64 = members.iter().map(|&spot| context.clutter[spot]).sum();
+            let share = match matcher.log_density(context, members) {
+                Some(log_density) => 1.0 / (1.0 + libm::exp(log_density - clutter)),
+                None if self.is_doubtful(group) => 1.0,
+                None => 0.0,
+            };
+            for &spot in self.list.group(group) {
+                self.clutter[spot] = share;
+            }
+        }
+    }
+
+    /// How likely an observation is clutter, by that look.
+    pub(super) fn clutter(&self, observation: usize) -> f64 {
+        self.clutter[observation]
     }
 
     /// How many there are.

@@ -33,8 +33,6 @@ pub(super) const NEIGHBOUR_NATS: f64 = 8.0;
 /// A view that costs so much more than the best one, nats, is no first guess of a pose. Views are a coarse grid, and what
 /// they cost as coarse.
 const POOR_NATS: f32 = 9.0;
-/// Spread of the logarithm of light between neighbours: lobes, units, the lens towards its edge.
-pub(super) const LOG_POWER_SIGMA: f64 = 0.35;
 /// Light alone does not rule a neighbour out.
 const MOST_POWER_NATS: f64 = 30.0;
 /// An outline that costs so much, nats, may be that of a neighbour that is not seen whole.

@@ -1,0 +1,118 @@
+//! What the frames before told: how bright the LEDs are, and where clutter is.
+//!
+//! In: of each frame the clutter in every cell of the image, and the power that its clear neighbours have, as found without this memory. Out: both over
+//! the last [`Memory::FRAMES`] frames. What is remembered depends on those frames alone: whoever locates in them again remembers the same.
+
+use crate::pose::LogLight;
+
+/// Spread of the logarithm of light between neighbours: lobes, units, the lens towards its edge.
+pub(super) const LOG_POWER_SIGMA: f64 = 0.35;
+/// The power of the LEDs is known from so many frames on.
+const FEWEST: usize = 3;
+
+/// The last frames.
+#[derive(Debug, Default)]
+pub(super) struct Memory {
+    /// Cells of the image.
+    cells: usize,
+    frames: usize,
+    next: usize,
+    /// Clutter by frame and cell, and its sums by cell.
+    clutter: Vec<f64>,
+    sums: Vec<f64>,
+    log_powers: Vec<Option<f64>>,
+    sorted: Vec<f64>,
+}
+
+impl Memory {
+    /// So many frames are remembered.
+    pub(super) const FRAMES: usize = 64;
+
+    /// Nothing yet, of images with so many cells.
+    pub(super) fn new(cells: usize) -> Self {
+        Self {
+            cells,
+            frames: 0,
+            next: 0,
+            clutter: vec![0.0; cells * Self::FRAMES],
+            sums: vec![0.0; cells],
+            log_powers: vec![None; Self::FRAMES],
+            sorted: Vec::with_capacity(Self::FRAMES),
+        }
+    }
+
+    /// How many frames are remembered.
+    pub(super) fn frames(&self) -> usize {
+        self.frames
+    }
+
+    /// The clutter that they had in a cell, together.
+    pub(super) fn clutter(&self, cell: usize) -> f64 {
+        self.sums.get(cell).copied().unwrap_or(0.0)
+    }
+
+    /// The light of an LED straight ahead at 1 m, where enough frames told it.
+    pub(super) fn power(&mut self) -> Option<LogLight> {
+        self.sorted.clear();
+        self.sorted.extend(self.log_powers.iter().flatten());
+        if self.sorted.len() < FEWEST {
+            return None;
+        }
+        self.sorted.sort_unstable_by(f64::total_cmp);
+        let quantile = |share: usize| self.sorted[(self.sorted.len() - 1) * share / 4];
+        // Half the width between the quartiles is two thirds of a standard deviation.
+        let spread = (quantile(3) - quantile(1)) / 1.35;
+        Some(LogLight { value: quantile(2), sigma: libm::hypot(LOG_POWER_SIGMA, spread) })
+    }
+
+    /// Remembers a frame and forgets the oldest.
+    pub(super) fn remember(&mut self, clutter: &[f64], log_power: Option<f64>) {
+        let own = &mut self.clutter[self.next * self.cells..][..self.cells];
+        own.copy_from_slice(clutter);
+        self.log_powers[self.next] = log_power;
+        self.next = (self.next + 1) % Self::FRAMES;
+        self.frames = (self.frames + 1).min(Self::FRAMES);
+        // Sums are made anew in one order, so that they are the same whenever the memory began.
+        for (cell, sum) in self.sums.iter_mut().enumerate() {
+            *sum = 0.0;
+            for age in 0..self.frames {
+                let frame = (self.next + Self::FRAMES - 1 - age) % Self::FRAMES;
+                *sum += self.clutter[frame * self.cells + cell];
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn it_depends_on_the_last_frames_alone() {
+        let frame = |number: usize| {
+            let clutter = [0.1 * (number % 7) as f64, 1.0 / (1 + number % 5) as f64];
+            (clutter, (number % 3 != 0).then(|| 9.0 + 0.01 * (number % 11) as f64))
+        };
+        let after = |first: usize| {
+            let mut memory = Memory::new(2);
+            for number in first..200 {
+                let (clutter, log_power) = frame(number);
+                memory.remember(&clutter, log_power);
+            }
+            (memory.frames(), [0, 1].map(|cell| memory.clutter(cell).to_bits()), memory.power())
+        };
+        assert_eq!(after(0), after(200 - Memory::FRAMES));
+        assert_ne!(after(0), after(200 - Memory::FRAMES / 2));
+    }
+
+    #[test]
+    fn power_that_changes_is_known_as_badly_as_it_changes() {
+        let mut memory = Memory::new(1);
+        assert_eq!(memory.power(), None);
+        for number in 0..Memory::FRAMES {
+            memory.remember(&[0.0], Some(if number % 2 == 0 { 8.0 } else { 10.0 }));
+        }
+        let LogLight { value, sigma } = memory.power().unwrap();
+        assert!((8.0..=10.0).contains(&value) && sigma > 1.0, "{value} {sigma}");
+    }
+}

@@ -117,7 +117,7 @@ impl Locator {
             curve,
             mask: None,
             detector,
-            matcher: Matcher::new(airframe, settings.max_tilt_rad),
+            matcher: Matcher::new(airframe, settings.max_tilt_rad, &settings.pose),
             poser: Poser::new(airframe, settings.pose, &settings.spots)?,
             groups: Groups::default(),
             memory,

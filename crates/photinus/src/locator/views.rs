@@ -30,8 +30,6 @@ const ELEVATION_SIGMA_RAD: f64 = 40.0 * PI / 180.0;
 const BRIGHT: f64 = 0.3;
 /// Below this it is not expected at all.
 const DARK: f64 = 0.02;
-/// What it costs that a bright marker of a view is not seen, nats.
-pub(super) const UNSEEN_NATS: f64 = 2.5;
 /// Distance looked from, in radii of the airframe: only the direction matters.
 const FAR_RADII: f64 = 1e4;
 
@@ -151,7 +149,8 @@ struct Seen {
 }
 
 impl Views {
-    pub(super) fn of(airframe: &Airframe, symmetry: &Symmetry) -> Self {
+    /// What `airframe` can look like, where a bright marker that is not seen costs `unseen_nats`.
+    pub(super) fn of(airframe: &Airframe, symmetry: &Symmetry, unseen_nats: f64) -> Self {
         let sector_rad = TAU / symmetry.turns() as f64;
         let yaws = (sector_rad / YAW_STEP_RAD).ceil().max(1.0) as usize;
         let mut views =
@@ -166,7 +165,7 @@ impl Views {
                 let seen = look(airframe, yaw_rad, elevation_rad);
                 if seen.len() >= 2 {
                     total += libm::exp(log_prior);
-                    views.add(&seen, symmetry, [yaw_rad, elevation_rad], log_prior);
+                    views.add(&seen, symmetry, [yaw_rad, elevation_rad], log_prior, unseen_nats);
                 }
             }
         }
@@ -180,11 +179,12 @@ impl Views {
         (!arrangements.all.is_empty()).then_some(arrangements)
     }
 
-    fn add(&mut self, seen: &[Seen], symmetry: &Symmetry, towards: [f64; 2], log_prior: f64) {
+    fn add(&mut self, seen: &[Seen], symmetry: &Symmetry, towards: [f64; 2], log_prior: f64, unseen_nats: f64) {
+        let cost_of_unseen = |seen: &Seen| unseen_nats * (seen.intensity / BRIGHT).min(1.0);
         self.most_visible = self.most_visible.max(seen.len());
-        let unseen_nats: f64 = seen.iter().map(cost_of_unseen).sum();
+        let all_unseen_nats: f64 = seen.iter().map(cost_of_unseen).sum();
         let brightest = seen.iter().map(cost_of_unseen).fold(0.0, f64::max);
-        self.lone_nats += libm::exp(log_prior) * (unseen_nats - brightest);
+        self.lone_nats += libm::exp(log_prior) * (all_unseen_nats - brightest);
         self.outlines.push(outline(seen, towards, log_prior));
         for (spots, arrangements) in (2..).zip(&mut self.arrangements) {
             let arrangements = &mut arrangements.all;
@@ -193,6 +193,7 @@ impl Views {
             }
             each_order(seen.len(), spots, &mut |order| {
                 if arrangements.len() <= MOST_ARRANGEMENTS {
+                    let unseen_nats = all_unseen_nats - order.iter().map(|&index| cost_of_unseen(&seen[index])).sum::<f64>();
                     arrangements.push(arrange(seen, order, symmetry, unseen_nats, towards, log_prior));
                 }
             });
@@ -241,10 +242,6 @@ pub(super) fn view_axes(yaw_rad: f64, elevation_rad: f64) -> [Vector3<f64>; 3] {
     [right, towards_camera.cross(&right), towards_camera]
 }
 
-fn cost_of_unseen(seen: &Seen) -> f64 {
-    UNSEEN_NATS * (seen.intensity / BRIGHT).min(1.0)
-}
-
 /// Calls `with` for every choice of `count` out of `of`, in every order.
 fn each_order(of: usize, count: usize, with: &mut impl FnMut(&[usize])) {
     fn extend(of: usize, count: usize, chosen: &mut Vec<usize>, with: &mut impl FnMut(&[usize])) {
@@ -269,7 +266,7 @@ fn arrange(
     seen: &[Seen],
     order: &[usize],
     symmetry: &Symmetry,
-    all_unseen_nats: f64,
+    unseen_nats: f64,
     [yaw_rad, elevation_rad]: [f64; 2],
     log_prior: f64,
 ) -> Arrangement {
@@ -287,7 +284,7 @@ fn arrange(
         mean_log_intensity: mean_log,
         markers: [None; MOST_ORDERED],
         turn: 0,
-        unseen_nats: all_unseen_nats - chosen().map(cost_of_unseen).sum::<f64>(),
+        unseen_nats,
         yaw_rad,
         elevation_rad,
         log_prior,

@@ -17,10 +17,10 @@ use nalgebra::Vector2;
 use super::Sighting;
 use super::context::Context;
 use super::posing::{LOG_RANGE, NEIGHBOURS_PER_SR};
-use super::views::{Arrangement, ELEVATION_STEP_RAD, Spread, UNSEEN_NATS, Views};
+use super::views::{Arrangement, ELEVATION_STEP_RAD, Spread, Views};
 use crate::airframe::Airframe;
 use crate::lanes::{self, LANES, Lanes};
-use crate::pose::{POWER_RANGE, Hypotheses, LogDistance, LogLight, Pose, Symmetry};
+use crate::pose::{self, POWER_RANGE, Hypotheses, LogDistance, LogLight, Pose, Symmetry};
 use crate::ranging::{BoundedBearing, DistanceBounds, Interval};
 use image::Image;
 use ordered::Ordered;
@@ -33,6 +33,8 @@ pub(super) const NEIGHBOUR_NATS: f64 = 8.0;
 /// A view that costs so much more than the best one, nats, is no first guess of a pose. Views are a coarse grid, and what
 /// they cost as coarse.
 const POOR_NATS: f32 = 9.0;
+/// How far the grid of views leaves the logarithm of a light from the nearest one's.
+const LOG_FLUX_GRID: f64 = 0.25;
 /// Light alone does not rule a neighbour out.
 const MOST_POWER_NATS: f64 = 30.0;
 /// An outline that costs so much, nats, may be that of a neighbour that is not seen whole.
@@ -52,22 +54,27 @@ pub(super) struct Matcher {
     bounds: DistanceBounds,
     symmetry: Symmetry,
     tilt_sigma_rad: f64,
+    log_flux_sigma: f64,
+    unseen_nats: f64,
     bearings: Vec<BoundedBearing>,
     places: Vec<Vector2<f64>>,
     costs: Vec<Lanes>,
 }
 
 impl Matcher {
-    pub(super) fn new(airframe: &Airframe, max_tilt_rad: f64) -> Self {
+    pub(super) fn new(airframe: &Airframe, max_tilt_rad: f64, believed: &pose::Settings) -> Self {
+        let unseen_nats = -libm::log(believed.missed);
         let grid_rad = ELEVATION_STEP_RAD / 2.0;
         let symmetry = Symmetry::of(airframe);
         Self {
-            views: Views::of(airframe, &symmetry),
+            views: Views::of(airframe, &symmetry, unseen_nats),
             triples: Triples::of(airframe, &symmetry),
             symmetry,
             bounds: DistanceBounds::new(airframe, max_tilt_rad),
-            // The tilt limit is taken for two sigma; the grid of views adds half a step.
-            tilt_sigma_rad: libm::hypot(max_tilt_rad / 2.0, grid_rad),
+            // The grid of views adds half a step.
+            tilt_sigma_rad: libm::hypot(believed.tilt_sigma_rad, grid_rad),
+            log_flux_sigma: libm::hypot(LOG_FLUX_GRID, believed.unit_sigma),
+            unseen_nats,
             bearings: Vec::new(),
             places: Vec::new(),
             costs: Vec::new(),
@@ -134,7 +141,7 @@ impl Matcher {
         let sightings = context.sightings;
         let image = Image::of(context, group, &mut self.places)?;
         let arrangements = self.views.arrangements(group.len())?;
-        let seen = Ordered::of(&image, sightings, group);
+        let seen = Ordered::of(&image, sightings, group, self.log_flux_sigma);
         let best = seen.costs(&arrangements.quads, &image, self.tilt_sigma_rad, &mut self.costs);
         Likeness::of(&seen, &image, &arrangements.all[best.arrangement]).log_power(sightings, group)
     }
@@ -154,7 +161,7 @@ impl Matcher {
         let sightings = context.sightings;
         let Some(image) = Image::of(context, group, &mut self.places) else { return IMPOSSIBLE };
         let Some(arrangements) = self.views.arrangements(group.len()) else {
-            let whole = outlined_nats(&self.views, &image, self.tilt_sigma_rad);
+            let whole = outlined_nats(&self.views, &image, self.tilt_sigma_rad, self.unseen_nats);
             let part = match whole {
                 Some((nats, _)) if nats < POOR_OUTLINE_NATS => None,
                 _ => self.partly_seen_nats(context, group),
@@ -164,7 +171,7 @@ impl Matcher {
                 NEIGHBOUR_NATS + nats + size_nats(sightings, group, distance_m)
             });
         };
-        let seen = Ordered::of(&image, sightings, group);
+        let seen = Ordered::of(&image, sightings, group, self.log_flux_sigma);
         let best = seen.costs(&arrangements.quads, &image, self.tilt_sigma_rad, &mut self.costs);
         let weight = self
             .costs
@@ -193,7 +200,7 @@ impl Matcher {
         let sightings = context.sightings;
         let image = Image::of(context, group, &mut self.places)?;
         let arrangements = self.views.arrangements(group.len())?;
-        let seen = Ordered::of(&image, sightings, group);
+        let seen = Ordered::of(&image, sightings, group, self.log_flux_sigma);
         let best = seen.costs(&arrangements.quads, &image, self.tilt_sigma_rad, &mut self.costs);
         let weight = self
             .costs
@@ -228,7 +235,7 @@ impl Matcher {
                 best = Some((start.nats, start.pose.position_m.norm()));
             }
         });
-        best.map(|(nats, distance_m)| (nats + UNSEEN_NATS * missing as f64, distance_m))
+        best.map(|(nats, distance_m)| (nats + self.unseen_nats * missing as f64, distance_m))
     }
 
     /// Whether a group has closed forms and may show less than a view has.
@@ -249,7 +256,7 @@ impl Matcher {
         let Some(arrangements) = self.views.arrangements(group.len()) else {
             let spread = Spread::of(image.places.iter().copied());
             for outline in &self.views.outlines {
-                let Some(fit) = overlay(&spread, outline, &image, self.tilt_sigma_rad) else { continue };
+                let Some(fit) = overlay(&spread, outline, &image, self.tilt_sigma_rad, self.unseen_nats) else { continue };
                 let half = image.attitude_nats(outline.elevation_rad, -1.0, self.tilt_sigma_rad)
                     - image.attitude_nats(outline.elevation_rad, 1.0, self.tilt_sigma_rad);
                 for (turn, nats) in [(fit.turn, 0.0), (-fit.turn, half)] {
@@ -265,15 +272,16 @@ impl Matcher {
             }
             return;
         };
-        let seen = Ordered::of(&image, sightings, group);
+        let seen = Ordered::of(&image, sightings, group, self.log_flux_sigma);
         let best = seen.costs(&arrangements.quads, &image, self.tilt_sigma_rad, &mut self.costs);
         for (four, costs) in arrangements.all.chunks(LANES).zip(&self.costs) {
             for (arrangement, nats) in four.iter().zip(costs.to_array()) {
                 if nats > best.nats + POOR_NATS {
                     continue;
                 }
-                // With gravity the tilt tells above from below; without it both are ways to look.
-                let branch = u8::from(gravity.is_none() && arrangement.elevation_rad < 0.0);
+                // With gravity the tilt tells above from below; without it both are ways to look. A marker that shows and is not seen is another.
+                let below = u8::from(gravity.is_none() && arrangement.elevation_rad < 0.0);
+                let branch = below + 2 * u8::from(arrangement.unseen_nats > 0.5 * self.unseen_nats);
                 let named = &arrangement.markers[..group.len()];
                 let signals = group.iter().map(|&member| sightings[member].signal);
                 let nats = f64::from(nats) + self.symmetry.least_signal_nats(signals, named);
@@ -309,10 +317,10 @@ impl Likeness {
 }
 
 /// What the outline of all spots costs, nats, and the distance at which it fits best, m.
-fn outlined_nats(views: &Views, image: &Image<'_>, tilt_sigma_rad: f64) -> Option<(f64, f64)> {
+fn outlined_nats(views: &Views, image: &Image<'_>, tilt_sigma_rad: f64, unseen_nats: f64) -> Option<(f64, f64)> {
     let spread = Spread::of(image.places.iter().copied());
     let fits =
-        || views.outlines.iter().filter_map(|outline| overlay(&spread, outline, image, tilt_sigma_rad));
+        || views.outlines.iter().filter_map(|outline| overlay(&spread, outline, image, tilt_sigma_rad, unseen_nats));
     let best = fits().min_by(|a, b| a.nats.total_cmp(&b.nats))?;
     let weight: f64 = fits().map(|fit| libm::exp(best.nats - fit.nats)).sum();
     Some((best.nats - libm::log(weight), best.place_m.norm()))

@@ -10,8 +10,6 @@ use crate::pose::LogLight;
 
 /// How far the grid of views leaves a true shape from the nearest one, as a share of its size.
 const GRID_ERROR: f64 = 0.04;
-/// Spread of the logarithms of flux that units, lobes and neighbours' own bodies add.
-const LOG_FLUX_SIGMA: f64 = 0.6;
 
 /// A group to be put in order.
 pub(super) struct Ordered {
@@ -23,12 +21,12 @@ pub(super) struct Ordered {
 }
 
 impl Ordered {
-    pub(super) fn of(image: &Image<'_>, sightings: &[Sighting], group: &[usize]) -> Self {
+    pub(super) fn of(image: &Image<'_>, sightings: &[Sighting], group: &[usize], log_flux_sigma: f64) -> Self {
         let mut ordered = Self {
             count: group.len(),
             shape: [Vector2::zeros(); MOST_ORDERED],
             log_flux: [0.0; MOST_ORDERED],
-            log_flux_sigma: LOG_FLUX_SIGMA,
+            log_flux_sigma,
             shape_sigma: libm::hypot(GRID_ERROR, image.sigma / image.size),
         };
         let mut sum = 0.0;
@@ -39,7 +37,7 @@ impl Ordered {
                 sightings[member].log_light.unwrap_or(LogLight { value: 0.0, sigma: f64::INFINITY });
             ordered.log_flux[index] = value;
             sum += value;
-            ordered.log_flux_sigma = ordered.log_flux_sigma.max(libm::hypot(LOG_FLUX_SIGMA, sigma));
+            ordered.log_flux_sigma = ordered.log_flux_sigma.max(libm::hypot(log_flux_sigma, sigma));
         }
         for log_flux in &mut ordered.log_flux[..group.len()] {
             *log_flux -= sum / group.len() as f64;

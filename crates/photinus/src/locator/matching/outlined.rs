@@ -3,7 +3,7 @@
 use nalgebra::{Vector2, Vector3};
 
 use super::image::Image;
-use crate::locator::views::{Outline, Spread, UNSEEN_NATS};
+use crate::locator::views::{Outline, Spread};
 
 /// How far the outline of a group may be from that of a view, in slimness.
 const SLIMNESS_SIGMA: f64 = 0.08;
@@ -26,6 +26,7 @@ pub(super) fn overlay(
     outline: &Outline,
     image: &Image<'_>,
     tilt_sigma_rad: f64,
+    unseen_nats: f64,
 ) -> Option<Overlaid> {
     let missing = outline.markers.checked_sub(image.places.len())?;
     let off = (spread.slimness - outline.slimness) / SLIMNESS_SIGMA;
@@ -35,7 +36,7 @@ pub(super) fn overlay(
     }
     let (sin, cos) = libm::sincos(spread.axis_rad - outline.axis_rad);
     let attitude = image.attitude_nats(outline.elevation_rad, cos.abs(), tilt_sigma_rad);
-    let nats = misfit + attitude - outline.log_prior + UNSEEN_NATS * missing as f64;
+    let nats = misfit + attitude - outline.log_prior + unseen_nats * missing as f64;
     // The axis is known but for half a turn: with the less likely half the middle would be on the other side.
     let turn = if cos < 0.0 { Vector2::new(-cos, -sin) } else { Vector2::new(cos, sin) };
     let place_m = image.origin_m(outline.size_m / spread.size, turn, outline);

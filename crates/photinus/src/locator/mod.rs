@@ -303,7 +303,7 @@ impl Locator {
         finished(Stage::Spots);
         let spots = detections.spots.iter().map(|spot| (spot, None));
         sight_all(&self.camera, self.curve.as_ref(), spots, &mut self.located);
-        brightness::tell(&mut self.located.sightings, &self.located.rejected, &mut self.order);
+        brightness::tell(&mut self.located.sightings, &mut self.order);
         finished(Stage::Bearings);
         Ok(self.tell_neighbours(gravity, finished))
     }
@@ -348,7 +348,7 @@ impl Locator {
         self.located.rejected.clear();
         finished(Stage::Spots);
         sight_all(&self.camera, self.curve.as_ref(), spots, &mut self.located);
-        brightness::tell(&mut self.located.sightings, &self.located.rejected, &mut self.order);
+        brightness::tell(&mut self.located.sightings, &mut self.order);
         finished(Stage::Bearings);
         self.tell_neighbours(gravity, finished)
     }

@@ -24,10 +24,6 @@ const STRANGE_SIGMAS: f64 = 5.0;
 const RESOLUTION_PX: f64 = 2.5;
 /// Light of a spot that is found half of the time over the step that makes a pixel bright, px (rendered frames).
 const FAINTEST_PX: f64 = 2.5;
-/// The same of a spot that is taken for a reflection half of the time over the height that makes it certain, and how much
-/// fainter than others it is then over the share that is asked for.
-const CERTAIN_PX: f64 = 2.9;
-const OUTSHONE_SHARE: f64 = 0.9;
 
 /// Over so much of the field the error of a calibration changes by itself.
 const CALIBRATION_LENGTH_RAD: f64 = 0.5;
@@ -223,13 +219,8 @@ fn of_calibration(sightings: &[Sighting], group: &[usize], position_m: &Vector3<
 
 /// Which markers a detector with these settings finds.
 fn visible(settings: &spots::Settings) -> Visible<'static> {
-    let (step, outshone) = match settings.brightness {
-        Brightness::Threshold(level) => (f64::from(level), 0.0),
-        Brightness::Contrast(step) => (f64::from(step), OUTSHONE_SHARE * settings.shape.faintest),
-    };
-    let faintest_light = FAINTEST_PX * step;
-    let certain = CERTAIN_PX * settings.shape.faint_dn / faintest_light;
-    Visible { faintest_light, outshone, certain, watched: None }
+    let (Brightness::Threshold(step) | Brightness::Contrast(step)) = settings.brightness;
+    Visible { faintest_light: FAINTEST_PX * f64::from(step), outshone: 0.0, certain: 0.0, watched: None }
 }
 
 fn observe(sighting: &Sighting) -> Observation {

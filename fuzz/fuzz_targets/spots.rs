@@ -7,7 +7,7 @@ use photinus::spots::{Brightness, Detector, Noise, Settings, Shape};
 
 /// Width, height, padding, rule, level and the other settings take a byte each; the pixels follow and repeat.
 fn check(bytes: &[u8]) -> Option<()> {
-    let (&[width, height, padding, flags, level, read, shot, widest, elongation, faintest], rest) =
+    let (&[width, height, padding, flags, level, read, shot, widest, elongation, reflection], rest) =
         bytes.split_first_chunk()?;
     let (width, height) = (1 + usize::from(width), 1 + usize::from(height % 96));
     let stride = width + usize::from(padding % 40);
@@ -24,8 +24,7 @@ fn check(bytes: &[u8]) -> Option<()> {
         shape: Shape {
             widest_px: 1.0 + f64::from(widest),
             elongation: 1.0 + f64::from(elongation) / 16.0,
-            faintest: f64::from(faintest) / 255.0,
-            faint_dn: 48.0,
+            reflection_ratio: f64::from(reflection) / 255.0,
         },
     };
     let mut detector = Detector::new(settings).ok()?;
@@ -36,6 +35,7 @@ fn check(bytes: &[u8]) -> Option<()> {
         assert!(covariance.m11 > 0.0 && covariance.determinant() > 0.0, "{spot:?}");
         assert!(spot.centre.u.is_finite() && spot.centre.v.is_finite() && spot.flux.is_finite(), "{spot:?}");
         assert!((0.0..=255.0).contains(&spot.background), "{spot:?}");
+        assert!(spot.marker_log_odds.is_finite(), "{spot:?}");
     }
     if flags & 1 == 0 {
         let areas = found.spots.iter().map(|spot| spot.area_px);

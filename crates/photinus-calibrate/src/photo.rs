@@ -29,9 +29,9 @@ pub struct PhotoSpot {
     pub led: Option<[usize; 2]>,
 }
 
-/// Settings of the detector for photos of a board: LEDs may be near and wide, and one seen from the side is no reflection.
+/// Settings of the detector for photos of a board: LEDs may be near and wide.
 pub fn board_settings() -> Settings {
-    Settings { shape: Shape { widest_px: 60.0, faintest: 0.0, ..Shape::default() }, ..Settings::default() }
+    Settings { shape: Shape { widest_px: 60.0, ..Shape::default() }, ..Settings::default() }
 }
 
 impl Photo {

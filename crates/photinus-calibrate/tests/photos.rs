@@ -4,6 +4,7 @@ mod grid_photos;
 
 use grid_photos::{Set, eight_by_six, seven_by_five};
 use nalgebra::Vector2;
+use photinus::spots::{Detector, Settings};
 use photinus_calibrate::adjust::View;
 use photinus_calibrate::camera::{
     BoardChoice, CalibrateError, Calibration, Choices, MisfitReason, Summary, Warning, calibrate,
@@ -37,6 +38,21 @@ fn every_led_of_every_photo_is_found_and_ordered() {
     for set in [seven_by_five(), eight_by_six()].into_iter().flatten() {
         assert!(set.views.iter().all(|view| view.observations.len() == set.grid.leds()));
     }
+}
+
+#[test]
+fn the_leds_are_more_likely_markers_than_not_and_their_reflections_less() {
+    let mut reflections = Vec::new();
+    for set in [seven_by_five(), eight_by_six()].into_iter().flatten() {
+        let mut detector = Detector::new(Settings::default()).expect("settings");
+        for image in &set.images {
+            let found = detector.detect(&image.view(), None).expect("a frame");
+            let likely = found.spots.iter().filter(|spot| spot.marker_log_odds > 0.0).count();
+            assert_eq!(likely, set.grid.leds());
+            reflections.push(found.spots.len() - likely);
+        }
+    }
+    assert!(reflections.is_empty() || reflections.iter().sum::<usize>() == 7, "{reflections:?}");
 }
 
 #[test]

@@ -103,8 +103,13 @@ fn lines(entry: &Entry) -> Vec<String> {
     let frame = entry.record.frame.unwrap_or_default();
     let line = |(number, spot): (usize, &SpotRecord)| {
         format!(
-            "frame {frame:>5}  spot {number:>2}  at {:8.2} {:8.2} px  sigma {:.2} px  {:>4} px bright, peak {:>3}",
-            spot.u_px, spot.v_px, spot.sigma_px, spot.area_px, spot.peak
+            "frame {frame:>5}  spot {number:>2}  at {:8.2} {:8.2} px  sigma {:.2} px  {:>4} px bright, peak {:>3}  a marker {:>3.0} %",
+            spot.u_px,
+            spot.v_px,
+            spot.sigma_px,
+            spot.area_px,
+            spot.peak,
+            100.0 * spot.probability
         )
     };
     entry.record.spots.iter().enumerate().map(line).collect()

@@ -47,7 +47,7 @@ pub(crate) struct Args {
     #[command(flatten)]
     input: InputArgs,
     /// Spots of another detector in place of frames: JSON lines, see docs/file-formats.md
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["contrast", "threshold", "faintest", "mask"])]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["contrast", "threshold", "reflection_ratio", "mask"])]
     spots: Option<PathBuf>,
     /// The camera's calibration, in any format that `photinus info` knows [default: that of the dataset]
     #[arg(long, value_name = "FILE")]

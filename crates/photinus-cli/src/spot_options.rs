@@ -21,10 +21,9 @@ pub(crate) struct SpotArgs {
     /// A pixel is bright from the grey level N on: the paper's rule, with 200
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..))]
     threshold: Option<u8>,
-    /// A faint spot with less than this share of the brightness of one beside it is taken for a reflection; 0 keeps all.
-    /// Not with --threshold
-    #[arg(long, value_name = "SHARE", default_value_t = Shape::default().faintest, value_parser = share, conflicts_with = "threshold")]
-    faintest: f64,
+    /// A spot with less than this share of the light of the brightest is more likely its reflection than a marker; 0: nothing reflects
+    #[arg(long, value_name = "SHARE", default_value_t = Shape::default().reflection_ratio, value_parser = share, alias = "faintest")]
+    reflection_ratio: f64,
     /// An image of the frames' size that is 0 where not to look [default: that of the dataset, if any]
     #[arg(long, value_name = "FILE")]
     mask: Option<PathBuf>,
@@ -43,7 +42,7 @@ impl SpotArgs {
             (None, Some(step)) => Brightness::Contrast(step),
             (None, None) => Brightness::default(),
         };
-        let shape = Shape { faintest: self.faintest, ..Shape::default() };
+        let shape = Shape { reflection_ratio: self.reflection_ratio, ..Shape::default() };
         Settings { brightness, shape, ..Settings::default() }
     }
 

@@ -19,6 +19,8 @@ pub(crate) struct Summary {
     pub(crate) failed: u64,
     frames: u64,
     spots: usize,
+    /// Those of them that are less likely markers than clutter.
+    unlikely: usize,
     rejected: BTreeMap<String, usize>,
     neighbours: usize,
     frames_with_neighbours: u64,
@@ -32,6 +34,7 @@ impl Summary {
     pub(crate) fn count(&mut self, record: &FrameRecord) {
         self.frames += 1;
         self.spots += record.spots.len();
+        self.unlikely += record.spots.iter().filter(|spot| spot.marker_log_odds < 0.0).count();
         for rejected in &record.rejected {
             let is_new = !self.rejected.contains_key(&rejected.reason);
             let others = is_new && self.rejected.len() >= MOST_REASONS;
@@ -75,7 +78,7 @@ impl Summary {
         if let Some((first_s, last_s)) = self.span_s {
             table.row(["time".to_owned(), format!("{first_s:.3} to {last_s:.3} s")]);
         }
-        table.row(["spots".to_owned(), format!("{}{}", self.spots, self.per_frame())]);
+        table.row(["spots".to_owned(), format!("{}{}{}", self.spots, self.per_frame(), self.unlikely())]);
         table.row(["rejected".to_owned(), self.reasons()]);
         for (kind, count) in &self.odd {
             table.row(["odd".to_owned(), format!("{count} frames are {kind}: nothing can be found in them")]);
@@ -110,6 +113,13 @@ impl Summary {
         match self.frames {
             0 | 1 => String::new(),
             frames => format!(", {:.1} per frame", self.spots as f64 / frames as f64),
+        }
+    }
+
+    fn unlikely(&self) -> String {
+        match self.unlikely {
+            0 => String::new(),
+            unlikely => format!("; {unlikely} more likely clutter than markers"),
         }
     }
 

@@ -61,6 +61,8 @@ pub(crate) fn spot(u_px: f64, v_px: f64, area_px: u32) -> SpotRecord {
         covariance_px2: [[variance_px2, 0.0], [0.0, variance_px2]],
         middle_px: [u_px.round() as u32, v_px.round() as u32],
         background: 0.0,
+        probability: 0.5,
+        marker_log_odds: 0.0,
         bearing: None,
         bound_rad: None,
         range_m: None,

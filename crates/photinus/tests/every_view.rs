@@ -95,6 +95,7 @@ fn spot(place: Pixel, flux: f64, rng: &mut Pcg64) -> Spot {
         flux,
         light: None,
         background: 5.0,
+        marker_log_odds: 3.0,
         middle,
         extent: Extent { left: middle.0 - 1, top: middle.1 - 1, right: middle.0 + 1, bottom: middle.1 + 1 },
     }

@@ -8,7 +8,6 @@ use nalgebra::{Matrix2x3, Rotation3, Unit, Vector3};
 use photinus::airframe::Airframe;
 use photinus::locator::{self, Located, Settings};
 use photinus::pose::{self, LogLight, Pose, Symmetry};
-use photinus::spots;
 
 use super::trail::Trail;
 
@@ -21,8 +20,6 @@ const GATE_SIGMAS: f64 = 6.0;
 const GATE_M: f64 = 0.005;
 /// Spread of the logarithm of light where lobes and powers are not known.
 const UNKNOWN_UNIT_SIGMA: f64 = 0.5;
-/// A marker that shines to the side is faint beside one that faces the camera; reflections sit where no marker is.
-const FAINTEST: f64 = 0.02;
 /// Nothing is known of a direction to better, rad.
 const LEAST_RAD: f64 = 1e-6;
 
@@ -105,12 +102,10 @@ impl Flight {
         Self { tracks, ..Self::new(airframe) }
     }
 
-    /// Settings to locate with, when lobes and powers are not known: brightness hardly counts, and faint spots stay.
+    /// Settings to locate with, when lobes and powers are not known: brightness hardly counts.
     pub fn settings(settings: Settings) -> Settings {
         let pose = pose::Settings { unit_sigma: UNKNOWN_UNIT_SIGMA, ..settings.pose };
-        let shape =
-            spots::Shape { faintest: settings.spots.shape.faintest.min(FAINTEST), ..settings.spots.shape };
-        Settings { pose, spots: spots::Settings { shape, ..settings.spots }, ..settings }
+        Settings { pose, ..settings }
     }
 
     /// The airframe as it was located.

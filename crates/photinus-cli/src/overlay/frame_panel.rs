@@ -108,8 +108,11 @@ impl FramePanel {
         (radius, colour): (f32, Colour),
     ) {
         let centre = self.at(spot.u_px, spot.v_px);
-        canvas.circle(centre, radius, Pen::new(colour, 1.6 * self.unit).on(colours::SHADE));
-        self.label(canvas, labels, centre, radius, &index.to_string(), colour);
+        let is_unlikely = spot.marker_log_odds < 0.0;
+        let width = if is_unlikely { 0.8 } else { 1.6 };
+        canvas.circle(centre, radius, Pen::new(colour, width * self.unit).on(colours::SHADE));
+        let chance = if is_unlikely { format!(" {:.0} %", 100.0 * spot.probability) } else { String::new() };
+        self.label(canvas, labels, centre, radius, &format!("{index}{chance}"), colour);
     }
 
     fn rejected(&self, canvas: &mut Canvas<'_>, labels: &mut Labels, rejected: &RejectedRecord) {

@@ -25,6 +25,8 @@ fn spot(u_px: f64, v_px: f64) -> SpotRecord {
         middle_px: [u_px as u32, v_px as u32],
         extent_px: None,
         background: 4.0,
+        probability: 0.5,
+        marker_log_odds: 0.0,
         bearing: None,
         bound_rad: None,
         range_m: None,

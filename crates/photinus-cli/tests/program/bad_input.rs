@@ -51,7 +51,7 @@ fn usage() {
     refuses(&stage, &format!("{LOCATE} --tilt-sigma 0"), 2, &["--tilt-sigma", "degrees, 0.01 to 180"]);
     refuses(&stage, &format!("{LOCATE} --marker-sigma 2"), 2, &["--marker-sigma"]);
     refuses(&stage, &format!("{LOCATE} --marker-sigma nan"), 2, &["metres, 0 to 1"]);
-    refuses(&stage, "detect frame.png --faintest 2", 2, &["--faintest", "a share, 0 to 1"]);
+    refuses(&stage, "detect frame.png --reflection-ratio 2", 2, &["--reflection-ratio", "a share, 0 to 1"]);
     refuses(&stage, "detect .", 2, &["holds no dataset.toml", "; name the folder of a dataset"]);
     refuses(&stage, "detect . frame.png", 2, &["a folder among several inputs; name"]);
     refuses(

@@ -118,6 +118,7 @@ impl View {
                 flux,
                 light: None,
                 background: 5.0,
+                marker_log_odds: 3.0,
                 middle: (u, v),
                 extent,
             });

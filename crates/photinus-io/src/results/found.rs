@@ -95,6 +95,8 @@ impl From<&Spot> for SpotRecord {
             middle_px: [spot.middle.0, spot.middle.1],
             extent_px: Some([spot.extent.left, spot.extent.top, spot.extent.right, spot.extent.bottom]),
             background: spot.background,
+            probability: spot.probability(),
+            marker_log_odds: spot.marker_log_odds,
             bearing: None,
             bound_rad: None,
             range_m: None,
@@ -122,6 +124,7 @@ impl From<&SpotRecord> for Spot {
             flux: record.flux,
             light: record.light.map(|[value, sigma]| Measured { value, sigma }),
             background: record.background,
+            marker_log_odds: record.marker_log_odds,
             middle: (u, v),
             extent,
         }
@@ -211,6 +214,7 @@ mod tests {
             flux: 812.5,
             light: Some(Measured { value: 1030.0, sigma: 40.0 }),
             background: 3.5,
+            marker_log_odds: -1.3,
             middle: (100, 51),
             extent: Extent { left: 99, top: 50, right: 101, bottom: 52 },
         };

@@ -11,7 +11,8 @@ pub const DEFAULT_SIGMA_PX: f64 = 0.288_675_134_594_812_9;
 ///
 /// Only `u_px` and `v_px` must stand in a file. Defaults: `area_px` 1, `peak` 255, `saturated_px` 0, `flux` 0 (not known),
 /// `sigma_px` [`DEFAULT_SIGMA_PX`] (a number, or one per axis), `covariance_px2` diagonal from `sigma_px`,
-/// `middle_px` the nearest pixel, `background` 0, the others `null`. `covariance_px2` goes before `sigma_px`.
+/// `middle_px` the nearest pixel, `background` 0, `probability` 0.5, the others `null`. `covariance_px2` goes before `sigma_px`,
+/// `marker_log_odds` before `probability`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Given")]
 pub struct SpotRecord {
@@ -40,6 +41,10 @@ pub struct SpotRecord {
     pub extent_px: Option<[u32; 4]>,
     /// Grey value around it.
     pub background: f64,
+    /// The probability that it is the light of markers and not clutter, from how it looks in its frame alone.
+    pub probability: f64,
+    /// Natural logarithm of the odds of that.
+    pub marker_log_odds: f64,
     /// Unit vector towards it in the camera frame, where the camera is known.
     pub bearing: Option<[f64; 3]>,
     /// Truth is never farther from the bearing, rad.
@@ -73,6 +78,8 @@ struct Given {
     middle_px: Option<[u32; 2]>,
     extent_px: Option<[u32; 4]>,
     background: Option<f64>,
+    probability: Option<f64>,
+    marker_log_odds: Option<f64>,
     bearing: Option<[f64; 3]>,
     bound_rad: Option<f64>,
     range_m: Option<(f64, Option<f64>)>,
@@ -81,6 +88,9 @@ struct Given {
 
 /// How well a centre may be known, px: neither better than any light tells, nor worse than not at all.
 const SIGMAS_PX: std::ops::RangeInclusive<f64> = 1e-6..=1e4;
+
+/// No look of a spot makes it more certain than this, as the logarithm of the odds.
+const SUREST_LOG_ODDS: f64 = 20.0;
 
 /// One standard deviation, or one per axis.
 #[derive(Clone, Copy, Deserialize)]
@@ -136,6 +146,16 @@ impl TryFrom<Given> for SpotRecord {
                 "extent_px is no box of an image: first column, first row, last column, last row".to_owned()
             );
         }
+        if given.probability.is_some_and(|probability| !(0.0..=1.0).contains(&probability)) {
+            return Err("probability is not 0 to 1".to_owned());
+        }
+        if given.marker_log_odds.is_some_and(|log_odds| !(log_odds.abs() <= SUREST_LOG_ODDS)) {
+            return Err(format!("marker_log_odds is not -{SUREST_LOG_ODDS} to {SUREST_LOG_ODDS}"));
+        }
+        let of_probability = |probability: f64| {
+            (probability / (1.0 - probability)).ln().clamp(-SUREST_LOG_ODDS, SUREST_LOG_ODDS)
+        };
+        let marker_log_odds = given.marker_log_odds.or(given.probability.map(of_probability)).unwrap_or(0.0);
         // The sides are those of an image, checked above.
         let nearest = |px: f64| px.round() as u32;
         Ok(Self {
@@ -151,6 +171,8 @@ impl TryFrom<Given> for SpotRecord {
             middle_px: given.middle_px.unwrap_or([nearest(u_px), nearest(v_px)]),
             extent_px: given.extent_px,
             background: given.background.unwrap_or(0.0),
+            probability: 1.0 / (1.0 + (-marker_log_odds).exp()),
+            marker_log_odds,
             bearing: given.bearing,
             bound_rad: given.bound_rad,
             range_m: given.range_m,

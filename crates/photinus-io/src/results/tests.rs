@@ -17,6 +17,8 @@ fn spot() -> SpotRecord {
         middle_px: [100, 51],
         extent_px: Some([99, 50, 101, 51]),
         background: 3.5,
+        probability: 0.5,
+        marker_log_odds: 0.0,
         bearing: Some([0.1, 0.2, -0.97]),
         bound_rad: Some(0.002),
         range_m: Some((1.0, None)),

@@ -160,6 +160,7 @@ pub(crate) fn spots(camera: &Camera, airframe: &Airframe, yaw_rad: f64, distance
             flux: 20_000.0 * intensity / (distance_m * distance_m),
             light: None,
             background: 5.0,
+            marker_log_odds: 3.0,
             middle: (u, v),
             extent: Extent { left: u - 1, top: v - 1, right: u + 1, bottom: v + 1 },
         })

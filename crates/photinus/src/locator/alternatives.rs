@@ -75,7 +75,7 @@ impl Alternatives {
             self.gather(mask);
             let Some(log_density) = matcher.log_density(context, &self.handful) else { continue };
             let clutter: f64 = self.handful.iter().map(|&spot| context.clutter[spot]).sum();
-            if log_density - clutter > POOR_GAIN {
+            if log_density + context.log_neighbours - clutter > POOR_GAIN {
                 self.looked_at.push((log_density - clutter, mask));
             }
         }

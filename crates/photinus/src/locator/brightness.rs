@@ -1,13 +1,13 @@
 //! How bright a spot is, and how sure that is.
 //!
-//! In: sightings with their spots, and the reflections among what was rejected. Out: the logarithm of the light of each. Where the camera's
+//! In: sightings with their spots. Out: the logarithm of the light of each. Where the camera's
 //! point spread told a spot's light, that is it, with its sigma. Where none did (spots of other detectors, the fixed threshold, what is no point),
 //! the light in the window stands for it: its variance was fitted to rendered frames of one camera (eight ranges, two airframes, 39 000
 //! spots): a part that all have, one that falls with the light, the light of others in the window, and what they cut off it.
 
 use super::Sighting;
 use crate::pose::LogLight;
-use crate::spots::{Reason, Rejected, Spot};
+use crate::spots::Spot;
 
 /// Error of a logarithm of light against others of the frame that all spots have: where in a pixel they fall, how much of the
 /// halo is in the window.
@@ -18,7 +18,7 @@ const NOISE: f64 = 0.75;
 const OTHERS: f64 = 0.11;
 const FALL_PX: f64 = 3.0;
 const FAR_PX: f64 = 15.0;
-/// Error where another spot, or a reflection, makes the window narrow, at no distance, and how far away that is, px.
+/// Error where another spot makes the window narrow, at no distance, and how far away that is, px.
 const NARROWED: f64 = 0.25;
 const NARROWED_PX: f64 = 4.2;
 /// Logarithm of the light of a saturated spot over what its pixels show, where no point spread told it, and its error: several times as much
@@ -27,7 +27,7 @@ const HIDDEN_LOG: f64 = 0.3;
 const HIDDEN_SIGMA: f64 = 0.6;
 
 /// Tells the light of all sightings. `order` is room to work in.
-pub(super) fn tell(sightings: &mut [Sighting], rejected: &[Rejected], order: &mut Vec<usize>) {
+pub(super) fn tell(sightings: &mut [Sighting], order: &mut Vec<usize>) {
     order.clear();
     order.extend(0..sightings.len());
     order.sort_unstable_by(|&a, &b| {
@@ -48,17 +48,6 @@ pub(super) fn tell(sightings: &mut [Sighting], rejected: &[Rejected], order: &mu
                 disturb(&mut sightings[own], other_light, gap_px);
                 disturb(&mut sightings[other], own_light, gap_px);
             }
-        }
-    }
-    for reflection in rejected.iter().filter(|rejected| rejected.reason == Reason::Reflection) {
-        let there = reflection.centre;
-        let first = order.partition_point(|&index| sightings[index].spot.centre.v < there.v - FAR_PX);
-        for &index in &order[first..] {
-            let here = sightings[index].spot.centre;
-            if here.v > there.v + FAR_PX {
-                break;
-            }
-            disturb(&mut sightings[index], None, libm::hypot(there.u - here.u, there.v - here.v));
         }
     }
 }

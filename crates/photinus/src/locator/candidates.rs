@@ -8,7 +8,7 @@ use crate::pose::{Misfit, Mode};
 const CLEAR_GAIN: f64 = 12.0;
 /// ... whose misfit is no more than this, in sigma of any one observation, and no rarer than that as a whole.
 const CLEAR_SIGMAS: f64 = 5.0;
-const CLEAR_P_VALUE: f64 = 1e-4;
+const CLEAR_P_VALUE: f64 = 0.01;
 
 /// Observations that may be one neighbour, and what it then is.
 #[derive(Clone, Debug)]
@@ -20,8 +20,8 @@ pub(super) struct Candidate {
     pub(super) misfit: Misfit,
     /// Largest misfit, in sigma.
     pub(super) worst_sigma: f64,
-    /// Logarithm of the density of its observations as this neighbour, with how many neighbours there are: per sr and per unit of the logarithm
-    /// of light each.
+    /// Logarithm of the density of its observations as this neighbour, if it is there: per sr and per unit of the logarithm of light each, times
+    /// 1 sr.
     pub(super) log_density: f64,
     first_member: usize,
     members: usize,
@@ -89,12 +89,12 @@ impl Candidates {
     }
 
     /// Whether these observations may be something else than one neighbour, for all that is known.
-    pub(super) fn is_doubtful(&self, group: &[usize], clutter_log_density: &[f64]) -> bool {
+    pub(super) fn is_doubtful(&self, group: &[usize], clutter_log_density: &[f64], log_neighbours: f64) -> bool {
         let Some(index) = self.find(group) else { return true };
         let Candidate { log_density, misfit, worst_sigma, .. } = &self.all[index];
         let clutter: f64 = group.iter().map(|&spot| clutter_log_density[spot]).sum();
         let is_clear = group.len() > 1
-            && log_density - clutter > CLEAR_GAIN
+            && log_density + log_neighbours - clutter > CLEAR_GAIN
             && *worst_sigma < CLEAR_SIGMAS
             && misfit.p_value() > CLEAR_P_VALUE;
         !is_clear

@@ -16,14 +16,19 @@ const WORTH_FRAMES: f64 = 0.3;
 const CELL_PX: f64 = 64.0;
 /// The mean of the whole frame is worth what the surroundings tell over so many times their area.
 const WORTH_SURROUNDINGS: f64 = 1.0;
-/// The light of clutter may be anything over so many units of its logarithm: a factor of 3,000.
+/// The light of clutter may be anything over so many units of its logarithm, a factor of 3,000: as good as so many points that show their light.
 const LIGHT_RANGE: f64 = 8.0;
+const WORTH_POINTS: f64 = 3.0;
+/// The light that clutter has is counted in steps of its logarithm.
+const LIGHT_STEP: f64 = 0.5;
+const LIGHT_STEPS: usize = 32;
 
 /// The density of clutter at each observation.
 #[derive(Debug, Default)]
 pub(super) struct Clutter {
     log_density: Vec<f64>,
-    cells: Vec<f64>,
+    /// By cell of the image, then by step of light.
+    counts: Vec<f64>,
 }
 
 /// An image that is divided into cells.
@@ -53,15 +58,15 @@ impl Cells {
 }
 
 impl Clutter {
-    /// How many cells an image of `size` (width, height) px has.
-    pub(super) fn cells_of(size: [usize; 2]) -> usize {
+    /// How many counts there are of an image of `size` (width, height) px.
+    pub(super) fn counts_of(size: [usize; 2]) -> usize {
         let Cells { columns, rows } = Cells::of(size);
-        columns * rows
+        columns * rows + LIGHT_STEPS
     }
 
-    /// The clutter in every cell, as measured last.
-    pub(super) fn cells(&self) -> &[f64] {
-        &self.cells
+    /// How much clutter is in every cell of the image and step of light, as measured last.
+    pub(super) fn counts(&self) -> &[f64] {
+        &self.counts
     }
 
     /// Logarithm of the density at each observation.
@@ -81,22 +86,18 @@ impl Clutter {
         share: impl Fn(usize) -> f64,
     ) {
         let cells = Cells::of(size);
-        self.cells.clear();
-        self.cells.resize(cells.columns * cells.rows, 0.0);
-        let mut all = 0.0;
-        for (index, sighting) in sightings.iter().enumerate() {
-            let [column, row] = cells.of_observation(sighting);
-            self.cells[row * cells.columns + column] += share(index);
-            all += share(index);
-        }
+        let in_cells = cells.columns * cells.rows;
+        self.count(sightings, cells, &share);
         let frames = memory.map_or(0, Memory::frames) as f64;
-        let remembered = |cell: usize| memory.map_or(0.0, |memory| memory.clutter(cell));
-        let ever: f64 = (0..self.cells.len()).map(remembered).sum();
+        let remembered = |count: usize| memory.map_or(0.0, |memory| memory.clutter(count));
+        let all: f64 = self.counts[..in_cells].iter().sum();
+        let ever: f64 = (0..in_cells).map(remembered).sum();
         self.log_density.clear();
         self.log_density.resize(sightings.len(), 0.0);
         for group in 0..groups.len() {
             let members = groups.group(group);
             let own: f64 = members.iter().map(|&index| share(index)).sum();
+            let each = own / members.len() as f64;
             for &index in members {
                 let sighting = &sightings[index];
                 let around = cells.around(cells.of_observation(sighting));
@@ -106,17 +107,55 @@ impl Clutter {
                     frames: 1.0 + frames,
                     in_frame: (all - own).max(0.0) + ever,
                     area_px,
-                    in_area: (around.clone().map(|cell| self.cells[cell]).sum::<f64>() - own).max(0.0)
+                    in_area: (around.clone().map(|cell| self.counts[cell]).sum::<f64>() - own).max(0.0)
                         + around.map(remembered).sum::<f64>(),
                 };
-                let each = own / members.len() as f64;
-                let log_per_px2 =
-                    (0..members.len()).map(|before| near.log_per_px2(before as f64 * each)).sum::<f64>() / members.len() as f64;
+                let log_per_px2 = (0..members.len()).map(|before| near.log_per_px2(before as f64 * each)).sum::<f64>()
+                    / members.len() as f64;
                 let rad2_per_px = (sighting.rad_per_px * sighting.rad_per_px).max(1e-12);
-                let light = if with_light && sighting.log_light.is_some() { libm::log(LIGHT_RANGE) } else { 0.0 };
-                self.log_density[index] = log_per_px2 - libm::log(rad2_per_px) - light;
+                let light = sighting.log_light.filter(|_| with_light).map_or(0.0, |light| {
+                    let step = light_step(light.value);
+                    let count = |step: usize| self.counts[in_cells + step] + remembered(in_cells + step);
+                    let own_there = members.iter().filter_map(|&other| {
+                        let light = sightings[other].log_light?;
+                        Some(share(other) * weight_of(step, light_step(light.value)))
+                    });
+                    let there = [step.saturating_sub(1), step, (step + 1).min(LIGHT_STEPS - 1)];
+                    let there = 0.25 * count(there[0]) + 0.5 * count(there[1]) + 0.25 * count(there[2]);
+                    let there = (there - own_there.sum::<f64>()).max(0.0) / LIGHT_STEP;
+                    let points = (all - own).max(0.0) + ever;
+                    libm::log((WORTH_POINTS / LIGHT_RANGE + there) / (WORTH_POINTS + points))
+                });
+                self.log_density[index] = log_per_px2 - libm::log(rad2_per_px) + light - sighting.spot.marker_log_odds;
             }
         }
+    }
+
+    fn count(&mut self, sightings: &[Sighting], cells: Cells, share: &impl Fn(usize) -> f64) {
+        let in_cells = cells.columns * cells.rows;
+        self.counts.clear();
+        self.counts.resize(in_cells + LIGHT_STEPS, 0.0);
+        for (index, sighting) in sightings.iter().enumerate() {
+            let [column, row] = cells.of_observation(sighting);
+            self.counts[row * cells.columns + column] += share(index);
+            if let Some(light) = sighting.log_light {
+                self.counts[in_cells + light_step(light.value)] += share(index);
+            }
+        }
+    }
+}
+
+/// The step that a logarithm of light is in.
+fn light_step(log_light: f64) -> usize {
+    ((log_light / LIGHT_STEP).max(0.0) as usize).min(LIGHT_STEPS - 1)
+}
+
+/// What a point in one step of light counts in another.
+fn weight_of(step: usize, other: usize) -> f64 {
+    match step.abs_diff(other) {
+        0 => 0.5,
+        1 => 0.25,
+        _ => 0.0,
     }
 }
 

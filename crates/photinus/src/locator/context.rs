@@ -18,4 +18,6 @@ pub(super) struct Context<'a> {
     pub(super) power: Option<LogLight>,
     /// Logarithm of the density of each observation as clutter, per sr and per unit of the logarithm of its light.
     pub(super) clutter: &'a [f64],
+    /// Logarithm of how many neighbours there are per sr.
+    pub(super) log_neighbours: f64,
 }

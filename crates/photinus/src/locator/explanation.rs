@@ -52,8 +52,13 @@ impl Explanation {
         self.clutter[observation]
     }
 
-    /// Explains a frame of which each observation has the logarithm of its density as clutter.
-    pub(super) fn explain(&mut self, candidates: &Candidates, clutter_log_density: &[f64]) {
+    /// How many neighbours the frame has.
+    pub(super) fn neighbours(&self) -> f64 {
+        self.probability.iter().sum()
+    }
+
+    /// Explains a frame of which each observation has the logarithm of its density as clutter, and neighbours have one per sr.
+    pub(super) fn explain(&mut self, candidates: &Candidates, clutter_log_density: &[f64], log_neighbours: f64) {
         let count = clutter_log_density.len();
         self.probability.clear();
         self.probability.resize(candidates.len(), 0.0);
@@ -62,7 +67,7 @@ impl Explanation {
         self.gains.clear();
         self.gains.extend((0..candidates.len()).map(|index| {
             let clutter: f64 = candidates.members(index).iter().map(|&spot| clutter_log_density[spot]).sum();
-            let gain = candidates.get(index).log_density - clutter;
+            let gain = candidates.get(index).log_density + log_neighbours - clutter;
             if gain.is_nan() { f64::NEG_INFINITY } else { gain.min(LARGEST_GAIN) }
         }));
         self.done.clear();

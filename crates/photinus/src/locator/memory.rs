@@ -1,6 +1,6 @@
-//! What the frames before told: how bright the LEDs are, and where clutter is.
+//! What the frames before told: how bright the LEDs are, where clutter is, and how many neighbours there are.
 //!
-//! In: of each frame the clutter in every cell of the image, and the power that its clear neighbours have, as found without this memory. Out: both over
+//! In: of each frame its clutter, how many neighbours it has and the power of their LEDs, as found without this memory. Out: the same over
 //! the last [`Memory::FRAMES`] frames. What is remembered depends on those frames alone: whoever locates in them again remembers the same.
 
 use crate::pose::LogLight;
@@ -13,7 +13,7 @@ const FEWEST: usize = 3;
 /// The last frames.
 #[derive(Debug, Default)]
 pub(super) struct Memory {
-    /// Cells of the image.
+    /// Counts of clutter of a frame: in the cells of its image, and of its light.
     cells: usize,
     frames: usize,
     next: usize,
@@ -21,6 +21,7 @@ pub(super) struct Memory {
     clutter: Vec<f64>,
     sums: Vec<f64>,
     log_powers: Vec<Option<f64>>,
+    neighbours: Vec<f64>,
     sorted: Vec<f64>,
 }
 
@@ -37,6 +38,7 @@ impl Memory {
             clutter: vec![0.0; cells * Self::FRAMES],
             sums: vec![0.0; cells],
             log_powers: vec![None; Self::FRAMES],
+            neighbours: vec![0.0; Self::FRAMES],
             sorted: Vec::with_capacity(Self::FRAMES),
         }
     }
@@ -49,6 +51,16 @@ impl Memory {
     /// The clutter that they had in a cell, together.
     pub(super) fn clutter(&self, cell: usize) -> f64 {
         self.sums.get(cell).copied().unwrap_or(0.0)
+    }
+
+    /// How many neighbours they had, together.
+    pub(super) fn neighbours(&self) -> f64 {
+        (0..self.frames).map(|age| self.neighbours[self.aged(age)]).sum()
+    }
+
+    /// The place of the frame so many frames ago.
+    fn aged(&self, age: usize) -> usize {
+        (self.next + Self::FRAMES - 1 - age) % Self::FRAMES
     }
 
     /// The light of an LED straight ahead at 1 m, where enough frames told it.
@@ -66,18 +78,19 @@ impl Memory {
     }
 
     /// Remembers a frame and forgets the oldest.
-    pub(super) fn remember(&mut self, clutter: &[f64], log_power: Option<f64>) {
+    pub(super) fn remember(&mut self, clutter: &[f64], neighbours: f64, log_power: Option<f64>) {
         let own = &mut self.clutter[self.next * self.cells..][..self.cells];
         own.copy_from_slice(clutter);
         self.log_powers[self.next] = log_power;
+        self.neighbours[self.next] = neighbours;
         self.next = (self.next + 1) % Self::FRAMES;
         self.frames = (self.frames + 1).min(Self::FRAMES);
         // Sums are made anew in one order, so that they are the same whenever the memory began.
-        for (cell, sum) in self.sums.iter_mut().enumerate() {
-            *sum = 0.0;
-            for age in 0..self.frames {
-                let frame = (self.next + Self::FRAMES - 1 - age) % Self::FRAMES;
-                *sum += self.clutter[frame * self.cells + cell];
+        self.sums.fill(0.0);
+        for age in 0..self.frames {
+            let frame = self.aged(age) * self.cells;
+            for (sum, clutter) in self.sums.iter_mut().zip(&self.clutter[frame..]) {
+                *sum += clutter;
             }
         }
     }
@@ -97,9 +110,9 @@ mod tests {
             let mut memory = Memory::new(2);
             for number in first..200 {
                 let (clutter, log_power) = frame(number);
-                memory.remember(&clutter, log_power);
+                memory.remember(&clutter, number as f64 % 3.0, log_power);
             }
-            (memory.frames(), [0, 1].map(|cell| memory.clutter(cell).to_bits()), memory.power())
+            (memory.frames(), [0, 1].map(|cell| memory.clutter(cell).to_bits()), memory.neighbours(), memory.power())
         };
         assert_eq!(after(0), after(200 - Memory::FRAMES));
         assert_ne!(after(0), after(200 - Memory::FRAMES / 2));
@@ -110,7 +123,7 @@ mod tests {
         let mut memory = Memory::new(1);
         assert_eq!(memory.power(), None);
         for number in 0..Memory::FRAMES {
-            memory.remember(&[0.0], Some(if number % 2 == 0 { 8.0 } else { 10.0 }));
+            memory.remember(&[0.0], 1.0, Some(if number % 2 == 0 { 8.0 } else { 10.0 }));
         }
         let LogLight { value, sigma } = memory.power().unwrap();
         assert!((8.0..=10.0).contains(&value) && sigma > 1.0, "{value} {sigma}");

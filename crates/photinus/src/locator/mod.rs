@@ -52,6 +52,10 @@ pub use settings::Settings;
 pub use sighting::Sighting;
 use telling::Telling;
 
+/// First looks, each at what the one before leaves as clutter.
+const LOOKS: usize = 4;
+/// However seldom neighbours were, there are so many per frame.
+const FEWEST_NEIGHBOURS: f64 = 0.2;
 /// Rounds of telling how dense clutter is from what is explained, and what is explained from that.
 const CLUTTER_ROUNDS: usize = 2;
 
@@ -111,7 +115,7 @@ impl Locator {
             return Err(LocatorError::Probability(settings.min_probability));
         }
         let detector = Detector::with_optics(settings.spots, camera.optics().cloned())?;
-        let memory = Memory::new(Clutter::cells_of([camera.width(), camera.height()]));
+        let memory = Memory::new(Clutter::counts_of([camera.width(), camera.height()]));
         Ok(Self {
             camera,
             curve,
@@ -186,7 +190,7 @@ impl Locator {
         finished(Stage::Spots);
         let spots = detections.spots.iter().map(|spot| (spot, None));
         sight_all(&self.camera, self.curve.as_ref(), spots, &mut self.located);
-        brightness::tell(&mut self.located.sightings, &self.located.rejected, &mut self.order);
+        brightness::tell(&mut self.located.sightings, &mut self.order);
         finished(Stage::Bearings);
         Ok(self.tell_neighbours(gravity, finished))
     }
@@ -231,7 +235,7 @@ impl Locator {
         self.located.rejected.clear();
         finished(Stage::Spots);
         sight_all(&self.camera, self.curve.as_ref(), spots, &mut self.located);
-        brightness::tell(&mut self.located.sightings, &self.located.rejected, &mut self.order);
+        brightness::tell(&mut self.located.sightings, &mut self.order);
         finished(Stage::Bearings);
         self.tell_neighbours(gravity, finished)
     }
@@ -244,35 +248,45 @@ impl Locator {
         let size = [self.camera.width(), self.camera.height()];
         let (sightings, with_light) = (&self.located.sightings, self.use_brightness);
         let watched = Watched::new(&self.camera, self.mask.as_ref());
-        let context = Context { sightings, gravity, watched, power: None, clutter: &[] };
+        let context = Context { sightings, gravity, watched, power: None, clutter: &[], log_neighbours: 0.0 };
         let of_frame = self.groups.sort_out(&context, &mut self.matcher);
         // Until somebody is seen everything is clutter: what stands out of that by a first look is not.
-        self.clutter.measure(sightings, &self.groups, size, with_light, None, |_| 1.0);
-        let context = Context { clutter: self.clutter.log_density(), ..context };
         self.groups.look(&context, &mut self.matcher);
-        self.first_clutter.measure(sightings, &self.groups, size, with_light, None, |spot| self.groups.clutter(spot));
+        for _ in 0..LOOKS {
+            let share = |spot: usize| self.groups.clutter(spot);
+            self.first_clutter.measure(sightings, &self.groups, size, with_light, None, share);
+            let log_neighbours = log_neighbours(self.groups.neighbours(), None);
+            self.groups.weigh_looks(self.first_clutter.log_density(), log_neighbours);
+        }
+        let clear_power = self.groups.clear_log_power(&context, &mut self.matcher);
         finished(Stage::Grouping);
-        let power = self.memory.power().or(of_frame);
-        let context = Context { power, clutter: self.first_clutter.log_density(), ..context };
+        let context = Context {
+            power: self.memory.power().or(of_frame),
+            clutter: self.first_clutter.log_density(),
+            log_neighbours: log_neighbours(self.groups.neighbours(), Some(&self.memory)),
+            ..context
+        };
         self.candidates.clear();
         for group in 0..self.groups.len() {
             self.poser.weigh(&context, self.groups.group(group), &mut self.matcher, &mut self.candidates);
         }
         for group in 0..self.groups.len() {
-            if self.candidates.is_doubtful(self.groups.group(group), context.clutter) {
+            if self.candidates.is_doubtful(self.groups.group(group), context.clutter, context.log_neighbours) {
                 let Self { alternatives, groups, matcher, poser, candidates, .. } = self;
                 alternatives.around(&context, groups, group, matcher, |handful, matcher| {
                     poser.weigh(&context, handful, matcher, candidates);
                 });
             }
         }
-        self.explanation.explain(&self.candidates, context.clutter);
+        let power = context.power;
+        self.explanation.explain(&self.candidates, context.clutter, context.log_neighbours);
         for _ in 0..CLUTTER_ROUNDS {
-            let memory = Some(&self.memory);
-            self.clutter.measure(sightings, &self.groups, size, with_light, memory, |spot| self.explanation.clutter(spot));
-            self.explanation.explain(&self.candidates, self.clutter.log_density());
+            let (memory, share) = (Some(&self.memory), |spot: usize| self.explanation.clutter(spot));
+            self.clutter.measure(sightings, &self.groups, size, with_light, memory, share);
+            let log_neighbours = log_neighbours(self.explanation.neighbours(), memory);
+            self.explanation.explain(&self.candidates, self.clutter.log_density(), log_neighbours);
         }
-        self.memory.remember(self.first_clutter.cells(), of_frame.map(|power| power.value));
+        self.memory.remember(self.first_clutter.counts(), self.groups.neighbours(), clear_power);
         if std::env::var("PDBG").is_ok() {
             eprintln!("FRAME {} spots power {power:?}", self.located.sightings.len());
             for i in 0..self.candidates.len() {
@@ -287,6 +301,14 @@ impl Locator {
         finished(Stage::Posing);
         &self.located
     }
+}
+
+/// Logarithm of how many neighbours there are per sr, where a frame has so many: as many as that tells without one of them, with those that are
+/// remembered, and one to begin with; in a field of half the sphere.
+fn log_neighbours(in_frame: f64, memory: Option<&Memory>) -> f64 {
+    let (remembered, frames) = memory.map_or((0.0, 0.0), |memory| (memory.neighbours(), memory.frames() as f64));
+    let per_frame = (1.0 + remembered + (in_frame - 1.0).max(0.0)) / (2.0 + frames);
+    libm::log(per_frame.max(FEWEST_NEIGHBOURS) / core::f64::consts::TAU)
 }
 
 /// Gives every spot its bearing; those that have none are rejected.

@@ -22,8 +22,6 @@ use crate::pose::{
 use crate::ranging::Interval;
 use crate::spots::{self, Brightness};
 
-/// How many neighbours there are per sr: one in the field of a wide lens.
-pub(super) const NEIGHBOURS_PER_SR: f64 = 0.16;
 /// Logarithm of the farthest over the nearest distance of a neighbour: they are even over it.
 pub(super) const LOG_RANGE: f64 = 4.6;
 /// Light of the wrong power does not rule out what geometry is sure of, nats.
@@ -32,10 +30,6 @@ const MOST_POWER_NATS: f64 = 12.0;
 const RESOLUTION_PX: f64 = 2.5;
 /// Light of a spot that is found half of the time over the step that makes a pixel bright, px (rendered frames).
 const FAINTEST_PX: f64 = 2.5;
-/// The same of a spot that is taken for a reflection half of the time over the height that makes it certain, and how much
-/// fainter than others it is then over the share that is asked for.
-const CERTAIN_PX: f64 = 2.9;
-const OUTSHONE_SHARE: f64 = 0.9;
 
 /// Over so much of the field the error of a calibration changes by itself.
 const CALIBRATION_LENGTH_RAD: f64 = 0.5;
@@ -184,16 +178,15 @@ impl Poser {
             }),
             misfit: *misfit,
             worst_sigma: *worst_sigma,
-            log_density: log_evidence + log_neighbours(group.len()) + power_agreement(context, group, *log_power),
+            log_density: log_evidence - log_range(group.len()) + power_agreement(context, group, *log_power),
         };
         candidates.push(group, markers, modes, told);
     }
 }
 
-/// Logarithm of how many neighbours there are per sr, and per unit of the logarithm of distance where spot size does not tell it.
-fn log_neighbours(spots: usize) -> f64 {
-    let range = if spots == 1 { 1.0 } else { LOG_RANGE };
-    libm::log(NEIGHBOURS_PER_SR / range)
+/// Logarithm of the range of the logarithm of distance over which neighbours are even, where spot size does not tell it.
+fn log_range(spots: usize) -> f64 {
+    if spots == 1 { 0.0 } else { libm::log(LOG_RANGE) }
 }
 
 /// What it is worth that the light of a group that tells the power of its own LEDs is that of the frame's others, as a logarithm.
@@ -221,13 +214,8 @@ fn of_calibration(sightings: &[Sighting], group: &[usize], position_m: &Vector3<
 
 /// Which markers a detector with these settings finds.
 fn visible(settings: &spots::Settings) -> Visible<'static> {
-    let (step, outshone) = match settings.brightness {
-        Brightness::Threshold(level) => (f64::from(level), 0.0),
-        Brightness::Contrast(step) => (f64::from(step), OUTSHONE_SHARE * settings.shape.faintest),
-    };
-    let faintest_light = FAINTEST_PX * step;
-    let certain = CERTAIN_PX * settings.shape.faint_dn / faintest_light;
-    Visible { faintest_light, outshone, certain, watched: None, others: &[] }
+    let (Brightness::Threshold(step) | Brightness::Contrast(step)) = settings.brightness;
+    Visible { faintest_light: FAINTEST_PX * f64::from(step), watched: None, others: &[] }
 }
 
 fn observe(sighting: &Sighting, clutter_log_density: f64) -> Observation {

@@ -79,6 +79,7 @@ fn spot(centre: Pixel, intensity: f64, distance_m: f64) -> Spot {
         flux: 4000.0 * intensity / (distance_m * distance_m),
         light: None,
         background: 5.0,
+        marker_log_odds: 3.0,
         middle: (within(centre.u), within(centre.v)),
         extent: Extent {
             left: within(centre.u - half),

@@ -35,10 +35,6 @@ pub struct LogDistance {
 pub struct Visible<'a> {
     /// Light at which a marker is found half of the time, in the units of the observations; 0 where unknown.
     pub faintest_light: f64,
-    /// A marker fainter than this share of the brightest beside it is taken for its reflection; 0 where none is.
-    pub outshone: f64,
-    /// ... but not from so many times the faintest light on.
-    pub certain: f64,
     /// Where the camera looks; everywhere where that is `None`.
     pub watched: Option<Watched<'a>>,
     /// Spots that are not this neighbour's, near it: a marker beside one of them may be merged with it.

@@ -35,13 +35,9 @@ impl Problem<'_> {
             _ => FAINTEST_SHARE,
         };
         let intensity = |marker: usize| self.airframe.intensity(marker, &camera_m);
-        let brightest = self.used().map(|(_, marker)| intensity(marker)).fold(0.0, f64::max);
         let nats = |marker: usize| {
             let shines = intensity(marker).max(1e-4);
-            let stands_out = odds(shines / (self.known.visible.outshone * brightest))
-                + odds(shines / (self.known.visible.certain * half));
-            let found =
-                (1.0 - self.settings.missed) * probability(odds(shines / half)) * probability(stands_out);
+            let found = (1.0 - self.settings.missed) * probability(odds(shines / half));
             if self.is_used(marker) {
                 return -libm::log(found.max(1e-9));
             }

@@ -6,11 +6,11 @@ use super::background::Background;
 use super::grouping::Components;
 use super::measuring::Meter;
 use super::neighbourhood::Neighbourhood;
+use super::odds;
 use super::part::{Part, outline};
-use super::reflections;
 use super::rejection::Reason;
 use super::runs::{Run, Runs};
-use super::settings::{Brightness, Settings, SettingsError};
+use super::settings::{Settings, SettingsError};
 use super::splitting::{Ground, Splitter};
 use super::{Detections, Extent, Rejected};
 use crate::frame::{FrameError, FrameView, Mask};
@@ -28,6 +28,8 @@ pub struct Detector {
     parts: Vec<Part>,
     neighbourhood: Neighbourhood,
     meter: Meter,
+    /// Odds for clutter of each spot, but for those of a reflection.
+    clutter_odds: Vec<f64>,
     detections: Detections,
 }
 
@@ -56,6 +58,7 @@ impl Detector {
             parts: Vec::new(),
             neighbourhood: Neighbourhood::default(),
             meter: Meter::new(&settings, optics),
+            clutter_odds: Vec::new(),
             detections: Detections::default(),
         })
     }
@@ -76,11 +79,9 @@ impl Detector {
         self.background.measure(frame, self.settings.brightness);
         self.components.group(self.runs.find(frame, &self.background));
         self.outline_parts(frame, mask);
-        self.reject_by_outline();
+        self.judge_outlines();
         self.measure_parts(frame);
-        if let Brightness::Contrast(_) = self.settings.brightness {
-            reflections::reject(&mut self.detections, &self.settings.shape);
-        }
+        odds::weigh(&mut self.detections, &self.clutter_odds, &self.settings.shape);
         self.detections.rejected.sort_unstable_by_key(|rejected| {
             let Extent { top, left, bottom, right } = rejected.extent;
             (top, left, bottom, right, rejected.area_px)
@@ -113,15 +114,19 @@ impl Detector {
         self.parts.sort_unstable_by_key(|part| part.first);
     }
 
-    fn reject_by_outline(&mut self) {
+    fn judge_outlines(&mut self) {
+        let shape = &self.settings.shape;
         for part in &mut self.parts {
-            part.reason = part.outline.reject(&self.settings.shape);
+            part.reason = part.outline.reject(shape);
+            if part.outline.is_streak(shape) {
+                part.clutter_odds += odds::LONG_AND_THIN;
+            }
         }
         for i in 0..self.parts.len() {
             if self.parts[i].reason == Some(Reason::Sun) {
                 let sun = self.parts[i].outline;
-                for part in self.parts.iter_mut().filter(|part| part.reason.is_none()) {
-                    part.reason = part.outline.is_in_glare_of(&sun).then_some(Reason::Glare);
+                for part in self.parts.iter_mut().filter(|part| part.outline.is_in_glare_of(&sun)) {
+                    part.clutter_odds += odds::BESIDE_SUN;
                 }
             }
         }
@@ -131,6 +136,7 @@ impl Detector {
         self.neighbourhood.arrange(frame, self.parts.iter().map(|part| (part.guess, part.radius_px)));
         self.detections.spots.clear();
         self.detections.rejected.clear();
+        self.clutter_odds.clear();
         self.meter.fit(frame, &self.parts, &self.neighbourhood);
         for i in 0..self.parts.len() {
             let part = self.parts[i];
@@ -142,7 +148,10 @@ impl Detector {
                 }
             };
             match measured {
-                Ok(spot) => self.detections.spots.push(spot),
+                Ok(spot) => {
+                    self.detections.spots.push(spot);
+                    self.clutter_odds.push(part.clutter_odds + self.meter.hot_pixel_odds(&part));
+                }
                 Err(reason) => self.detections.rejected.push(Rejected {
                     centre: part.guess,
                     area_px: part.outline.area_px,

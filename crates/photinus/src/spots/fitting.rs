@@ -11,6 +11,7 @@ use nalgebra::Matrix2;
 use super::centroid::PixelVariance;
 use super::fit::{self, Fitted, PixelNoise, PointSource};
 use super::full_level::FullLevel;
+use super::hot_pixel::{self, LonePixels};
 use super::learning::Belief;
 use super::lessons::LEARNT_FRAMES;
 use super::neighbourhood::Neighbourhood;
@@ -73,6 +74,7 @@ pub(super) struct Fitter {
     pub(super) noise: Noise,
     pub(super) belief: Belief,
     pub(super) full_level: FullLevel,
+    pub(super) lone_pixels: LonePixels,
     /// Whether parts are fitted at all: it takes time.
     pub(super) fits: bool,
     /// Frames that have told something of the camera.
@@ -89,6 +91,7 @@ impl Fitter {
             noise: settings.noise,
             belief: Belief::new(settings.noise, u8::MAX),
             full_level: FullLevel::default(),
+            lone_pixels: LonePixels::default(),
             fits: matches!(settings.brightness, Brightness::Contrast(_)),
             frames: 0,
             window: Window::default(),
@@ -193,6 +196,14 @@ impl Fitter {
             }
         };
         PixelNoise { dark: noise.dark.max(around.variance), ..noise }
+    }
+
+    /// Odds that a single bright pixel, with its signal and that of the eight around it, is a hot one.
+    pub(super) fn hot_pixel_odds(&self, (u, v): (u32, u32), own: f32, around: f32) -> f64 {
+        let Some(optics) = &self.optics else { return self.lone_pixels.odds((u, v)) };
+        let place = Pixel::new(f64::from(u), f64::from(v));
+        let dark = Surroundings { level: 0.0, slope: [0.0; 2], variance: 0.0 };
+        hot_pixel::odds(own, around, optics.spread.at(place), self.pixel_noise(dark))
     }
 
     /// What becomes of charge above a full well.

@@ -59,6 +59,12 @@ impl Fitter {
         around > LEAST_AROUND * peak + 3.0 * (8.0 * noise.dark).sqrt()
     }
 
+    /// Whether no light did: between the two noise leaves it open.
+    fn is_no_light(&self, noise: PixelNoise) -> bool {
+        let (peak, around) = self.window.peak_and_around();
+        around < LEAST_AROUND * peak - 2.0 * (8.0 * noise.dark).sqrt()
+    }
+
     /// Takes in what the frame's spots say of the point spread and of noise.
     pub(super) fn learn(
         &mut self,
@@ -70,6 +76,7 @@ impl Fitter {
         if !self.learns() {
             return;
         }
+        self.look_for_hot_pixels(frame, parts, full_from);
         let tells = |index: usize, part: &Part| {
             let height = f64::from(part.outline.peak) - f64::from(part.level);
             let is_plain = part.reason.is_none() && !part.outline.cut && part.radius_px < WIDEST_POINT_PX;
@@ -121,6 +128,19 @@ impl Fitter {
         }
         self.learn_noise(frame, parts, &tells, full_from);
         self.frames += 1;
+    }
+
+    fn look_for_hot_pixels(&mut self, frame: &FrameView<'_>, parts: &[Part], full_from: u8) {
+        self.lone_pixels.begin();
+        for part in parts {
+            if part.reason.is_none() && part.outline.area_px == 1 && !part.outline.cut {
+                let (_, around) = self.open(frame, part, f64::INFINITY, full_from);
+                if self.is_no_light(self.pixel_noise(around)) {
+                    self.lone_pixels.see(part.middle);
+                }
+            }
+        }
+        self.lone_pixels.end();
     }
 
     fn learn_noise(

@@ -1,7 +1,7 @@
 //! The light of parts -> spots.
 //!
 //! In: the parts of a frame. Out: for each a spot, or the reason that it is none after all. Its centre and light are those of a point of light
-//! where it fits one (`fitting`); what is wider, or of another shape, is centred by its skirt (`skirt`) or a
+//! where it fits one (`fitting`); what is wider, or of another shape, is centred by its wings (`wings`) or a
 //! balanced window (`centroid`).
 
 use std::sync::Arc;
@@ -16,8 +16,8 @@ use super::part::Part;
 use super::patch::{Patch, Surroundings};
 use super::rejection::Reason;
 use super::settings::{Brightness, Settings};
-use super::skirt::{self, Fit};
 use super::window::nearest_pixel;
+use super::wings::{self, Fit};
 use crate::camera::Pixel;
 use crate::frame::FrameView;
 use crate::optics::Optics;
@@ -28,9 +28,9 @@ const WITHIN_A_PIXEL: f64 = 0.288_675_134_594_812_9;
 /// whose window is cut short by another spot, px.
 const SHAPELESS_PX: f64 = 0.07;
 const NARROW_PX: f64 = 0.7;
-/// A skirt that fits as well as this (squared misfit over degrees of freedom) is that of a Gaussian.
+/// Wings that fit as well as this (squared misfit over degrees of freedom) are those of a Gaussian.
 const GAUSSIAN_MISFIT: f64 = 1.5;
-/// A skirt that fits no better than this is not that of a Gaussian: its summit says less than its formal covariance.
+/// Wings that fit no better than this are not those of a Gaussian: their summit says less than its formal covariance.
 const LARGEST_MISFIT: f64 = 5.0;
 /// Radius around the summit of a spot that the border cuts, or that stands in the light of another, in which its light tells, px.
 const SUMMIT_PX: f64 = 1.8;
@@ -91,12 +91,23 @@ impl Meter {
             flux,
             light: model.map(|model| model.light),
             background: f64::from(around.level),
+            marker_log_odds: 0.0,
             middle: part.middle,
             extent: outline.extent,
         })
     }
 
-    /// A point's light by its fit, or by its skirt where that is surer: of a Gaussian that is full in the middle it tells all that there is,
+    /// Odds that the part measured last is a hot pixel.
+    pub(super) fn hot_pixel_odds(&self, part: &Part) -> f64 {
+        let outline = &part.outline;
+        if outline.area_px > 1 || outline.cut {
+            return 0.0;
+        }
+        let (own, around) = self.patch.pixel_and_around(part.middle);
+        self.fitter.hot_pixel_odds(part.middle, own, around)
+    }
+
+    /// A point's light by its fit, or by its wings where that is surer: of a Gaussian that is full in the middle it tells all that there is,
     /// whatever spills there.
     fn surer(
         &self,
@@ -108,15 +119,15 @@ impl Meter {
     ) -> (Pixel, Matrix2<f64>) {
         let by_fit = (model.centre, model.covariance_px2);
         let is_alone = part.outline.saturated_px > 0 && !part.outline.cut && room_px >= part.most_room_px();
-        let by_skirt = if is_alone { self.skirt(part, window_px, around) } else { None };
+        let by_wings = if is_alone { self.wings(part, window_px, around) } else { None };
         let is_surer = |fit: &Fit| {
             fit.misfit < GAUSSIAN_MISFIT && fit.covariance_px2.trace() < model.covariance_px2.trace()
         };
-        by_skirt.filter(is_surer).map_or(by_fit, |fit| (fit.centre, fit.covariance_px2))
+        by_wings.filter(is_surer).map_or(by_fit, |fit| (fit.centre, fit.covariance_px2))
     }
 
     /// By the parabola through the logarithm of the light that shows, of a spot that is full in the middle or cut by the border.
-    fn skirt(&self, part: &Part, window_px: f64, around: Surroundings) -> Option<Fit> {
+    fn wings(&self, part: &Part, window_px: f64, around: Surroundings) -> Option<Fit> {
         let variance = self.fitter.told_noise(around);
         // The lowest signal that a pixel at 255 can have anywhere in the window.
         let tilt = around.slope[0].abs() + around.slope[1].abs();
@@ -126,7 +137,7 @@ impl Meter {
             (false, true) => (part.radius_px + 2.5).min(window_px + 1.0),
             (false, false) => SUMMIT_PX,
         };
-        skirt::fit(&self.patch, part.guess, radius_px as f32, full_dn, variance)
+        wings::fit(&self.patch, part.guess, radius_px as f32, full_dn, variance)
     }
 
     /// What is no point's light: by the parabola through the logarithm of the light that shows, or by a balanced window.
@@ -142,16 +153,16 @@ impl Meter {
         let blur_px2 =
             SATURATION_BLUR_PX * SATURATION_BLUR_PX / (f64::from(outline.saturated_px.max(5)) + 4.0);
         let is_crowded = room_px < part.most_room_px().min(3.5 * part.width_px(around.level));
-        let has_skirt = outline.cut || outline.saturated_px > 0 || is_crowded;
-        let by_skirt = has_skirt.then(|| self.skirt(part, window_px, around));
+        let has_wings = outline.cut || outline.saturated_px > 0 || is_crowded;
+        let by_wings = has_wings.then(|| self.wings(part, window_px, around));
         let tells = |fit: &Fit| {
             outline.cut
                 || outline.saturated_px == 0
                 || (fit.misfit < LARGEST_MISFIT && fit.covariance_px2.trace() < 2.0 * blur_px2)
         };
-        let by_skirt = by_skirt.flatten().filter(tells);
+        let by_wings = by_wings.flatten().filter(tells);
         let shapeless = Matrix2::from_diagonal_element(SHAPELESS_PX * SHAPELESS_PX);
-        if let Some(fit) = by_skirt {
+        if let Some(fit) = by_wings {
             let is_sure = outline.cut || outline.saturated_px > 0;
             return (fit.centre, if is_sure { fit.covariance_px2 } else { fit.covariance_px2 + shapeless });
         }
@@ -169,7 +180,7 @@ impl Meter {
     }
 }
 
-/// A window as wide as the spot is, or as its skirt where it is saturated, with the background around it.
+/// A window as wide as the spot is, or as its wings where it is saturated, with the background around it.
 fn open_window(frame: &FrameView<'_>, part: &Part, room_px: f64) -> (f64, Surroundings) {
     let room_px = room_px.max(part.radius_px + 0.8).max(1.9);
     let narrow_px = (part.radius_px + 2.5).min(room_px);

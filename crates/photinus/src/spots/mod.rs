@@ -14,13 +14,15 @@
 //! lessons        what the frame tells of the camera               -> point spread (learning), noise (noise_bins), full_level
 //! fitting        a window on each part, less its background (window, patch), and the camera's point spread in it (fit)
 //!                -> centre and light of a point, with covariances
-//! measuring      spots of those; what is no point's light by its skirt (skirt) or a balanced window (centroid)
+//! measuring      spots of those; what is no point's light by its wings (wings) or a balanced window (centroid)
 //!                -> spots
-//! reflections    spots that are faint images of others
+//! hot_pixel      single pixels that are narrower than a point's light can be
+//! odds           how likely each spot is a marker's light
 //! ```
 //!
 //! Every pixel at or above its threshold belongs to exactly one part, and every part is either a [`Spot`] or a
-//! [`Rejected`] with its [`Reason`]; nothing is dropped in silence.
+//! [`Rejected`] with its [`Reason`]; nothing is dropped in silence. What may be a marker is a spot, however unlikely:
+//! whoever looks at a frame as a whole decides.
 
 mod background;
 mod centroid;
@@ -29,24 +31,25 @@ mod fit;
 mod fitting;
 mod full_level;
 mod grouping;
+mod hot_pixel;
 mod learning;
 mod ledge;
 mod lessons;
 mod measuring;
 mod neighbourhood;
 mod noise_bins;
+mod odds;
 mod part;
 mod patch;
-mod reflections;
 mod rejection;
 mod ring;
 mod runs;
 mod settings;
-mod skirt;
 mod splitting;
 mod summits;
 mod tiles;
 mod window;
+mod wings;
 
 use nalgebra::Matrix2;
 
@@ -76,6 +79,9 @@ pub struct Spot {
     pub light: Option<Measured>,
     /// Level of the surroundings, grey levels.
     pub background: f64,
+    /// Natural logarithm of the odds that this is the light of one or more markers and not clutter (a reflection of a brighter spot, a hot
+    /// pixel, a glint, glare), from how it looks in its frame alone; beforehand the two are taken as equally likely.
+    pub marker_log_odds: f64,
     /// The paper's position: the middle pixel (column, row) in the order of a scan-line fill.
     pub middle: (u32, u32),
     /// Columns and rows that the spot spans, for drawing and for masks.
@@ -86,6 +92,11 @@ impl Spot {
     /// One number for the uncertainty of the centre: root of the mean variance of the two axes, px.
     pub fn sigma_px(&self) -> f64 {
         (self.covariance_px2.trace() / 2.0).sqrt()
+    }
+
+    /// The probability that it is the light of markers: what [`Self::marker_log_odds`] says of it.
+    pub fn probability(&self) -> f64 {
+        1.0 / (1.0 + libm::exp(-self.marker_log_odds))
     }
 }
 

@@ -26,6 +26,8 @@ pub(super) struct Part {
     pub(super) level: u8,
     /// Why it is no marker, once that is known.
     pub(super) reason: Option<Reason>,
+    /// Odds for clutter by its outline and what lies beside it, against an even prior.
+    pub(super) clutter_odds: f64,
 }
 
 impl Part {
@@ -98,6 +100,7 @@ pub(super) fn outline(
         bright,
         level: background.level(u, v),
         reason: None,
+        clutter_odds: 0.0,
     }
 }
 

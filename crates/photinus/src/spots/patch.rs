@@ -82,6 +82,21 @@ impl Patch {
         ((place.u - f64::from(self.left)) as f32, (place.v - f64::from(self.top)) as f32)
     }
 
+    /// The signal in a pixel of the image, and the sum of that in the eight around it; what lies outside the patch has none.
+    pub(super) fn pixel_and_around(&self, (u, v): (u32, u32)) -> (f32, f32) {
+        let at = |du: i32, dv: i32| {
+            let (column, row) = (u as i32 + du - self.left, v as i32 + dv - self.top);
+            let inside = |at: i32| (0..self.rows as i32).contains(&at);
+            if inside(column) && inside(row) {
+                self.signal[row as usize * self.stride + column as usize]
+            } else {
+                0.0
+            }
+        };
+        let all: f32 = (0..9).map(|i| at(i % 3 - 1, i / 3 - 1)).sum();
+        (at(0, 0), all - at(0, 0))
+    }
+
     /// Signal within `radius_px` of `centre`, grey levels.
     pub(super) fn flux(&self, centre: Pixel, radius_px: f32) -> f64 {
         let (x, y) = self.local(centre);
@@ -102,7 +117,7 @@ impl Patch {
 
 /// The background from a ring of pixels just outside the window of `reach` around (`u`, `v`).
 ///
-/// Pixels that are bright themselves (another spot) are left out, and where the rest still spreads (its skirt, a streak)
+/// Pixels that are bright themselves (another spot) are left out, and where the rest still spreads (its wings, a streak)
 /// those above the mean are left out as well.
 pub(super) fn surroundings(
     frame: &FrameView<'_>,

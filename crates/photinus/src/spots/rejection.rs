@@ -15,6 +15,8 @@ const SUN_CORE_PX: u32 = 50;
 const CUT_SUN_SHARE: f64 = 0.8;
 /// A streak is at least this long, px: shorter ones are markers cut by the pixel grid, or two of them.
 const SHORTEST_STREAK_PX: f64 = 8.0;
+/// A streak that is no longer than this may be a marker that moves during the exposure, px.
+const LONGEST_SMEAR_PX: f64 = 16.0;
 /// The sun's glare reaches this far past the edge of what is bright, as a share of its radius.
 const GLARE_REACH: f64 = 0.5;
 
@@ -26,11 +28,9 @@ pub enum Reason {
     Mask,
     /// Larger than any marker, with a saturated core: the sun.
     Sun,
-    /// Bright beside the sun.
-    Glare,
-    /// Long and thin: light off an edge, a wire, a ripple.
+    /// Long and thin, longer than a marker that moves during the exposure: light off an edge, a wire, a ripple.
     Streak,
-    /// A lit surface (larger than any marker), or the faint image of a marker in one.
+    /// A lit surface: larger than any marker.
     Reflection,
     /// No summit of its own: the edge of a brighter background.
     Background,
@@ -44,7 +44,6 @@ impl Reason {
         match self {
             Self::Mask => "mask",
             Self::Sun => "sun",
-            Self::Glare => "glare",
             Self::Streak => "streak",
             Self::Reflection => "reflection",
             Self::Background => "background",
@@ -85,8 +84,7 @@ impl Outline {
             let sun = self.saturated_px >= SUN_CORE_PX;
             return Some(if sun { Reason::Sun } else { Reason::Reflection });
         }
-        let (long, short) = self.axes_px();
-        if long >= SHORTEST_STREAK_PX && long > shape.elongation * short {
+        if self.is_streak(shape) && self.axes_px().0 > LONGEST_SMEAR_PX {
             return Some(Reason::Streak);
         }
         let side = f64::from(self.extent.width().max(self.extent.height()));
@@ -94,6 +92,12 @@ impl Outline {
             return Some(Reason::Sun);
         }
         self.goes_on.then_some(Reason::Background)
+    }
+
+    /// Whether this is long and thin.
+    pub(super) fn is_streak(&self, shape: &Shape) -> bool {
+        let (long, short) = self.axes_px();
+        long >= SHORTEST_STREAK_PX && long > shape.elongation * short
     }
 
     /// Radius of the disc of the same area, px.

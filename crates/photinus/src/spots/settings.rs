@@ -43,18 +43,14 @@ pub struct Shape {
     pub widest_px: f64,
     /// Longest over shortest axis of a marker; what is longer is a streak of specular light. Default 4.
     pub elongation: f64,
-    /// A spot whose summit is lower than this share of another's, both above their background, may be a reflection of it:
-    /// it is rejected when the nearest spot that is not so faint outshines it by that much. 0 keeps them all. Default 0.22:
-    /// real glossy surfaces gave up to 0.18, real markers in one frame no less than 0.33. Contrast rule only.
-    pub faintest: f64,
-    /// A spot that stands this far out of its background is never taken for a reflection, grey levels. Default 48: real
-    /// reflections gave up to 41.
-    pub faint_dn: f64,
+    /// About that share of the brightest spot's light at which a fainter one is as likely a reflection as a marker: fainter ones more likely
+    /// are. 0: nothing reflects. Default 0.22: real glossy surfaces gave up to 0.18, real markers in one frame no less than 0.33.
+    pub reflection_ratio: f64,
 }
 
 impl Default for Shape {
     fn default() -> Self {
-        Self { widest_px: 32.0, elongation: 4.0, faintest: 0.22, faint_dn: 48.0 }
+        Self { widest_px: 32.0, elongation: 4.0, reflection_ratio: 0.22 }
     }
 }
 
@@ -114,16 +110,10 @@ impl Settings {
             "1 or more",
         )?;
         need(
-            (0.0..=1.0).contains(&self.shape.faintest),
-            "the faintest share",
-            self.shape.faintest,
+            (0.0..=1.0).contains(&self.shape.reflection_ratio),
+            "the reflection ratio",
+            self.shape.reflection_ratio,
             "0 to 1",
-        )?;
-        need(
-            (0.0..=255.0).contains(&self.shape.faint_dn),
-            "the faint height",
-            self.shape.faint_dn,
-            "0 to 255 grey levels",
         )
     }
 }

@@ -15,7 +15,7 @@ fn hash_detections(hash: &mut Hash, found: &Detections) {
     for spot in &found.spots {
         hash.numbers(&[spot.centre.u, spot.centre.v]);
         hash.numbers(spot.covariance_px2.iter());
-        hash.numbers(&[spot.flux, spot.background]);
+        hash.numbers(&[spot.flux, spot.background, spot.marker_log_odds]);
         for word in [spot.area_px, spot.peak.into(), spot.saturated_px, spot.middle.0, spot.middle.1] {
             hash.word(word.into());
         }
@@ -72,6 +72,7 @@ fn detections_are_the_same_bit_for_bit_on_every_machine() {
         }
     }
     println!("{spots} spots, {rejected} rejected, hash {:#018x}", hash.value());
-    assert!(spots > 200 && rejected > 20);
-    assert_eq!(hash.value(), 0x2ed9_be7d_b5ac_a3a2);
+    // The sun stands in half of the frames, under both rules.
+    assert!(spots > 200 && rejected >= 8);
+    assert_eq!(hash.value(), 0x6ea2_a40c_812d_bd30);
 }

@@ -57,10 +57,12 @@ fn the_sun_is_rejected_and_the_markers_beside_it_are_found() {
         for rule in RULES {
             let found = scene.detect(&pixels, rule);
             assert_eq!(rejected_as(&found, Reason::Sun), 1, "{sun:?} {rule:?}");
-            assert_eq!(found.spots.len(), places.len(), "{sun:?} {rule:?}");
             for &place in &places {
-                spot_at(&found, place, 0.3);
+                assert!(spot_at(&found, place, 0.3).marker_log_odds > 0.0, "{sun:?} {rule:?}");
             }
+            // The rest is glare, and known as such.
+            let likely = found.spots.iter().filter(|spot| spot.marker_log_odds > 0.0).count();
+            assert_eq!(likely, places.len(), "{sun:?} {rule:?}");
         }
     }
 }

@@ -55,11 +55,11 @@ fn settings() -> impl Strategy<Value = Settings> {
         (1u8..).prop_map(Brightness::Contrast),
     ];
     let number = |most: f64| prop_oneof![Just(0.0), 0.0..most];
-    (brightness, number(5.0), number(1.0), 1.0..60.0, 1.0..10.0, number(1.0), number(255.0)).prop_map(
-        |(brightness, read_dn, shot, widest_px, elongation, faintest, faint_dn)| Settings {
+    (brightness, number(5.0), number(1.0), 1.0..60.0, 1.0..10.0, number(1.0)).prop_map(
+        |(brightness, read_dn, shot, widest_px, elongation, reflection_ratio)| Settings {
             brightness,
             noise: Noise { read_dn, shot },
-            shape: Shape { widest_px, elongation, faintest, faint_dn },
+            shape: Shape { widest_px, elongation, reflection_ratio },
         },
     )
 }
@@ -115,6 +115,7 @@ proptest! {
             prop_assert!(covariance.m11 > 0.0 && covariance.determinant() > 0.0, "{:?}", spot);
             prop_assert!((covariance.m12 - covariance.m21).abs() <= 1e-9 * covariance.trace(), "{:?}", spot);
             prop_assert!(spot.flux.is_finite(), "{:?}", spot);
+            prop_assert!((1e-6..1.0 - 1e-6).contains(&spot.probability()), "{:?}", spot);
             prop_assert!((0.0..=255.0).contains(&spot.background), "{:?}", spot);
             prop_assert!(spot.area_px >= 1 && spot.saturated_px <= spot.area_px, "{:?}", spot);
             prop_assert!((spot.saturated_px > 0) == (spot.peak == 255), "{:?}", spot);

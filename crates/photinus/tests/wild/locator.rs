@@ -73,6 +73,7 @@ fn spot() -> impl Strategy<Value = (Spot, Option<u32>)> {
                     flux,
                     light: None,
                     background,
+                    marker_log_odds: 3.0,
                     middle: (u, v),
                     extent,
                 };
@@ -192,6 +193,7 @@ fn spots_all_in_one_place_tell_numbers_or_nothing() {
         flux: 10.0,
         light: None,
         background: 0.0,
+        marker_log_odds: 3.0,
         middle: (453, 476),
         extent: Extent { left: 453, top: 476, right: 453, bottom: 480 },
     };

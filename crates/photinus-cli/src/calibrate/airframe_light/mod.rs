@@ -27,7 +27,7 @@ Examples:
 A recording is a dataset folder. Fly one robot alone in front of the camera, 500 frames or more at
 10 per second or faster; let it turn about itself several times, near by and farther away, so that
 every LED is seen from all sides, often without a saturated pixel: a short exposure helps. Gravity
-in the recording makes it surer. Faint spots are kept where a marker is, whatever --faintest says.
+in the recording makes it surer. Faint spots count where a marker is.
 What is not learned stays as the airframe file has it: positions, axes and signals.";
 
 /// Recordings further apart than any loss within one, s.

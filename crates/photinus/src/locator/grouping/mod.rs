@@ -23,6 +23,8 @@ use tree::Tree;
 
 /// Groups of so many spots tell their distance and so the light of their LEDs.
 pub(super) const CLEAR_SPOTS: usize = 3;
+/// A group that is less likely clutter than this by a first look tells the light of the LEDs.
+const CLEAR_SHARE: f64 = 0.02;
 /// Most rounds of partitioning in one frame: the time of a frame is bounded.
 const MOST_ROUNDS: usize = 12;
 /// Larger groups are not taken apart spot by spot.
@@ -42,7 +44,8 @@ pub(super) struct Groups {
     nearest: Vec<(f64, usize)>,
     /// Logarithms of the light of clear neighbours.
     powers: Vec<f64>,
-    /// How likely each observation is clutter, by a first look.
+    /// Logarithm of the density of each group as one neighbour, by a first look, and how likely each observation is clutter by it.
+    first_looks: Vec<f64>,
     clutter: Vec<f64>,
 }
 
@@ -113,19 +116,28 @@ impl Groups {
         power
     }
 
-    /// Takes a first look at how likely each group is clutter.
+    /// Takes a first look at how well each group is one neighbour.
     pub(super) fn look(&mut self, context: &Context<'_>, matcher: &mut Matcher) {
-        self.clutter.clear();
-        self.clutter.resize(context.sightings.len(), 0.0);
+        self.first_looks.clear();
         for group in 0..self.list.len() {
+            let looked = matcher.log_density(context, self.list.group(group));
+            self.first_looks.push(match looked {
+                Some(log_density) => log_density,
+                None if self.is_doubtful(group) => f64::NEG_INFINITY,
+                None => f64::INFINITY,
+            });
+        }
+        self.clutter.clear();
+        self.clutter.resize(context.sightings.len(), 1.0);
+    }
+
+    /// Weighs that look against clutter of this density, where so many neighbours are per sr.
+    pub(super) fn weigh_looks(&mut self, clutter_log_density: &[f64], log_neighbours: f64) {
+        for (group, look) in self.first_looks.iter().enumerate() {
             let members = self.list.group(group);
-            let clutter: f64 = members.iter().map(|&spot| context.clutter[spot]).sum();
-            let share = match matcher.log_density(context, members) {
-                Some(log_density) => 1.0 / (1.0 + libm::exp(log_density - clutter)),
-                None if self.is_doubtful(group) => 1.0,
-                None => 0.0,
-            };
-            for &spot in self.list.group(group) {
+            let clutter: f64 = members.iter().map(|&spot| clutter_log_density[spot]).sum();
+            let share = 1.0 / (1.0 + libm::exp(look + log_neighbours - clutter));
+            for &spot in members {
                 self.clutter[spot] = share;
             }
         }
@@ -134,6 +146,24 @@ impl Groups {
     /// How likely an observation is clutter, by that look.
     pub(super) fn clutter(&self, observation: usize) -> f64 {
         self.clutter[observation]
+    }
+
+    /// How many groups are neighbours, by that look.
+    pub(super) fn neighbours(&self) -> f64 {
+        (0..self.list.len()).map(|group| 1.0 - self.clutter[self.list.group(group)[0]]).sum()
+    }
+
+    /// What neighbours that are clear by that look tell of the light of the frame's LEDs: the median of their logarithms.
+    pub(super) fn clear_log_power(&mut self, context: &Context<'_>, matcher: &mut Matcher) -> Option<f64> {
+        self.powers.clear();
+        for group in 0..self.list.len() {
+            let members = self.list.group(group);
+            if members.len() > 1 && self.clutter[members[0]] < CLEAR_SHARE {
+                self.powers.extend(matcher.log_power(context, members));
+            }
+        }
+        self.powers.sort_unstable_by(f64::total_cmp);
+        self.powers.get(self.powers.len() / 2).copied()
     }
 
     /// How many there are.

@@ -16,7 +16,7 @@ use nalgebra::Vector2;
 
 use super::Sighting;
 use super::context::Context;
-use super::posing::{LOG_RANGE, NEIGHBOURS_PER_SR};
+use super::posing::LOG_RANGE;
 use super::views::{Arrangement, ELEVATION_STEP_RAD, Spread, Views};
 use crate::airframe::Airframe;
 use crate::lanes::{self, LANES, Lanes};
@@ -186,13 +186,12 @@ impl Matcher {
     }
 
     /// A first look at how likely a handful is one neighbour: the logarithm of its density, as [`crate::pose::Posterior::log_evidence`] has it but from the
-    /// grid of views, with how many neighbours there are; `None` where it cannot be one, or too many show to be put in order.
+    /// grid of views; `None` where it cannot be one, or too many show to be put in order.
     ///
     /// Of the places of k spots four numbers are the neighbour's own (two of direction, distance and turn); the others are off the grid by its error.
     pub(super) fn log_density(&mut self, context: &Context<'_>, group: &[usize]) -> Option<f64> {
-        let neighbours = libm::log(NEIGHBOURS_PER_SR / LOG_RANGE);
         if group.len() == 1 {
-            return Some(libm::log(NEIGHBOURS_PER_SR) - libm::log(POWER_RANGE) - LONE_NATS);
+            return Some(-libm::log(POWER_RANGE) - LONE_NATS);
         }
         if group.len() > self.views.most_visible || self.bounds(context, group).is_none() {
             return None;
@@ -216,7 +215,7 @@ impl Matcher {
             - 0.5 * libm::log(TAU * turn_sigma_rad * turn_sigma_rad);
         let lit = group.iter().filter(|&&spot| sightings[spot].log_light.is_some()).count();
         let light = if lit == 0 { 0.0 } else { -(lit as f64 - 1.0) * seen.log_light_width() - libm::log(POWER_RANGE) };
-        Some(neighbours + places + light - views - power_nats(context, group, &likeness) - size_nats(sightings, group, likeness.distance_m))
+        Some(places + light - views - power_nats(context, group, &likeness) - size_nats(sightings, group, likeness.distance_m) - libm::log(LOG_RANGE))
     }
 
     /// What it costs that a group is some of the markers of a view, nats, and the distance at which it fits best, m.

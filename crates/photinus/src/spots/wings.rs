@@ -1,4 +1,4 @@
-//! Where the light of a saturated spot fell: from its skirt alone.
+//! Where the light of a saturated spot fell: from its wings alone.
 //!
 //! In: the signal around a spot whose core reads 255. Out: the centre with its covariance. Inside the core nothing tells
 //! where the light fell, so only unsaturated pixels count. Around it the logarithm of a round spot's light is close to a
@@ -19,9 +19,9 @@ use super::patch::Patch;
 use crate::camera::Pixel;
 use crate::lanes::{self, Lanes};
 
-/// Skirt pixels needed: twice the unknowns.
+/// Pixels of the wings needed: twice the unknowns.
 const FEWEST_PX: f32 = 8.0;
-/// Noise below this many sigma is no skirt.
+/// Noise below this many sigma is no wings.
 const FAINTEST_SIGMAS: f32 = 4.0;
 /// ... nor is signal below this, grey levels: ripples of lens and processing.
 const FAINTEST_DN: f32 = 6.0;
@@ -35,7 +35,7 @@ pub(super) struct Fit {
     pub(super) misfit: f64,
 }
 
-/// Fits the skirt of a saturated spot near `guess`, within `radius_px` of it; `None` where too little of it shows.
+/// Fits the wings of a saturated spot near `guess`, within `radius_px` of it; `None` where too little of it shows.
 pub(super) fn fit(
     patch: &Patch,
     guess: Pixel,

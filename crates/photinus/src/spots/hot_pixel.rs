@@ -1,0 +1,134 @@
+//! Whether a single bright pixel is a hot one.
+//!
+//! In: single bright pixels with what is around them. Out: the odds that each is hot. A point of light gives the eight pixels around its
+//! brightest least where it falls on that one's middle; a hot pixel gives them nothing. Where the point spread was measured, one frame tells
+//! that. Where it was not, cameras that cut off what is dark show real markers so, too: then a pixel is hot if it stands alone frame after frame.
+
+use super::fit::PixelNoise;
+use crate::optics::PointSpread;
+
+/// Hot pixels over markers among what is bright, beforehand.
+const BEFOREHAND: f64 = 0.05;
+/// No look makes a pixel more certainly hot than this.
+const MOST_ODDS: f64 = 1e4;
+/// How much likelier a hot pixel stands alone in a frame than a marker, where the point spread is not known; how much less likely it is not
+/// there.
+const ALONE: f64 = 5.0;
+const MISSED: f64 = 0.1;
+/// Pixels that are remembered, at most.
+const MOST_PIXELS: usize = 4096;
+
+/// Odds that a pixel of signal `own` with `around` in the eight around it is hot: the likelihood of so little around it over that around a
+/// point of light.
+pub(super) fn odds(own: f32, around: f32, spread: &PointSpread, noise: PixelNoise) -> f64 {
+    let [own, around] = [own, around].map(f64::from);
+    let [dark, shot, shape] = [noise.dark, noise.shot, noise.shape].map(f64::from);
+    let eight: f64 =
+        (0..9).filter(|&i| i != 4).map(|i| spread.share(f64::from(i % 3 - 1), f64::from(i / 3 - 1))).sum();
+    let least = own * eight / spread.share(0.0, 0.0);
+    let wrong = shape * own;
+    let of_hot = 8.0 * dark;
+    let of_point = of_hot + shot * least.max(0.0) + wrong * wrong;
+    let lacks = (least - around).max(0.0);
+    let log_odds = 0.5 * (lacks * lacks / of_point - around * around / of_hot + libm::log(of_point / of_hot));
+    BEFOREHAND * libm::exp(log_odds).min(MOST_ODDS)
+}
+
+/// Pixels that stood alone in the frames so far.
+#[derive(Debug, Default)]
+pub(super) struct LonePixels {
+    /// In the order of place.
+    pixels: Vec<Lone>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Lone {
+    /// Row and column.
+    place: (u32, u32),
+    seen: i32,
+    missed: i32,
+    is_here: bool,
+}
+
+impl LonePixels {
+    /// Begins a frame.
+    pub(super) fn begin(&mut self) {
+        for pixel in &mut self.pixels {
+            pixel.is_here = false;
+        }
+    }
+
+    /// Column and row of a pixel that stands alone in it.
+    pub(super) fn see(&mut self, (u, v): (u32, u32)) {
+        match self.pixels.binary_search_by_key(&(v, u), |pixel| pixel.place) {
+            Ok(at) => self.pixels[at].is_here = true,
+            Err(at) if self.pixels.len() < MOST_PIXELS => {
+                self.pixels.insert(at, Lone { place: (v, u), seen: 0, missed: 0, is_here: true });
+            }
+            Err(_) => {}
+        }
+    }
+
+    /// Ends it.
+    pub(super) fn end(&mut self) {
+        for pixel in &mut self.pixels {
+            *(if pixel.is_here { &mut pixel.seen } else { &mut pixel.missed }) += 1;
+        }
+        self.pixels.retain(|pixel| pixel.missed <= pixel.seen);
+    }
+
+    /// Odds that a pixel is hot.
+    pub(super) fn odds(&self, (u, v): (u32, u32)) -> f64 {
+        let found = self.pixels.binary_search_by_key(&(v, u), |pixel| pixel.place);
+        found.map_or(0.0, |at| {
+            let Lone { seen, missed, .. } = self.pixels[at];
+            let log_odds = f64::from(seen) * libm::log(ALONE) + f64::from(missed) * libm::log(MISSED);
+            BEFOREHAND * libm::exp(log_odds.min(libm::log(MOST_ODDS)))
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::optics::Gaussian;
+
+    const NOISE: PixelNoise = PixelNoise { dark: 0.5, shot: 0.03, shape: 0.05 };
+
+    #[test]
+    fn a_pixel_with_nothing_around_it_is_hot_and_a_point_is_not() {
+        for sigma_px in [0.4, 0.6, 1.0] {
+            let spread = PointSpread::gaussians(&[Gaussian { share: 1.0, sigma_px }]).unwrap();
+            for own in [30.0, 200.0] {
+                assert!(odds(own, 0.5, &spread, NOISE) > 5.0, "{sigma_px} px, {own}");
+                for phase in [0.0, 0.25, 0.5] {
+                    let share =
+                        |x: i32, y: i32| spread.share(f64::from(x) - phase, f64::from(y) - phase / 2.0);
+                    let eight: f64 = (0..9).filter(|&i| i != 4).map(|i| share(i % 3 - 1, i / 3 - 1)).sum();
+                    let around = f64::from(own) * eight / share(0, 0);
+                    assert!(odds(own, around as f32, &spread, NOISE) < 0.02, "{sigma_px} px, {own}, {phase}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_point_spread_within_a_pixel_tells_nothing() {
+        let spread = PointSpread::gaussians(&[Gaussian { share: 1.0, sigma_px: 0.1 }]).unwrap();
+        let odds = odds(100.0, 0.0, &spread, NOISE);
+        assert!((0.1..10.0).contains(&(odds / BEFOREHAND)), "{odds}");
+    }
+
+    #[test]
+    fn what_stands_alone_frame_after_frame_is_hot_and_what_passes_is_not() {
+        let mut lone = LonePixels::default();
+        for frame in 0..8 {
+            lone.begin();
+            lone.see((30, 20));
+            lone.see((frame, 7));
+            lone.end();
+            assert!(lone.odds((frame, 7)) < 0.5);
+        }
+        assert!(lone.odds((30, 20)) > 100.0 && lone.odds((3, 7)) == 0.0 && lone.odds((20, 30)) == 0.0);
+    }
+}

@@ -39,6 +39,8 @@ pub(crate) struct Build {
     pub(crate) unit_sigma: f64,
     /// How far markers are off, m per axis.
     pub(crate) marker_sigma_m: f64,
+    /// How much larger or smaller a whole airframe is: sigma of the factor.
+    pub(crate) scale_sigma: f64,
     /// The arm of one marker is longer by this factor.
     pub(crate) long_arm: f64,
     /// Whether one LED is dead.
@@ -53,6 +55,7 @@ impl Default for Build {
         Self {
             unit_sigma: believed.unit_sigma,
             marker_sigma_m: believed.marker_sigma_m,
+            scale_sigma: believed.scale_sigma,
             long_arm: 1.0,
             dead_led: false,
             blinks: false,
@@ -78,6 +81,8 @@ impl Build {
         let missed = Settings::default().pose.missed;
         let long = one_of(drawing.markers().len(), rng);
         let dead_led = one_of(drawing.leds().len(), rng);
+        let draw: f64 = StandardNormal.sample(rng);
+        let scale = 1.0 + self.scale_sigma * draw;
         let mut leds: Vec<Led> = drawing.leds().to_vec();
         let mut powers = vec![0.0; leds.len()];
         for (number, marker) in drawing.markers().iter().enumerate() {
@@ -86,7 +91,7 @@ impl Build {
             for &led in &marker.leds {
                 let askew = Rotation3::new(normals(rng) * ASKEW_RAD);
                 let draw: f64 = StandardNormal.sample(rng);
-                let factor = if number == long { self.long_arm } else { 1.0 };
+                let factor = if number == long { scale * self.long_arm } else { scale };
                 leds[led].position_m = leds[led].position_m * factor + off_m;
                 leds[led].axis = askew * leds[led].axis;
                 let shines = !(is_dead || self.dead_led && led == dead_led);

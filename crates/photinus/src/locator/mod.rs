@@ -121,7 +121,7 @@ impl Locator {
             curve,
             mask: None,
             detector,
-            matcher: Matcher::new(airframe, settings.max_tilt_rad, &settings.pose),
+            matcher: Matcher::new(airframe, settings.max_tilt_rad, &settings.pose, posing::faintest_light(&settings.spots)),
             poser: Poser::new(airframe, settings.pose, &settings.spots)?,
             groups: Groups::default(),
             memory,

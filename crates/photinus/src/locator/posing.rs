@@ -42,6 +42,7 @@ pub(super) struct Poser {
     hypotheses: Hypotheses,
     observations: Vec<Observation>,
     pairs: Pairs,
+    scale_sigma: f64,
     visible: Visible<'static>,
     within: Vec<usize>,
     others: Vec<Bearing>,
@@ -59,7 +60,8 @@ impl Poser {
             hypotheses: Hypotheses::with_room(airframe.markers().len()),
             observations: Vec::with_capacity(airframe.markers().len()),
             pairs: Pairs::new(airframe),
-            visible: visible(spots),
+            scale_sigma: settings.scale_sigma,
+            visible: Visible { faintest_light: faintest_light(spots), watched: None, others: &[] },
             within: Vec::with_capacity(airframe.markers().len()),
             others: Vec::new(),
         })
@@ -160,8 +162,10 @@ impl Poser {
         };
         let length_m = pose.position_m.norm();
         let (of_position_m2, of_distance_m2) = of_calibration(context.sightings, group, &pose.position_m);
-        position_covariance_m2 += of_position_m2;
-        distance.sigma_m = (distance.sigma_m * distance.sigma_m + of_distance_m2).sqrt();
+        let of_scale = self.scale_sigma * self.scale_sigma;
+        position_covariance_m2 += of_position_m2 + pose.position_m * pose.position_m.transpose() * of_scale;
+        let of_scale_m2 = of_scale * length_m * length_m;
+        distance.sigma_m = (distance.sigma_m * distance.sigma_m + of_distance_m2 + of_scale_m2).sqrt();
         distance.distance_m = distance.distance_m.clamp(bounds.min_m(), bounds.max_m());
         let within_m = length_m.clamp(bounds.min_m(), bounds.max_m());
         let [perpendicular_m, inline_m] = self.pairs.distances_m(context.sightings, group, markers);
@@ -212,10 +216,10 @@ fn of_calibration(sightings: &[Sighting], group: &[usize], position_m: &Vector3<
     )
 }
 
-/// Which markers a detector with these settings finds.
-fn visible(settings: &spots::Settings) -> Visible<'static> {
+/// Light at which a detector with these settings finds a marker half of the time, grey levels.
+pub(super) fn faintest_light(settings: &spots::Settings) -> f64 {
     let (Brightness::Threshold(step) | Brightness::Contrast(step)) = settings.brightness;
-    Visible { faintest_light: FAINTEST_PX * f64::from(step), watched: None, others: &[] }
+    FAINTEST_PX * f64::from(step)
 }
 
 fn observe(sighting: &Sighting, clutter_log_density: f64) -> Observation {

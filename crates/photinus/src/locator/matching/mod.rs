@@ -39,8 +39,6 @@ const LOG_FLUX_GRID: f64 = 0.25;
 const MOST_POWER_NATS: f64 = 30.0;
 /// An outline that costs so much, nats, may be that of a neighbour that is not seen whole.
 const POOR_OUTLINE_NATS: f64 = 6.0;
-/// A lone spot's other markers are not seen for so much, nats, by a first look.
-const LONE_NATS: f64 = 2.0;
 /// So many spots have closed forms.
 const FEWEST_IN_PART: usize = 3;
 /// What cannot be, nats.
@@ -56,13 +54,14 @@ pub(super) struct Matcher {
     tilt_sigma_rad: f64,
     log_flux_sigma: f64,
     unseen_nats: f64,
+    log_faintest: f64,
     bearings: Vec<BoundedBearing>,
     places: Vec<Vector2<f64>>,
     costs: Vec<Lanes>,
 }
 
 impl Matcher {
-    pub(super) fn new(airframe: &Airframe, max_tilt_rad: f64, believed: &pose::Settings) -> Self {
+    pub(super) fn new(airframe: &Airframe, max_tilt_rad: f64, believed: &pose::Settings, faintest_light: f64) -> Self {
         let unseen_nats = -libm::log(believed.missed);
         let grid_rad = ELEVATION_STEP_RAD / 2.0;
         let symmetry = Symmetry::of(airframe);
@@ -75,6 +74,7 @@ impl Matcher {
             tilt_sigma_rad: libm::hypot(believed.tilt_sigma_rad, grid_rad),
             log_flux_sigma: libm::hypot(LOG_FLUX_GRID, believed.unit_sigma),
             unseen_nats,
+            log_faintest: libm::log(faintest_light),
             bearings: Vec::new(),
             places: Vec::new(),
             costs: Vec::new(),
@@ -191,7 +191,7 @@ impl Matcher {
     /// Of the places of k spots four numbers are the neighbour's own (two of direction, distance and turn); the others are off the grid by its error.
     pub(super) fn log_density(&mut self, context: &Context<'_>, group: &[usize]) -> Option<f64> {
         if group.len() == 1 {
-            return Some(-libm::log(POWER_RANGE) - LONE_NATS);
+            return Some(-libm::log(POWER_RANGE) - self.lone_nats(context, group[0]));
         }
         if group.len() > self.views.most_visible || self.bounds(context, group).is_none() {
             return None;
@@ -216,6 +216,12 @@ impl Matcher {
         let lit = group.iter().filter(|&&spot| sightings[spot].log_light.is_some()).count();
         let light = if lit == 0 { 0.0 } else { -(lit as f64 - 1.0) * seen.log_light_width() - libm::log(POWER_RANGE) };
         Some(places + light - views - power_nats(context, group, &likeness) - size_nats(sightings, group, likeness.distance_m) - libm::log(LOG_RANGE))
+    }
+
+    /// What it costs that a spot's other markers are not seen, nats: nothing where it is hardly seen itself, all where it is e times as bright.
+    fn lone_nats(&self, context: &Context<'_>, spot: usize) -> f64 {
+        let brighter = context.sightings[spot].log_light.map_or(1.0, |light| light.value - self.log_faintest);
+        self.views.lone_nats * brighter.clamp(0.0, 1.0)
     }
 
     /// What it costs that a group is some of the markers of a view, nats, and the distance at which it fits best, m.

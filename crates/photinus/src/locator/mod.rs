@@ -250,13 +250,20 @@ impl Locator {
         let watched = Watched::new(&self.camera, self.mask.as_ref());
         let context = Context { sightings, gravity, watched, power: None, clutter: &[], log_neighbours: 0.0 };
         let of_frame = self.groups.sort_out(&context, &mut self.matcher);
-        // Until somebody is seen everything is clutter: what stands out of that by a first look is not.
         self.groups.look(&context, &mut self.matcher);
-        for _ in 0..LOOKS {
-            let share = |spot: usize| self.groups.clutter(spot);
-            self.first_clutter.measure(sightings, &self.groups, size, with_light, None, share);
-            let log_neighbours = log_neighbours(self.groups.neighbours(), None);
-            self.groups.weigh_looks(self.first_clutter.log_density(), log_neighbours);
+        let looked = |groups: &mut Groups, clutter: &mut Clutter, supposed: f64| {
+            groups.suppose(sightings.len(), supposed);
+            let mut total = 0.0;
+            for _ in 0..LOOKS {
+                clutter.measure(sightings, groups, size, with_light, None, |spot| groups.clutter(spot));
+                total = groups.weigh_looks(clutter.log_density(), log_neighbours(groups.neighbours(), None));
+            }
+            total
+        };
+        // All clutter and no clutter both bear themselves out: what makes the frame likelier is right.
+        let [all, none] = [1.0, 0.0].map(|share| looked(&mut self.groups, &mut self.first_clutter, share));
+        if all > none {
+            looked(&mut self.groups, &mut self.first_clutter, 1.0);
         }
         let clear_power = self.groups.clear_log_power(&context, &mut self.matcher);
         finished(Stage::Grouping);

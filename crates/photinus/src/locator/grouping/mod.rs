@@ -25,6 +25,8 @@ use tree::Tree;
 pub(super) const CLEAR_SPOTS: usize = 3;
 /// A group that is less likely clutter than this by a first look tells the light of the LEDs.
 const CLEAR_SHARE: f64 = 0.02;
+/// Gains over clutter are cut off here, nats.
+const LARGEST_GAIN: f64 = 50.0;
 /// Most rounds of partitioning in one frame: the time of a frame is bounded.
 const MOST_ROUNDS: usize = 12;
 /// Larger groups are not taken apart spot by spot.
@@ -127,20 +129,29 @@ impl Groups {
                 None => f64::INFINITY,
             });
         }
-        self.clutter.clear();
-        self.clutter.resize(context.sightings.len(), 1.0);
     }
 
-    /// Weighs that look against clutter of this density, where so many neighbours are per sr.
-    pub(super) fn weigh_looks(&mut self, clutter_log_density: &[f64], log_neighbours: f64) {
+    /// Supposes that every one of so many observations is as likely clutter.
+    pub(super) fn suppose(&mut self, observations: usize, share: f64) {
+        self.clutter.clear();
+        self.clutter.resize(observations, share);
+    }
+
+    /// Weighs that look against clutter of this density, where so many neighbours are per sr. Returns the logarithm of the density of all observations:
+    /// of neighbours and clutter that are as many as they are expected to be.
+    pub(super) fn weigh_looks(&mut self, clutter_log_density: &[f64], log_neighbours: f64) -> f64 {
+        let mut total = 0.0;
         for (group, look) in self.first_looks.iter().enumerate() {
             let members = self.list.group(group);
             let clutter: f64 = members.iter().map(|&spot| clutter_log_density[spot]).sum();
-            let share = 1.0 / (1.0 + libm::exp(look + log_neighbours - clutter));
+            let gain = (look + log_neighbours - clutter).clamp(-LARGEST_GAIN, LARGEST_GAIN);
+            let share = 1.0 / (1.0 + libm::exp(gain));
             for &spot in members {
                 self.clutter[spot] = share;
             }
+            total += clutter - libm::log(share) - share * members.len() as f64 - (1.0 - share);
         }
+        total
     }
 
     /// How likely an observation is clutter, by that look.

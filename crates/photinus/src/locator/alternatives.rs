@@ -1,86 +1,75 @@
-//! A doubtful group -> other ways to put its observations together with those around it.
+//! An observation that is explained poorly -> other ways to put it together with those around it.
 //!
-//! In: the groups of a frame, and one of them that is explained poorly or hardly better than clutter. Out: handfuls of its observations and of those
-//! near it, the likeliest by a first look, each to be weighed in full. What they leave is clutter, or another neighbour's.
+//! In: an observation that may be clutter, or is of a group that fits poorly. Out: handfuls of it and those next to it, the likeliest by a first
+//! look, each to be weighed in full. What they leave is clutter, or another neighbour's.
 
 use super::context::Context;
-use super::grouping::Groups;
 use super::matching::Matcher;
 
-/// Most observations of which all handfuls are looked at.
-const MOST_LOOKED_AT: usize = 7;
+/// So many of the nearest observations are put together with one.
+const NEAREST: usize = 6;
 /// Most handfuls that are weighed in full.
-const MOST_WEIGHED: usize = 14;
+const MOST_WEIGHED: usize = 8;
 /// A handful that is so much less likely than clutter by a first look, nats, is not weighed: first looks are as good.
-const POOR_GAIN: f64 = -4.0;
+const POOR_GAIN: f64 = -8.0;
 
 /// Room to look for other handfuls in.
 #[derive(Debug, Default)]
 pub(super) struct Alternatives {
+    /// The observation, and the nearest others.
     window: Vec<usize>,
+    nearest: Vec<(f64, usize)>,
     handful: Vec<usize>,
     /// Gain over clutter by a first look, and which of the window.
     looked_at: Vec<(f64, usize)>,
 }
 
 impl Alternatives {
-    /// Looks at the handfuls around a group; hands on the likeliest, each ascending. Returns how many it looked at.
+    /// Looks at the handfuls of an observation; hands on the likeliest, each ascending.
     pub(super) fn around(
         &mut self,
         context: &Context<'_>,
-        groups: &mut Groups,
-        group: usize,
+        observation: usize,
         matcher: &mut Matcher,
         mut with: impl FnMut(&[usize], &mut Matcher),
-    ) -> usize {
-        self.window.clear();
-        self.window.extend_from_slice(groups.group(group));
-        let own = self.window.len();
-        if own > MOST_LOOKED_AT {
-            self.without_one(matcher, with);
-            return own;
-        }
-        let reach_rad = self.window.iter().map(|&spot| matcher.widest_rad(&context.sightings[spot])).fold(f64::INFINITY, f64::min);
-        groups.each_near(context.sightings, group, reach_rad, |others| {
-            if self.window.len() + others.len() <= MOST_LOOKED_AT {
-                self.window.extend_from_slice(others);
-            }
-        });
-        self.look(context, own, matcher);
-        for index in 0..self.looked_at.len() {
-            self.gather(self.looked_at[index].1);
-            with(&self.handful, matcher);
-        }
-        (1 << self.window.len()) - 1
-    }
-
-    /// All but one of a group that is too large to be looked at in every handful.
-    fn without_one(&mut self, matcher: &mut Matcher, mut with: impl FnMut(&[usize], &mut Matcher)) {
-        let Self { window, handful, .. } = self;
-        for &left in window.iter() {
-            handful.clear();
-            handful.extend(window.iter().copied().filter(|&spot| spot != left));
-            handful.sort_unstable();
-            with(handful, matcher);
-        }
-    }
-
-    /// Looks at every handful of the window that has one of its first `own` observations.
-    fn look(&mut self, context: &Context<'_>, own: usize, matcher: &mut Matcher) {
+    ) {
+        self.open_window(context, observation, matcher);
         self.looked_at.clear();
-        for mask in 1usize..1 << self.window.len() {
-            if mask & ((1 << own) - 1) == 0 {
+        let most = matcher.most_visible().max(1) as u32;
+        for mask in (1usize..1 << self.window.len()).step_by(2) {
+            if mask.count_ones() > most {
                 continue;
             }
             self.gather(mask);
             let Some(log_density) = matcher.log_density(context, &self.handful) else { continue };
             let clutter: f64 = self.handful.iter().map(|&spot| context.clutter[spot]).sum();
-            if log_density + context.log_neighbours - clutter > POOR_GAIN {
-                self.looked_at.push((log_density - clutter, mask));
+            let gain = log_density + context.log_neighbours - clutter;
+            if gain > POOR_GAIN {
+                self.looked_at.push((gain, mask));
             }
         }
         self.looked_at.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
-        self.looked_at.truncate(MOST_WEIGHED);
+        for index in 0..self.looked_at.len().min(MOST_WEIGHED) {
+            self.gather(self.looked_at[index].1);
+            with(&self.handful, matcher);
+        }
+    }
+
+    fn open_window(&mut self, context: &Context<'_>, observation: usize, matcher: &Matcher) {
+        let own = &context.sightings[observation];
+        let reach_rad = matcher.widest_rad(own);
+        let Self { window, nearest, .. } = self;
+        nearest.clear();
+        nearest.extend(context.sightings.iter().enumerate().filter(|(index, _)| *index != observation).filter_map(
+            |(index, other)| {
+                let gap = (other.bearing.vector() - own.bearing.vector()).norm();
+                (gap < reach_rad).then_some((gap, index))
+            },
+        ));
+        nearest.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        window.clear();
+        window.push(observation);
+        window.extend(nearest.iter().take(NEAREST).map(|&(_, index)| index));
     }
 
     fn gather(&mut self, mask: usize) {

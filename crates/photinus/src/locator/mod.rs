@@ -54,6 +54,10 @@ use telling::Telling;
 
 /// First looks, each at what the one before leaves as clutter.
 const LOOKS: usize = 4;
+/// An observation that is likelier than this to be clutter may be another neighbour's.
+const DOUBTFUL: f64 = 0.05;
+/// Rounds of looking for other ways to put observations together, each at what the one before left.
+const ROUNDS: usize = 2;
 /// However seldom neighbours were, there are so many per frame.
 const FEWEST_NEIGHBOURS: f64 = 0.2;
 /// Rounds of telling how dense clutter is from what is explained, and what is explained from that.
@@ -89,6 +93,7 @@ pub struct Locator {
     clutter: Clutter,
     candidates: Candidates,
     alternatives: Alternatives,
+    doubtful: Vec<usize>,
     explanation: Explanation,
     telling: Telling,
     use_brightness: bool,
@@ -129,6 +134,7 @@ impl Locator {
             clutter: Clutter::default(),
             candidates: Candidates::default(),
             alternatives: Alternatives::default(),
+            doubtful: Vec::new(),
             explanation: Explanation::default(),
             telling: Telling::default(),
             use_brightness: settings.pose.use_brightness,
@@ -267,32 +273,49 @@ impl Locator {
         }
         let clear_power = self.groups.clear_log_power(&context, &mut self.matcher);
         finished(Stage::Grouping);
+        let mut log_density_of_neighbours = log_neighbours(self.groups.neighbours(), Some(&self.memory));
+        self.clutter.measure(sightings, &self.groups, size, with_light, Some(&self.memory), |spot| self.groups.clutter(spot));
         let context = Context {
             power: self.memory.power().or(of_frame),
             clutter: self.first_clutter.log_density(),
-            log_neighbours: log_neighbours(self.groups.neighbours(), Some(&self.memory)),
+            log_neighbours: log_density_of_neighbours,
             ..context
         };
         self.candidates.clear();
         for group in 0..self.groups.len() {
             self.poser.weigh(&context, self.groups.group(group), &mut self.matcher, &mut self.candidates);
         }
-        for group in 0..self.groups.len() {
-            if self.candidates.is_doubtful(self.groups.group(group), context.clutter, context.log_neighbours) {
-                let Self { alternatives, groups, matcher, poser, candidates, .. } = self;
-                alternatives.around(&context, groups, group, matcher, |handful, matcher| {
+        self.explanation.explain(&self.candidates, context.clutter, context.log_neighbours);
+        let power = context.power;
+        for round in 0..ROUNDS {
+            let clutter = if round == 0 { self.first_clutter.log_density() } else { self.clutter.log_density() };
+            let context = Context { sightings, gravity, watched, power, clutter, log_neighbours: log_density_of_neighbours };
+            self.doubtful.clear();
+            self.doubtful.extend((0..sightings.len()).filter(|&spot| self.explanation.clutter(spot) > DOUBTFUL));
+            if round == 0 {
+                for group in 0..self.groups.len() {
+                    let members = self.groups.group(group);
+                    if self.candidates.is_doubtful(members, clutter, log_density_of_neighbours) {
+                        self.doubtful.extend_from_slice(members);
+                    }
+                }
+                self.doubtful.sort_unstable();
+                self.doubtful.dedup();
+            }
+            let Self { alternatives, doubtful, matcher, poser, candidates, .. } = self;
+            for &spot in doubtful.iter() {
+                alternatives.around(&context, spot, matcher, |handful, matcher| {
                     poser.weigh(&context, handful, matcher, candidates);
                 });
             }
+            for _ in 0..CLUTTER_ROUNDS {
+                self.explanation.explain(&self.candidates, self.clutter.log_density(), log_density_of_neighbours);
+                let (memory, share) = (Some(&self.memory), |spot: usize| self.explanation.clutter(spot));
+                self.clutter.measure(sightings, &self.groups, size, with_light, memory, share);
+                log_density_of_neighbours = log_neighbours(self.explanation.neighbours(), memory);
+            }
         }
-        let power = context.power;
-        self.explanation.explain(&self.candidates, context.clutter, context.log_neighbours);
-        for _ in 0..CLUTTER_ROUNDS {
-            let (memory, share) = (Some(&self.memory), |spot: usize| self.explanation.clutter(spot));
-            self.clutter.measure(sightings, &self.groups, size, with_light, memory, share);
-            let log_neighbours = log_neighbours(self.explanation.neighbours(), memory);
-            self.explanation.explain(&self.candidates, self.clutter.log_density(), log_neighbours);
-        }
+        self.explanation.explain(&self.candidates, self.clutter.log_density(), log_density_of_neighbours);
         self.memory.remember(self.first_clutter.counts(), self.groups.neighbours(), clear_power);
         if std::env::var("PDBG").is_ok() {
             eprintln!("FRAME {} spots power {power:?}", self.located.sightings.len());

@@ -31,6 +31,7 @@ pub(super) struct Explanation {
     sums: Vec<f64>,
     ways: Vec<f64>,
     done: Vec<bool>,
+    log_gain: f64,
 }
 
 /// A candidate within a part of the frame.
@@ -52,6 +53,13 @@ impl Explanation {
         self.clutter[observation]
     }
 
+    /// Logarithm of the density of all observations, where each has this one as clutter: of neighbours and clutter that are as many as they are
+    /// expected to be.
+    pub(super) fn log_density(&self, clutter_log_density: &[f64]) -> f64 {
+        let clutter: f64 = clutter_log_density.iter().sum();
+        self.log_gain + clutter - self.clutter.iter().sum::<f64>() - self.neighbours()
+    }
+
     /// How many neighbours the frame has.
     pub(super) fn neighbours(&self) -> f64 {
         self.probability.iter().sum()
@@ -70,6 +78,7 @@ impl Explanation {
             let gain = candidates.get(index).log_density + log_neighbours - clutter;
             if gain.is_nan() { f64::NEG_INFINITY } else { gain.min(LARGEST_GAIN) }
         }));
+        self.log_gain = 0.0;
         self.done.clear();
         self.done.resize(count, false);
         for (round, &hopeless) in HOPELESS.iter().enumerate() {
@@ -145,7 +154,7 @@ impl Explanation {
 
     /// Adds up the weights of all explanations of a part: forwards the weight of what is left, backwards the ways to come there.
     fn add_up(&mut self) {
-        let Self { spots, options, sums, ways, probability, clutter, done, .. } = self;
+        let Self { spots, options, sums, ways, probability, clutter, done, log_gain, .. } = self;
         let all = (1usize << spots.len()) - 1;
         sums.clear();
         sums.push(1.0);
@@ -159,8 +168,8 @@ impl Explanation {
         ways.resize(all + 1, 0.0);
         ways[all] = 1.0;
         let total = sums[all];
-        for (bit, &spot) in spots.iter().enumerate() {
-            let _ = bit;
+        *log_gain += libm::log(total);
+        for &spot in spots.iter() {
             clutter[spot] = 0.0;
             done[spot] = true;
         }
@@ -182,7 +191,7 @@ impl Explanation {
 
     /// Where too much hangs together to weigh it all: the best candidates that share nothing, each against clutter alone.
     fn take_the_best(&mut self, candidates: &Candidates) {
-        let Self { options, probability, clutter, done, .. } = self;
+        let Self { options, probability, clutter, done, log_gain, .. } = self;
         options.sort_unstable_by(|a, b| b.odds.total_cmp(&a.odds).then(a.candidate.cmp(&b.candidate)));
         for Choice { candidate, odds, .. } in options.iter() {
             let members = candidates.members(*candidate);
@@ -190,6 +199,7 @@ impl Explanation {
                 continue;
             }
             probability[*candidate] = odds / (1.0 + odds);
+            *log_gain += libm::log(1.0 + odds);
             for &spot in members {
                 clutter[spot] = 1.0 / (1.0 + odds);
                 done[spot] = true;

@@ -257,12 +257,13 @@ impl Locator {
         let context = Context { sightings, gravity, watched, power: None, clutter: &[], log_neighbours: 0.0 };
         let of_frame = self.groups.sort_out(&context, &mut self.matcher);
         self.groups.look(&context, &mut self.matcher);
+        let memory = &self.memory;
         let looked = |groups: &mut Groups, clutter: &mut Clutter, supposed: f64| {
             groups.suppose(sightings.len(), supposed);
             let mut total = 0.0;
             for _ in 0..LOOKS {
-                clutter.measure(sightings, groups, size, with_light, None, |spot| groups.clutter(spot));
-                total = groups.weigh_looks(clutter.log_density(), log_neighbours(groups.neighbours(), None));
+                clutter.measure(sightings, groups, size, with_light, Some(memory), |spot| groups.clutter(spot));
+                total = groups.weigh_looks(clutter.log_density(), log_neighbours(groups.neighbours(), Some(memory)));
             }
             total
         };
@@ -308,15 +309,27 @@ impl Locator {
                     poser.weigh(&context, handful, matcher, candidates);
                 });
             }
-            for _ in 0..CLUTTER_ROUNDS {
-                self.explanation.explain(&self.candidates, self.clutter.log_density(), log_density_of_neighbours);
-                let (memory, share) = (Some(&self.memory), |spot: usize| self.explanation.clutter(spot));
-                self.clutter.measure(sightings, &self.groups, size, with_light, memory, share);
-                log_density_of_neighbours = log_neighbours(self.explanation.neighbours(), memory);
+            let Self { explanation, clutter, groups, candidates, memory, .. } = self;
+            let mut settle = |supposed: Option<f64>| {
+                let first = |spot: usize| supposed.unwrap_or(groups.clutter(spot));
+                clutter.measure(sightings, groups, size, with_light, Some(memory), first);
+                log_density_of_neighbours = log_neighbours(groups.neighbours(), Some(memory));
+                for _ in 0..CLUTTER_ROUNDS {
+                    explanation.explain(candidates, clutter.log_density(), log_density_of_neighbours);
+                    clutter.measure(sightings, groups, size, with_light, Some(memory), |spot| explanation.clutter(spot));
+                    log_density_of_neighbours = log_neighbours(explanation.neighbours(), Some(memory));
+                }
+                explanation.explain(candidates, clutter.log_density(), log_density_of_neighbours);
+                explanation.log_density(clutter.log_density())
+            };
+            // As with first looks, little clutter and much both bear themselves out.
+            let [much, little] = [None, Some(0.0)].map(&mut settle);
+            if std::env::var("PDBG").is_ok() { eprintln!("SETTLE much {much:.1} little {little:.1}"); }
+            if much > little {
+                settle(None);
             }
         }
-        self.explanation.explain(&self.candidates, self.clutter.log_density(), log_density_of_neighbours);
-        self.memory.remember(self.first_clutter.counts(), self.groups.neighbours(), clear_power);
+        self.memory.remember(self.clutter.counts(), self.explanation.neighbours(), clear_power);
         if std::env::var("PDBG").is_ok() {
             eprintln!("FRAME {} spots power {power:?}", self.located.sightings.len());
             for i in 0..self.candidates.len() {

@@ -82,7 +82,7 @@ impl run::Work for Detecting {
         self.detectors.iter().any(Detector::learns)
     }
 
-    fn learn(&mut self, entry: &Entry) {
+    fn learn(&mut self, entry: &mut Entry) {
         if let Some(image) = &entry.image {
             // A mask of another size is refused, and then the frame teaches nothing.
             let mask = mask_of(self.masks[entry.camera].as_ref());

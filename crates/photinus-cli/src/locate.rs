@@ -19,6 +19,7 @@ use crate::clock::Clock;
 use crate::detect::in_frame;
 use crate::failure::Failure;
 use crate::input::{Entry, Input, InputArgs};
+use crate::number;
 use crate::output::OutputArgs;
 use crate::pose_options::PoseArgs;
 use crate::run;
@@ -68,6 +69,9 @@ pub(crate) struct Args {
     /// Largest tilt of a neighbour that the bounds allow for, where gravity is known
     #[arg(long, value_name = "DEG", default_value_t = 15.0, value_parser = tilt)]
     max_tilt: f64,
+    /// Neighbours less likely than this are left out: clutter now and then looks like one
+    #[arg(long, value_name = "SHARE", default_value_t = Settings::DEFAULT_MIN_PROBABILITY, value_parser = probability)]
+    min_probability: f64,
     #[command(flatten)]
     pose_options: PoseArgs,
     #[command(flatten)]
@@ -112,6 +116,7 @@ impl Args {
             spots: self.spot_options.settings(),
             max_tilt_rad: self.max_tilt.to_radians(),
             pose: self.pose_options.settings(airframe),
+            min_probability: self.min_probability,
         }
     }
 
@@ -210,14 +215,13 @@ impl run::Work for Locating<'_> {
     }
 
     fn learns(&self) -> bool {
-        self.views.iter().any(|view| view.locator.learns())
+        // What is remembered of each frame depends on those before it.
+        true
     }
 
-    fn learn(&mut self, entry: &Entry) {
-        if let Some(image) = &entry.image {
-            // A frame of another size is refused, and teaches nothing.
-            let _ = self.views[entry.camera].locator.learn(&image.view());
-        }
+    fn learn(&mut self, entry: &mut Entry) {
+        // A frame of another size is refused, and teaches nothing.
+        let _ = self.fill(entry, &mut Clock::new());
     }
 }
 
@@ -246,6 +250,10 @@ pub(crate) fn fill(
     };
     entry.record.put_located(located, airframe);
     Ok(())
+}
+
+fn probability(text: &str) -> std::result::Result<f64, String> {
+    number::within(text, 0.0..=1.0, "a share")
 }
 
 /// The file that was named, or that of the dataset.

@@ -37,7 +37,7 @@ pub(crate) trait Work {
     fn learns(&self) -> bool;
 
     /// Learns from a frame what [`Self::fill`] would have learnt; what that refuses teaches nothing.
-    fn learn(&mut self, entry: &Entry);
+    fn learn(&mut self, entry: &mut Entry);
 }
 
 /// Takes every frame of `input` through `work`, which completes its record, and writes it. What is `done` is skipped, once nothing is left to
@@ -130,7 +130,7 @@ fn go_on(
         }
         if work.learns() {
             // What the method refused, or failed on, was told by the run before.
-            let _ = catch_unwind(AssertUnwindSafe(|| work.learn(&entry)));
+            let _ = catch_unwind(AssertUnwindSafe(|| work.learn(&mut entry)));
         }
     }
 }

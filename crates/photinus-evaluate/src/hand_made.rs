@@ -41,6 +41,9 @@ pub(crate) fn found_at(position_m: [f64; 3]) -> NeighbourRecord {
         position_body_covariance_m2: None,
         orientation_xyzw: None,
         orientation_covariance_rad2: None,
+        probability: None,
+        misfit: None,
+        runner_up: None,
         modes: vec![],
     }
 }

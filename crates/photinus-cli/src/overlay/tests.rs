@@ -48,6 +48,9 @@ fn neighbour(spots: Vec<usize>, bearing: Vector3<f64>, distance_m: Distance) -> 
         position_body_covariance_m2: None,
         orientation_xyzw: None,
         orientation_covariance_rad2: None,
+        probability: None,
+        misfit: None,
+        runner_up: None,
         modes: Vec::new(),
     }
 }

@@ -53,6 +53,9 @@ fn result(frame: u64) -> FrameRecord {
         position_body_covariance_m2: None,
         orientation_xyzw: None,
         orientation_covariance_rad2: None,
+        probability: None,
+        misfit: None,
+        runner_up: None,
         modes: vec![],
     };
     FrameRecord {

@@ -88,10 +88,11 @@ pub(crate) fn locator(airframe: &Airframe) -> Locator {
     let pose = pose::Settings {
         tilt_sigma_rad: tilt_sigma_rad(),
         marker_sigma_m: 0.0,
+        scale_sigma: 0.0,
         unit_sigma: UNIT_SIGMA,
         lobe_sigma: crate::model::LOBE_SIGMA,
         missed: crate::model::MISSED,
         use_brightness: true,
     };
-    Locator::new(camera(), airframe, None, Settings { pose, ..Settings::default() }).expect("a locator")
+    Locator::new(camera(), airframe, None, Settings { pose, min_probability: 0.0, ..Settings::default() }).expect("a locator")
 }

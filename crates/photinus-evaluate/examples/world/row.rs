@@ -111,18 +111,6 @@ impl Row {
                 let mut record = record_of(&frame);
                 record.put_located(located, told.name());
                 lights.add(&located.sightings, &record.spots, &fallen);
-                if std::env::var("PDBG").is_ok() {
-                    for t in &there.as_ref().unwrap().neighbours {
-                        let tp = Vector3::from(t.position_m);
-                        let best = located.neighbours.iter().min_by(|a, b| { let d = |n: &photinus::locator::Neighbour| n.position.map_or(1e9, |p| (p.mean_m - tp).norm()); d(a).total_cmp(&d(b)) });
-                        match best.and_then(|n| n.position.map(|p| (n, p))) {
-                            Some((n, p)) => { let e = p.mean_m - tp; let nees = e.dot(&(p.covariance_m2.try_inverse().unwrap() * e)) / 3.0;
-                              eprintln!("TRUTH d {:.3} est {:.3} sigma {:.3} NEES {:.1} P {:.3} misfit {:.1}/{} p {:.4} members {:?} modes {} bounds {:?} {}", tp.norm(), p.mean_m.norm(), n.distance.estimate.unwrap().sigma_m, nees, n.probability, n.misfit.chi_square, n.misfit.degrees, n.misfit.p_value(), located.members(n), located.modes(n).len(), n.distance.bounds, if nees > 20.0 {"BAD"} else {""}); }
-                            None => eprintln!("TRUTH d {:.3} LOST", tp.norm()),
-                        }
-                    }
-                    if located.neighbours.len() > there.as_ref().unwrap().neighbours.len() { eprintln!("PHANTOM {}", located.neighbours.len()); }
-                }
                 records.push(record);
                 truth.extend(there);
             }

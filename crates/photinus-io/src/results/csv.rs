@@ -7,11 +7,12 @@ use super::{FrameRecord, NeighbourRecord};
 use crate::{Error, Result};
 
 #[rustfmt::skip]
-const COLUMNS: [&str; 34] = [
+const COLUMNS: [&str; 36] = [
     "frame", "time_s", "source", "track", "id", "airframe", "spots", "bearing_x", "bearing_y", "bearing_z",
     "distance_m", "distance_sigma_m", "distance_min_m", "distance_max_m", "perpendicular_m", "inline_m",
     "x_m", "y_m", "z_m", "var_xx_m2", "var_xy_m2", "var_xz_m2", "var_yy_m2", "var_yz_m2", "var_zz_m2",
     "qx", "qy", "qz", "qw", "modes", "camera", "x_body_m", "y_body_m", "z_body_m",
+    "probability", "misfit_p",
 ];
 
 /// Writes a row per neighbour under a header with units; a frame without neighbours gives none. What is not known, or
@@ -67,6 +68,7 @@ fn cells(record: &FrameRecord, neighbour: &NeighbourRecord) -> [String; COLUMNS.
         known(d.estimate), known(d.sigma), number(d.min), known(d.max), known(d.perpendicular), known(d.inline),
         x, y, z, xx, xy, xz, yy, yz, zz, qx, qy, qz, qw, n.modes.len().to_string(),
         text(record.camera.as_deref()), xb, yb, zb,
+        known(n.probability), known(n.misfit.map(|misfit| misfit.p)),
     ]
 }
 

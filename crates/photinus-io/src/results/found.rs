@@ -9,7 +9,7 @@ use photinus::pose::Mode;
 use photinus::spots::{Extent, Rejected, Spot};
 
 use super::record::Mode as ModeRecord;
-use super::{Distance, FrameRecord, NeighbourRecord, RejectedRecord, SpotRecord};
+use super::{Distance, FrameRecord, Misfit, NeighbourRecord, RunnerUp, RejectedRecord, SpotRecord};
 
 impl FrameRecord {
     /// Puts what was located in the place of the spots and neighbours that the record holds; what was rejected joins what
@@ -38,6 +38,16 @@ impl NeighbourRecord {
             position_body_covariance_m2: None,
             orientation_xyzw: orientation.map(|turned| xyzw(&turned.camera_from_body)),
             orientation_covariance_rad2: orientation.map(|turned| rows(&turned.covariance_rad2)),
+            probability: Some(neighbour.probability),
+            misfit: Some(Misfit {
+                chi2: neighbour.misfit.chi_square,
+                dof: neighbour.misfit.degrees,
+                p: neighbour.misfit.p_value(),
+            }),
+            runner_up: Some(RunnerUp {
+                probability: neighbour.runner_up.probability,
+                distance_m: neighbour.runner_up.distance_m,
+            }),
             modes: located.modes(neighbour).iter().map(ModeRecord::from).collect(),
         }
     }

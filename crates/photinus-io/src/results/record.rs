@@ -82,9 +82,38 @@ pub struct NeighbourRecord {
     /// Covariance of the attitude as a small rotation in the body frame, the third axis yaw, rad^2.
     #[serde(default)]
     pub orientation_covariance_rad2: Option<[[f64; 3]; 3]>,
+    /// How likely it is there at all, 0 to 1.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub probability: Option<f64>,
+    /// How well its best pose fits.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub misfit: Option<Misfit>,
+    /// The likeliest other explanation of its spots.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub runner_up: Option<RunnerUp>,
     /// Every pose that the spots allow, the likeliest first.
     #[serde(default)]
     pub modes: Vec<Mode>,
+}
+
+/// How well a pose fits.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Misfit {
+    /// Sum of the squared residuals, each over its variance.
+    pub chi2: f64,
+    /// How many residuals are left when the pose is fitted.
+    pub dof: u32,
+    /// How often a right answer fits no better, 0 to 1.
+    pub p: f64,
+}
+
+/// What spots may be otherwise.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RunnerUp {
+    /// How likely it is, 0 to 1.
+    pub probability: f64,
+    /// How far the neighbour is that they are then, m; `None` for clutter.
+    pub distance_m: Option<f64>,
 }
 
 /// From the camera's centre to a neighbour's origin, m.

@@ -47,6 +47,9 @@ fn neighbour() -> NeighbourRecord {
         position_body_covariance_m2: None,
         orientation_xyzw: None,
         orientation_covariance_rad2: None,
+        probability: None,
+        misfit: None,
+        runner_up: None,
         modes: vec![],
     }
 }

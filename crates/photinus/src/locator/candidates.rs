@@ -45,7 +45,6 @@ pub(super) struct Told {
 pub(super) struct Candidates {
     all: Vec<Candidate>,
     members: Vec<usize>,
-    markers: Vec<Option<u16>>,
     modes: Vec<Mode>,
 }
 
@@ -53,7 +52,6 @@ impl Candidates {
     pub(super) fn clear(&mut self) {
         self.all.clear();
         self.members.clear();
-        self.markers.clear();
         self.modes.clear();
     }
 
@@ -69,12 +67,6 @@ impl Candidates {
     pub(super) fn members(&self, index: usize) -> &[usize] {
         let Candidate { first_member, members, .. } = self.all[index];
         &self.members[first_member..first_member + members]
-    }
-
-    /// Which marker each of its observations is in the best mode.
-    pub(super) fn markers(&self, index: usize) -> &[Option<u16>] {
-        let Candidate { first_member, members, .. } = self.all[index];
-        &self.markers[first_member..first_member + members]
     }
 
     /// The ways in which its observations can be the airframe, the likeliest first.
@@ -101,7 +93,7 @@ impl Candidates {
     }
 
     /// Adds a candidate.
-    pub(super) fn push(&mut self, group: &[usize], markers: &[Option<u16>], modes: &[Mode], told: Told) {
+    pub(super) fn push(&mut self, group: &[usize], modes: &[Mode], told: Told) {
         let Told { bearing, distance, position, orientation, misfit, worst_sigma, log_density } = told;
         self.all.push(Candidate {
             bearing,
@@ -117,8 +109,6 @@ impl Candidates {
             modes: modes.len(),
         });
         self.members.extend_from_slice(group);
-        self.markers.extend_from_slice(markers);
-        self.markers.resize(self.members.len(), None);
         self.modes.extend_from_slice(modes);
     }
 }

@@ -1,7 +1,6 @@
 //! What the frames before told: how bright the LEDs are, where clutter is, and how many neighbours there are.
 //!
-//! In: of each frame its clutter, how many neighbours it has and the power of their LEDs, as found without this memory. Out: the same over
-//! the last [`Memory::FRAMES`] frames. What is remembered depends on those frames alone: whoever locates in them again remembers the same.
+//! In: of each frame its clutter, how many neighbours it has and the power of their LEDs. Out: the same over the last [`Memory::FRAMES`] frames.
 
 use crate::pose::LogLight;
 
@@ -41,6 +40,14 @@ impl Memory {
             neighbours: vec![0.0; Self::FRAMES],
             sorted: Vec::with_capacity(Self::FRAMES),
         }
+    }
+
+    /// Forgets all frames.
+    pub(super) fn forget(&mut self) {
+        self.frames = 0;
+        self.next = 0;
+        self.sums.fill(0.0);
+        self.log_powers.fill(None);
     }
 
     /// How many frames are remembered.
@@ -101,7 +108,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn it_depends_on_the_last_frames_alone() {
+    fn frames_older_than_the_last_are_forgotten() {
         let frame = |number: usize| {
             let clutter = [0.1 * (number % 7) as f64, 1.0 / (1 + number % 5) as f64];
             (clutter, (number % 3 != 0).then(|| 9.0 + 0.01 * (number % 11) as f64))

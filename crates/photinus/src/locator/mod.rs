@@ -156,19 +156,9 @@ impl Locator {
         Ok(())
     }
 
-    /// Whether frames still tell something of the camera, see [`Detector::learns`].
-    pub fn learns(&self) -> bool {
-        self.detector.learns()
-    }
-
-    /// Learns of the camera from a frame what [`Self::locate`] would have learnt, without locating anybody: for a run that goes on where
-    /// another ended.
-    ///
-    /// # Errors
-    /// [`LocateError::Size`] when the frame is not of the camera's size.
-    pub fn learn(&mut self, frame: &FrameView<'_>) -> Result<(), LocateError> {
-        let size = self.wrong_size(frame);
-        self.detector.detect(frame, self.mask.as_ref()).map(|_| ()).map_err(|_| size)
+    /// Forgets what frames told of the power of LEDs and of clutter: for frames that do not follow on those before.
+    pub fn forget(&mut self) {
+        self.memory.forget();
     }
 
     /// The camera in use.
@@ -324,22 +314,11 @@ impl Locator {
             };
             // As with first looks, little clutter and much both bear themselves out.
             let [much, little] = [None, Some(0.0)].map(&mut settle);
-            if std::env::var("PDBG").is_ok() { eprintln!("SETTLE much {much:.1} little {little:.1}"); }
             if much > little {
                 settle(None);
             }
         }
         self.memory.remember(self.clutter.counts(), self.explanation.neighbours(), clear_power);
-        if std::env::var("PDBG").is_ok() {
-            eprintln!("FRAME {} spots power {power:?}", self.located.sightings.len());
-            for i in 0..self.candidates.len() {
-                let c = self.candidates.get(i);
-                let cl: f64 = self.candidates.members(i).iter().map(|&k| self.clutter.log_density()[k]).sum();
-                eprintln!("  {:?} ld {:.1} gain {:.1} P {:.4} d {:?} misfit {:.1}/{} worst {:.1} light {:?}", self.candidates.members(i), c.log_density, c.log_density - cl, self.explanation.probability(i),
-                    c.distance.estimate.map(|e| (e.distance_m, e.sigma_m)), c.misfit.chi_square, c.misfit.degrees, c.worst_sigma,
-                    self.candidates.members(i).iter().map(|&k| self.located.sightings[k].log_light.map(|l| (l.value*100.0).round()/100.0)).collect::<Vec<_>>());
-            }
-        }
         self.telling.tell(&self.candidates, &self.explanation, self.min_probability, &mut self.located);
         finished(Stage::Posing);
         &self.located

@@ -184,7 +184,7 @@ impl Poser {
             worst_sigma: *worst_sigma,
             log_density: log_evidence - log_range(group.len()) + power_agreement(context, group, *log_power),
         };
-        candidates.push(group, markers, modes, told);
+        candidates.push(group, modes, told);
     }
 }
 

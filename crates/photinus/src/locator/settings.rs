@@ -14,8 +14,13 @@ pub struct Settings {
     pub max_tilt_rad: f64,
     /// What is believed of a neighbour's pose beforehand.
     pub pose: pose::Settings,
-    /// Neighbours less likely than this are not told, 0 to 1. Default 0.5.
+    /// Neighbours less likely than this are not told, 0 to 1. Default [`Self::DEFAULT_MIN_PROBABILITY`].
     pub min_probability: f64,
+}
+
+impl Settings {
+    /// Neighbours as likely as not are told.
+    pub const DEFAULT_MIN_PROBABILITY: f64 = 0.5;
 }
 
 impl Default for Settings {
@@ -24,7 +29,7 @@ impl Default for Settings {
             spots: spots::Settings::default(),
             max_tilt_rad: DistanceBounds::DEFAULT_MAX_TILT_RAD,
             pose: pose::Settings::default(),
-            min_probability: 0.5,
+            min_probability: Self::DEFAULT_MIN_PROBABILITY,
         }
     }
 }

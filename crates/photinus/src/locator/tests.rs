@@ -8,6 +8,7 @@ use rand_pcg::Pcg64;
 
 use super::*;
 use crate::airframe::Ring;
+use crate::camera::Bearing;
 use crate::camera::{Ideal, IdealLaw, Model, Pixel};
 use crate::spots::Extent;
 

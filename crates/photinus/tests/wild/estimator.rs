@@ -84,6 +84,7 @@ fn settings() -> impl Strategy<Value = pose::Settings> {
         |(tilt_sigma_rad, marker_sigma_m, unit_sigma, lobe_sigma, missed, use_brightness)| pose::Settings {
             tilt_sigma_rad,
             marker_sigma_m,
+            scale_sigma: 0.01,
             unit_sigma,
             lobe_sigma,
             missed,

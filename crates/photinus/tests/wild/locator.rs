@@ -127,6 +127,7 @@ fn locators() -> Vec<Locator> {
             pose: pose::Settings {
                 tilt_sigma_rad: 3.2,
                 marker_sigma_m: 1.0,
+                scale_sigma: 1.0,
                 unit_sigma: 10.0,
                 lobe_sigma: 1.0,
                 missed: 0.5,
@@ -140,6 +141,7 @@ fn locators() -> Vec<Locator> {
         pose: pose::Settings {
             tilt_sigma_rad: 1e-4,
             marker_sigma_m: 0.0,
+            scale_sigma: 0.0,
             unit_sigma: 1e-3,
             lobe_sigma: 0.0,
             missed: 1e-9,

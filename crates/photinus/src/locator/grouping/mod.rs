@@ -43,7 +43,6 @@ pub(super) struct Groups {
     partition: Partition,
     circles: Vec<Circle>,
     near: Vec<usize>,
-    nearest: Vec<(f64, usize)>,
     /// Logarithms of the light of clear neighbours.
     powers: Vec<f64>,
     /// Logarithm of the density of each group as one neighbour, by a first look, and how likely each observation is clutter by it.
@@ -185,27 +184,6 @@ impl Groups {
     /// A group, ascending; groups are in the order of their first member.
     pub(super) fn group(&self, group: usize) -> &[usize] {
         self.list.group(group)
-    }
-
-    /// Calls `with` for the other groups with a member within `reach_rad` of the first of `group`, the nearest first.
-    pub(super) fn each_near(
-        &mut self,
-        sightings: &[Sighting],
-        group: usize,
-        reach_rad: f64,
-        mut with: impl FnMut(&[usize]),
-    ) {
-        let Self { list, nearest, .. } = self;
-        let own = sightings[list.group(group)[0]].bearing.vector();
-        let gap = |other: usize| {
-            let gap = |&spot: &usize| (sightings[spot].bearing.vector() - own).norm_squared();
-            list.group(other).iter().map(gap).fold(f64::INFINITY, f64::min)
-        };
-        nearest.clear();
-        nearest.extend((0..list.len()).filter(|&other| other != group).map(|other| (gap(other), other)));
-        nearest.retain(|&(gap, _)| gap < reach_rad * reach_rad);
-        nearest.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        nearest.iter().for_each(|&(_, other)| with(list.group(other)));
     }
 
     fn cut_tree(

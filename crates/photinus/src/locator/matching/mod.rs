@@ -95,11 +95,6 @@ impl Matcher {
         2.0 * self.bounds.near_m() / nearest_m.max(self.bounds.near_m())
     }
 
-    /// The nearest distance of a neighbour, m.
-    pub(super) fn near_m(&self) -> f64 {
-        self.bounds.near_m()
-    }
-
     /// The distances that angles and sizes of these spots allow, strictly; `None` when they cannot be one neighbour.
     pub(super) fn bounds(
         &mut self,

@@ -132,6 +132,7 @@ fn every_view_has_an_answer() {
         for use_brightness in [true, false] {
             let settings = Settings {
                 pose: pose::Settings { use_brightness, ..Default::default() },
+                min_probability: 0.0,
                 ..Default::default()
             };
             let mut locator = Locator::new(camera.clone(), &airframe, None, settings).expect("a locator");
@@ -150,6 +151,7 @@ fn every_view_has_an_answer() {
                     let all = target.spots(&airframe, &camera, &mut rng);
                     let gravity = (number % 2 == 0).then_some(&down);
                     for shown in 1..=all.len() {
+                        locator.forget();
                         let located = locator.locate_spots(&all[..shown], gravity, &mut |_| ());
                         let what = format!(
                             "{} at {distance_m} m, yaw {yaw_deg} deg, {off_axis_rad:.2} rad off the axis, {shown} of {} markers",
@@ -208,6 +210,7 @@ fn coverage(airframe: &Airframe, neighbours: usize, seed: u64) -> Coverage {
             spots.extend(own);
             truth_m.push(distance_m);
         }
+        locator.forget();
         let located = locator.locate_spots(&spots, gravity, &mut |_| ());
         for neighbour in &located.neighbours {
             let members = located.members(neighbour);

@@ -13,6 +13,7 @@ use photinus::airframe::Airframe;
 use photinus::camera::{Bearing, Pixel};
 use photinus::frame::{FrameView, Mask};
 use photinus::locator::{Locator, Settings};
+use photinus::pose;
 use photinus::spots::{Extent, Spot};
 use rand_distr::{Distribution, StandardNormal, Uniform};
 use rand_pcg::Pcg64;
@@ -53,7 +54,9 @@ struct Tally {
 fn partly_seen(airframe: &Airframe, views: usize, masked: bool) -> [Tally; 7] {
     let camera = camera();
     let mut rng = Pcg64::new(5, 6);
-    let mut locator = Locator::new(camera.clone(), airframe, None, Settings::default()).expect("a locator");
+    let pose = pose::Settings { scale_sigma: 0.0, marker_sigma_m: 0.001, unit_sigma: 0.12, ..pose::Settings::default() };
+    let settings = Settings { pose, min_probability: 0.0, ..Settings::default() };
+    let mut locator = Locator::new(camera.clone(), airframe, None, settings).expect("a locator");
     let mask = masked.then(mask);
     locator.set_mask(mask.clone()).expect("the camera's size");
     let mut tallies = [Tally::default(); 7];
@@ -97,6 +100,7 @@ fn partly_seen(airframe: &Airframe, views: usize, masked: bool) -> [Tally; 7] {
         }
         count += 1;
         let down: Unit<Vector3<f64>> = Vector3::y_axis();
+        locator.forget();
         let located = locator.locate_spots(&spots, Some(&down), &mut |_| ());
         let tally = &mut tallies[spots.len()];
         tally.views += 1.0;

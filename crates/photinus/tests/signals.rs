@@ -11,6 +11,7 @@ use nalgebra::{Matrix2, Rotation3, Unit, Vector3};
 use photinus::airframe::{Airframe, Led};
 use photinus::camera::{Bearing, Camera, Pixel};
 use photinus::locator::{Located, Locator, Settings};
+use photinus::pose;
 use photinus::spots::{Extent, Spot};
 use rand_distr::{Distribution, StandardNormal, Uniform};
 use rand_pcg::Pcg64;
@@ -95,6 +96,12 @@ impl View {
     }
 }
 
+/// What is true of these neighbours.
+fn settings() -> Settings {
+    let pose = pose::Settings { scale_sigma: 0.0, marker_sigma_m: 0.001, unit_sigma: 0.12, ..pose::Settings::default() };
+    Settings { pose, min_probability: 0.0, ..Settings::default() }
+}
+
 fn spot(centre: Pixel, flux: f64) -> Spot {
     let middle = (centre.u.round() as u32, centre.v.round() as u32);
     Spot {
@@ -116,7 +123,7 @@ fn spot(centre: Pixel, flux: f64) -> Spot {
 /// weight above 0.95, and the mean NEES of position.
 fn scores(airframe: &Airframe, least_spots: usize, change: impl Fn(&mut [(Spot, Option<u32>)])) -> [f64; 2] {
     let (camera, down): (Camera, Unit<Vector3<f64>>) = (camera(), Vector3::y_axis());
-    let mut locator = Locator::new(camera.clone(), airframe, None, Settings::default()).expect("a locator");
+    let mut locator = Locator::new(camera.clone(), airframe, None, settings()).expect("a locator");
     let mut rng = Pcg64::new(5, 9);
     let (mut count, mut sure, mut nees) = (0.0, 0.0, 0.0);
     for _ in 0..400 {
@@ -126,6 +133,7 @@ fn scores(airframe: &Airframe, least_spots: usize, change: impl Fn(&mut [(Spot, 
             continue;
         }
         change(&mut spots);
+        locator.forget();
         let located = locator.locate_signalled(&spots, Some(&down), &mut |_| ());
         assert_eq!(located.neighbours.len(), 1, "{} spots are one neighbour", spots.len());
         let position = located.neighbours[0].position.expect("a position");
@@ -164,7 +172,7 @@ fn signals_that_tell_no_turn_leave_the_pose_as_it_is() {
     let mut rng = Pcg64::new(6, 9);
     for (airframe, turns) in [(hexarotor(|_| 4), 6.0), (hexarotor(|led| led % 2), 3.0)] {
         let mut locator =
-            Locator::new(camera.clone(), &airframe, None, Settings::default()).expect("a locator");
+            Locator::new(camera.clone(), &airframe, None, settings()).expect("a locator");
         for _ in 0..30 {
             let view = View::draw(&mut rng);
             let mut spots = view.spots(&airframe, &camera, &mut rng);

@@ -41,7 +41,7 @@ pub(super) struct Told {
 }
 
 /// The candidates of a frame.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(super) struct Candidates {
     all: Vec<Candidate>,
     members: Vec<usize>,
@@ -49,6 +49,11 @@ pub(super) struct Candidates {
 }
 
 impl Candidates {
+    /// None yet, with room for those of a crowded frame.
+    pub(super) fn with_room() -> Self {
+        Self { all: Vec::with_capacity(1024), members: Vec::with_capacity(4096), modes: Vec::with_capacity(8192) }
+    }
+
     pub(super) fn clear(&mut self) {
         self.all.clear();
         self.members.clear();

@@ -19,6 +19,8 @@ const WORTH_SURROUNDINGS: f64 = 1.0;
 /// The light of clutter may be anything over so many units of its logarithm, a factor of 3,000: as good as so many points that show their light.
 const LIGHT_RANGE: f64 = 8.0;
 const WORTH_POINTS: f64 = 3.0;
+/// Clutter that blinks one of our signals is so rare among clutter, as a logarithm: one in a hundred.
+const BLINKS_BY_CHANCE: f64 = 4.6;
 /// The light that clutter has is counted in steps of its logarithm.
 const LIGHT_STEP: f64 = 0.5;
 const LIGHT_STEPS: usize = 32;
@@ -126,7 +128,9 @@ impl Clutter {
                     let points = (all - own).max(0.0) + ever;
                     libm::log((WORTH_POINTS / LIGHT_RANGE + there) / (WORTH_POINTS + points))
                 });
-                self.log_density[index] = log_per_px2 - libm::log(rad2_per_px) + light - sighting.spot.marker_log_odds;
+                self.log_density[index] = log_per_px2 - libm::log(rad2_per_px) + light
+                    - sighting.spot.marker_log_odds
+                    - sighting.signal.map_or(0.0, |_| BLINKS_BY_CHANCE);
             }
         }
     }

@@ -15,7 +15,7 @@ const HOPELESS: [f64; 5] = [25.0, 14.0, 8.0, 4.0, 0.0];
 const LARGEST_GAIN: f64 = 50.0;
 
 /// How likely candidates are.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(super) struct Explanation {
     /// By candidate.
     probability: Vec<f64>,
@@ -43,6 +43,24 @@ struct Choice {
 }
 
 impl Explanation {
+    /// Nothing yet, with room for the largest part.
+    pub(super) fn with_room() -> Self {
+        Self {
+            probability: Vec::new(),
+            clutter: Vec::new(),
+            gains: Vec::new(),
+            best: Vec::new(),
+            left: Vec::new(),
+            roots: Vec::new(),
+            spots: Vec::new(),
+            options: Vec::new(),
+            sums: Vec::with_capacity(1 << MOST_TOGETHER),
+            ways: Vec::with_capacity(1 << MOST_TOGETHER),
+            done: Vec::new(),
+            log_gain: 0.0,
+        }
+    }
+
     /// How likely a candidate is a neighbour, just of its observations.
     pub(super) fn probability(&self, candidate: usize) -> f64 {
         self.probability[candidate]

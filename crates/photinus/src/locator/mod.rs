@@ -132,15 +132,15 @@ impl Locator {
             memory,
             first_clutter: Clutter::default(),
             clutter: Clutter::default(),
-            candidates: Candidates::default(),
+            candidates: Candidates::with_room(),
             alternatives: Alternatives::default(),
             doubtful: Vec::new(),
-            explanation: Explanation::default(),
+            explanation: Explanation::with_room(),
             telling: Telling::default(),
             use_brightness: settings.pose.use_brightness,
             min_probability: settings.min_probability,
             order: Vec::new(),
-            located: Located::default(),
+            located: Located::with_room(),
         })
     }
 

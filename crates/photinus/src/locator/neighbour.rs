@@ -86,6 +86,11 @@ pub struct Located {
 }
 
 impl Located {
+    /// Nothing yet, with room for the modes of a crowded frame.
+    pub(super) fn with_room() -> Self {
+        Self { modes: Vec::with_capacity(4096), ..Self::default() }
+    }
+
     /// Which sightings are this neighbour, ascending.
     pub fn members(&self, neighbour: &Neighbour) -> &[usize] {
         self.members

@@ -35,7 +35,8 @@ impl Telling {
         self.taken.clear();
         self.taken.resize(located.sightings.len(), false);
         self.order.clear();
-        self.order.extend((0..candidates.len()).filter(|&index| explanation.probability(index) > NEGLIGIBLE));
+        let negligible = NEGLIGIBLE.min(least);
+        self.order.extend((0..candidates.len()).filter(|&index| explanation.probability(index) >= negligible));
         self.order.sort_unstable_by(|&a, &b| {
             explanation.probability(b).total_cmp(&explanation.probability(a)).then(a.cmp(&b))
         });
@@ -70,7 +71,10 @@ impl Telling {
         for &index in self.order.iter().filter(|index| shares(index)) {
             let probability = explanation.probability(index);
             all += probability;
-            if is_same(candidates, own, index) {
+            if index == own && probability == 0.0 {
+                // Nobody would say so, but it is what is asked for.
+                self.same.push((index, f64::MIN_POSITIVE));
+            } else if is_same(candidates, own, index) {
                 self.same.push((index, probability));
             } else if probability > other.probability {
                 let distance_m = candidates.get(index).distance.estimate.map(|estimate| estimate.distance_m);
@@ -134,7 +138,11 @@ impl Telling {
             let own = candidate.distance.bounds;
             bounds = Some(bounds.map_or(own, |all| all.hull(&own)));
         }
+        // The mean of places all around is nearer than any of them.
+        let (length_m, within) = (mean_m.norm(), bounds.unwrap_or(candidates.get(self.same[0].0).distance.bounds));
+        let within_m = length_m.clamp(within.min_m(), within.max_m());
         let position = Position { mean_m, covariance_m2: square_m2 - mean_m * mean_m.transpose() };
+        let position = Position { mean_m: position.mean_m * (within_m / length_m), ..position };
         let sigma_m = (distance2_m2 - distance_m * distance_m).max(0.0).sqrt();
         (Some(position), Some(Estimate { distance_m, sigma_m }), bounds)
     }

@@ -9,15 +9,18 @@
 //! calibrate: photos of a grid -> a camera whose errors are known
 //! demo: all of it on a flight that the program carries along
 //! reproduce: the experiments of the founding paper, each number beside the paper's
+//! completions, man: the command line itself, for shells and manuals
 //! ```
 
 mod aligned;
+mod arguments;
 mod beforehand;
 mod calibrate;
 mod clock;
 mod convert;
 mod demo;
 mod detect;
+mod ending;
 mod evaluate;
 mod failure;
 mod fault;
@@ -25,7 +28,6 @@ mod info;
 mod inject;
 mod input;
 mod interrupt;
-mod kind;
 mod locate;
 mod number;
 mod odd_frame;
@@ -38,6 +40,7 @@ mod quantiles;
 mod reproduce;
 mod resume;
 mod run;
+mod shell;
 mod simulate;
 mod spot_options;
 mod summary;
@@ -47,7 +50,7 @@ mod terminal;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 
 use failure::Failure;
 use terminal::Terminal;
@@ -62,17 +65,24 @@ struct Program {
 
 const EXAMPLES: &str = "\
 Examples:
-  photinus demo                                see it work: two robots fly, a page shows what was found
-  photinus info camera.txt                     what a file holds, whether it is in order
-  photinus detect photo.png --overlay seen     the spots of a photo, and a picture of them
+  # see it work: two robots fly, a page shows what was found
+  photinus demo
+  # what a file holds, whether it is in order
+  photinus info camera.txt
+  # the spots of a photo, and a picture of them
+  photinus detect photo.png --overlay seen
   photinus locate recording --out results.jsonl --overlay seen
-  photinus simulate scene.toml --out recording frames with truth, where there is no recording
-  photinus evaluate recording results.jsonl    how well that went, where the truth is known
-  photinus reproduce                           every figure of the founding paper, in simulation
+  # frames with truth, where there is no recording
+  photinus simulate scene.toml --out recording
+  # how well that went, where truth is known
+  photinus evaluate recording results.jsonl
+  # every figure of the founding paper, in simulation
+  photinus reproduce
 
 Every command explains itself: photinus locate --help
 
-Exit codes: 0 done, 1 something failed while running, 2 bad usage or input, 130 interrupted.";
+Exit codes: 0 done, 1 something failed while running, 2 bad usage or input, 130
+interrupted.";
 
 #[derive(Subcommand)]
 enum Command {
@@ -86,12 +96,14 @@ enum Command {
     Demo(demo::Args),
     Reproduce(reproduce::Args),
     Calibrate(calibrate::Args),
+    Completions(shell::CompletionsArgs),
+    Man(shell::ManArgs),
 }
 
 fn main() -> ExitCode {
     fault::be_quiet();
     interrupt::listen();
-    let command = Program::parse().command;
+    let command = arguments::read::<Program>().command;
     let mut terminal = Terminal::new(command.quiet());
     let done = catch_unwind(AssertUnwindSafe(|| command.run(&mut terminal))).unwrap_or_else(|payload| {
         Err(Failure::Running(format!("{}; {}", fault::told(payload.as_ref()), fault::ADVICE)))
@@ -113,7 +125,7 @@ impl Command {
             Self::Evaluate(args) => args.quiet(),
             Self::Reproduce(args) => args.quiet(),
             Self::Calibrate(args) => args.quiet(),
-            Self::Info(_) | Self::Convert(_) | Self::Demo(_) => false,
+            Self::Info(_) | Self::Convert(_) | Self::Demo(_) | Self::Completions(_) | Self::Man(_) => false,
         }
     }
 
@@ -129,6 +141,8 @@ impl Command {
             Self::Demo(args) => demo::run(args, terminal),
             Self::Reproduce(args) => reproduce::run(args, terminal),
             Self::Calibrate(args) => calibrate::run(args, terminal),
+            Self::Completions(args) => shell::completions(args, Program::command(), terminal),
+            Self::Man(args) => shell::man(args, Program::command(), terminal),
         }
     }
 }
@@ -139,7 +153,19 @@ mod tests {
 
     #[test]
     fn the_command_line_is_in_order() {
-        use clap::CommandFactory;
         Program::command().debug_assert();
+    }
+
+    #[test]
+    fn examples_fit_a_narrow_terminal_and_none_is_cut_in_its_middle() {
+        fn of(command: &clap::Command) -> Vec<String> {
+            let own = command.get_after_help().map(ToString::to_string);
+            own.into_iter().chain(command.get_subcommands().flat_map(of)).collect()
+        }
+        let told = of(&Program::command());
+        assert!(told.len() >= 16, "{}", told.len());
+        for line in told.iter().flat_map(|text| text.lines()) {
+            assert!(line.chars().count() <= 80, "{line}");
+        }
     }
 }

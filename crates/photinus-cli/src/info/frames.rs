@@ -1,9 +1,11 @@
 //! Images, masks and videos.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use photinus_io::Result;
 use photinus_io::image::{ImageFile, read_image};
+use photinus_io::kind;
+use photinus_io::mask::read_mask;
 use photinus_io::video::Y4mFrames;
 use photinus_io::whole::open_regular;
 
@@ -21,6 +23,7 @@ pub(super) fn image(path: &Path) -> Result<Report> {
     report.fact("size", format!("{width} x {height} px"));
     if is_mask {
         report.fact("ignored", format!("{black} px, {:.1} % of the image", share(black)));
+        report.notes.extend(mask_notes(path));
     } else {
         let mut sorted = pixels.to_vec();
         sorted.sort_unstable();
@@ -32,6 +35,40 @@ pub(super) fn image(path: &Path) -> Result<Report> {
         report.fact("saturated", counted_px(white));
     }
     report.notes.extend(conversions.iter().map(ToString::to_string));
+    Ok(report)
+}
+
+/// What is odd about a mask.
+fn mask_notes(path: &Path) -> Vec<String> {
+    read_mask(path).map(|file| file.notes).unwrap_or_default()
+}
+
+/// Images that lie together: how many, and whether they are of one size.
+pub(super) fn folder(path: &Path) -> Result<Report> {
+    let images = kind::images_in(path)?;
+    let mut report = Report::new("a folder of images");
+    report.fact("images", images.len().to_string());
+    let mut sizes: Vec<((usize, usize), &PathBuf)> = Vec::new();
+    for image in &images {
+        match read_image(image) {
+            Ok(file) => {
+                let size = (file.image.width(), file.image.height());
+                if !sizes.iter().any(|(known, _)| *known == size) {
+                    sizes.push((size, image));
+                }
+            }
+            Err(error) => report.broken(error.to_string()),
+        }
+    }
+    let told: Vec<String> =
+        sizes.iter().map(|((width, height), _)| format!("{width} x {height} px")).collect();
+    report.fact("size", told.join(", "));
+    if let [_, (_, other), ..] = sizes.as_slice() {
+        report.broken(format!(
+            "{} has another size than those before it: sort the images by camera",
+            other.display()
+        ));
+    }
     Ok(report)
 }
 

@@ -18,6 +18,7 @@ mod demo;
 mod evaluate;
 mod files_survive;
 mod inject;
+mod mistakes;
 mod mutated;
 mod narrow_frames;
 mod odd_input;

@@ -8,7 +8,7 @@ use photinus_calibrate::camera::STRIP;
 
 use super::Shown;
 use super::image::{arrows, over_image};
-use crate::calibrate::report::{CameraReport, RingReport};
+use crate::calibrate::report::{CameraReport, MoveReport, RingReport};
 use crate::plots::Figure;
 use crate::plots::style::{BOUNDS, ESTIMATE, INLINE, PERPENDICULAR, axes, line, points};
 
@@ -97,12 +97,14 @@ fn halves(report: &CameraReport) -> Option<Shown> {
     let (arrows, _) = arrows(drawn, rms_mrad, report.width_px, ESTIMATE);
     let plots: Vec<Plot> = vec![Plot::Quiver(arrows)];
     let layout = over_image(&plots, report);
-    let most_mrad = moves.iter().map(|at| libm::hypot(at.move_mrad[0], at.move_mrad[1])).fold(0.0, f64::max);
+    // As long as the rms is: all three parts of the turn, of which two are drawn.
+    let length = |at: &MoveReport| at.move_mrad.iter().map(|part| part * part).sum::<f64>().sqrt();
+    let most_mrad = moves.iter().map(length).fold(0.0, f64::max);
     Some(Shown {
         title: "From one half of the photos to the other",
         caption: format!(
             "How bearings move from the calibration of one half of the photos to that of the other, a common turn taken out: rms \
-             {rms_mrad:.2} mrad, the longest arrow {most_mrad:.2} mrad. Two independent calibrations differ by about one and a half \
+             {rms_mrad:.2} mrad, at most {most_mrad:.2} mrad. Two independent calibrations differ by about one and a half \
              to two sigmas of one."
         ),
         figure: Figure { name: "halves".to_owned(), plots, layout },

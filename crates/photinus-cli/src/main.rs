@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! input -> run: detect or locate, frame by frame -> output (JSON lines, CSV, overlay, lines to read) -> summary
-//! info, convert: what a file holds, and the same in another format
+//! info, doctor, convert: what a file holds, what is doubtful about it, and the same in another format
 //! simulate: a scene -> frames with truth
 //! inject: a dataset -> the same with faults
 //! evaluate: results against the truth of a dataset
@@ -20,6 +20,7 @@ mod clock;
 mod convert;
 mod demo;
 mod detect;
+mod doctor;
 mod ending;
 mod evaluate;
 mod failure;
@@ -89,6 +90,7 @@ enum Command {
     Locate(Box<locate::Args>),
     Detect(detect::Args),
     Info(info::Args),
+    Doctor(doctor::Args),
     Convert(convert::Args),
     Simulate(simulate::Args),
     Inject(inject::Args),
@@ -125,7 +127,12 @@ impl Command {
             Self::Evaluate(args) => args.quiet(),
             Self::Reproduce(args) => args.quiet(),
             Self::Calibrate(args) => args.quiet(),
-            Self::Info(_) | Self::Convert(_) | Self::Demo(_) | Self::Completions(_) | Self::Man(_) => false,
+            Self::Info(_)
+            | Self::Doctor(_)
+            | Self::Convert(_)
+            | Self::Demo(_)
+            | Self::Completions(_)
+            | Self::Man(_) => false,
         }
     }
 
@@ -134,6 +141,7 @@ impl Command {
             Self::Locate(args) => locate::run(args, terminal),
             Self::Detect(args) => detect::run(args, terminal),
             Self::Info(args) => info::run(args, terminal),
+            Self::Doctor(args) => doctor::run(args, terminal),
             Self::Convert(args) => convert::run(args, terminal),
             Self::Simulate(args) => simulate::run(args, terminal),
             Self::Inject(args) => inject::run(args, terminal),
@@ -156,6 +164,36 @@ mod tests {
         Program::command().debug_assert();
     }
 
+    /// The commands in a text: lines that begin with `photinus`, with those that they go on in.
+    fn commands(text: &str) -> Vec<String> {
+        let joined = text.replace(" \\\n", " ");
+        let lines = joined
+            .lines()
+            .flat_map(|line| line.split([';', '|', '>', '`']).flat_map(|part| part.split("&&")));
+        lines.map(str::trim).filter(|part| part.starts_with("photinus ")).map(str::to_owned).collect()
+    }
+
+    #[test]
+    fn every_example_of_the_help_and_of_the_readme_is_a_command() {
+        fn of(command: &clap::Command) -> String {
+            let own = command.get_after_help().map_or(String::new(), |text| format!("{text}\n"));
+            own + &command.get_subcommands().map(of).collect::<String>()
+        }
+        let readme = include_str!("../../../README.md");
+        let blocks: String = readme.split("```").skip(1).step_by(2).collect();
+        let examples: Vec<String> =
+            commands(&of(&Program::command())).into_iter().chain(commands(&blocks)).collect();
+        assert!(examples.len() > 50, "{}", examples.len());
+        for example in examples {
+            let parsed = Program::try_parse_from(example.split_whitespace());
+            assert!(
+                parsed.is_ok(),
+                "{example}: {}",
+                parsed.err().map_or(String::new(), |error| error.to_string())
+            );
+        }
+    }
+
     #[test]
     fn examples_fit_a_narrow_terminal_and_none_is_cut_in_its_middle() {
         fn of(command: &clap::Command) -> Vec<String> {
@@ -164,7 +202,9 @@ mod tests {
         }
         let told = of(&Program::command());
         assert!(told.len() >= 16, "{}", told.len());
-        for line in told.iter().flat_map(|text| text.lines()) {
+        let paragraphs =
+            told.iter().flat_map(|text| text.split("\n\n")).filter(|text| text.starts_with("Examples:"));
+        for line in paragraphs.flat_map(str::lines) {
             assert!(line.chars().count() <= 80, "{line}");
         }
     }

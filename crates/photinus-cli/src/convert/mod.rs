@@ -103,7 +103,7 @@ pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> Result<(), Failure> {
         (Kind::Results, Format::Csv) => (text::results_to_csv, Content::Csv),
         _ => {
             return Err(Failure::Input(format!(
-                "{}: this is {}, which cannot become {}; choose {}",
+                "{}: this is {}, which cannot become {}; {}",
                 first.display(),
                 kind,
                 name(format),
@@ -145,14 +145,14 @@ fn name(format: Format) -> &'static str {
     }
 }
 
-/// What a file of this kind can become.
+/// What to do with a file of this kind instead.
 fn choices(kind: Kind, path: &Path) -> String {
     match kind {
-        Kind::Airframe => "--to toml or --to layout".to_owned(),
-        Kind::Camera(_) => "--to toml or --to ocam".to_owned(),
-        Kind::Results => "--to csv".to_owned(),
-        Kind::DatasetTable => "its folder as the input".to_owned(),
-        _ if kind.holds_frames() => "--to y4m or --to dataset".to_owned(),
-        _ => kind.remedy(path).unwrap_or_else(|| "a camera, an airframe, results, or frames".to_owned()),
+        Kind::Airframe => "choose --to toml or --to layout".to_owned(),
+        Kind::Camera(_) => "choose --to toml or --to ocam".to_owned(),
+        Kind::Results => "choose --to csv".to_owned(),
+        Kind::DatasetTable => "name its folder instead".to_owned(),
+        _ if kind.holds_frames() => "choose --to y4m or --to dataset".to_owned(),
+        _ => kind.remedy(path).unwrap_or_else(|| "name a camera, an airframe, results, or frames".to_owned()),
     }
 }

@@ -24,9 +24,11 @@ use truth::GroundTruth;
 
 const EXAMPLES: &str = "\
 Examples:
-  photinus locate flight --out results.jsonl        first, locate
-  photinus evaluate flight results.jsonl            then see how well
-  photinus evaluate demo/truth.jsonl demo/results.jsonl
+  # first, locate, then see how well
+  photinus locate flight --out results.jsonl
+  photinus evaluate flight results.jsonl
+  # what `photinus demo` leaves
+  photinus evaluate photinus-demo/truth.jsonl photinus-demo/results.jsonl
   photinus evaluate flight results.jsonl --plots figures --json s.json
   photinus evaluate flight results.jsonl -q --json - | jq .distance.overall
 

@@ -7,7 +7,7 @@ use super::escaped;
 /// Of the drawing, px at its full width.
 const SIZE: (f64, f64) = (1000.0, 260.0);
 /// Where the axes end: left, right, top, bottom.
-const FIELD: [f64; 4] = [60.0, 990.0, 14.0, 222.0];
+const FIELD: [f64; 4] = [100.0, 990.0, 14.0, 222.0];
 /// More moments than this cannot be told apart.
 const MOST: usize = 900;
 
@@ -185,6 +185,6 @@ mod tests {
             (html.matches("class=\"band\"").count(), html.matches("class=\"estimate\"").count()),
             (2, 2)
         );
-        assert!(html.contains("60.0 14.0Z"), "the band begins and ends at the upper edge: {html}");
+        assert!(html.contains("100.0 14.0Z"), "the band begins and ends at the upper edge: {html}");
     }
 }

@@ -108,11 +108,7 @@ const FILES: [Mistake; 27] = [
         2,
         &["this is the mounting of a camera, which cannot become OCamCalib text"],
     ),
-    (
-        "convert v.mp4 out.y4m",
-        2,
-        &["this is an MP4 video, which cannot become a Y4M video; choose decode it"],
-    ),
+    ("convert v.mp4 out.y4m", 2, &["this is an MP4 video, which cannot become a Y4M video; decode it"]),
 ];
 
 const OPTIONS: [Mistake; 24] = [
@@ -127,7 +123,7 @@ const OPTIONS: [Mistake; 24] = [
     ("locate frame.png --airframe hexa.toml", 2, &["no camera: give --camera FILE, or a dataset folder"]),
     ("locate frame.png --camera camera.toml", 2, &["no airframe: give --airframe FILE"]),
     ("locate rec --only left", 2, &["--only left: the dataset has one camera, without a name"]),
-    ("locat rec", 2, &["a similar subcommand exists: 'locate'"]),
+    ("locat rec", 2, &["unrecognized subcommand 'locat'", "'locate'"]),
     ("locate rec --overlays seen", 2, &["a similar argument exists: '--overlay"]),
     (
         "detect frame.png --out r.csv",

@@ -137,11 +137,16 @@ fn coverage(report: &CameraReport) -> Shown {
         };
         layout = layout.with_annotation(TextAnnotation::new(text, x, y).with_font_size(15));
     }
+    let thin = report.coverage.iter().filter(|part| part.photos == 1).count();
     let wanted = report.coverage.iter().map(|part| part.more_wanted).sum::<usize>();
     Shown {
         title: "Photos of each part of the image",
         caption: match wanted {
-            0 => "How many photos show the grid in each part of the image. Every part is covered.".to_owned(),
+            0 if thin == 0 => "How many photos show the grid in each part of the image. Every part is covered.".to_owned(),
+            0 => format!(
+                "How many photos show the grid in each part of the image. No part is empty, but {thin} of them have one photo only: \
+                 there the calibration rests on little."
+            ),
             _ => "How many photos show the grid in each part of the image, and where more should be taken: beyond the outermost LED \
                   the calibration is not known."
                 .to_owned(),

@@ -1,12 +1,14 @@
 //! The report as a page that opens anywhere: one file, its figures within; each figure also as PNG and SVG beside it.
 //!
 //! ```text
+//! found       the grid in the photo that shows most of it
 //! residuals   how far LEDs are from where they are expected: by photo, by LED, over the image, as a histogram; models; the board
 //! field       how sure bearings are over the image and by the angle off the axis; what two halves of the photos differ by; coverage
 //! tables      what is told in words and numbers
 //! ```
 
 mod field;
+mod found;
 mod image;
 mod residuals;
 mod tables;
@@ -34,6 +36,7 @@ pub(super) fn write(folder: &Path, report: &CameraReport) -> Result<()> {
     let figures = FigureFolder::new(folder);
     let mut page =
         Page::new("Calibration of a camera").html(&tables::told(report)).html(&tables::warnings(report));
+    page = page.html(&found::html(folder, report)?);
     for Shown { title, caption, mut figure } in
         residuals::figures(report).into_iter().chain(field::figures(report))
     {

@@ -180,7 +180,8 @@ mod tests {
             own + &command.get_subcommands().map(of).collect::<String>()
         }
         let readme = include_str!("../../../README.md");
-        let blocks: String = readme.split("```").skip(1).step_by(2).collect();
+        let blocks =
+            readme.split("```sh\n").skip(1).filter_map(|rest| rest.split("```").next()).collect::<String>();
         let examples: Vec<String> =
             commands(&of(&Program::command())).into_iter().chain(commands(&blocks)).collect();
         assert!(examples.len() > 50, "{}", examples.len());

@@ -11,7 +11,7 @@ use crate::terminal::Terminal;
 
 const EXAMPLES: &str = "\
 Examples:
-  photinus completions bash > ~/.local/share/bash-completion/completions/photinus
+  photinus completions bash > photinus.bash
   photinus completions fish > ~/.config/fish/completions/photinus.fish";
 
 /// Print what completes commands and options in a shell

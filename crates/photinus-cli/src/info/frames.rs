@@ -11,14 +11,16 @@ use photinus_io::whole::open_regular;
 
 use super::Report;
 
+/// A frame of nothing but black and white with a larger share of white than spots have is a mask, %.
+const LEAST_WHITE: f64 = 5.0;
+
 pub(super) fn image(path: &Path) -> Result<Report> {
     let ImageFile { image, conversions } = read_image(path)?;
     let (width, height, pixels) = (image.width(), image.height(), image.pixels());
     let black = pixels.iter().filter(|&&pixel| pixel == 0).count();
     let white = pixels.iter().filter(|&&pixel| pixel == u8::MAX).count();
     let share = |count: usize| 100.0 * count as f64 / pixels.len() as f64;
-    // A frame of nothing but black and white with more than spots of white is no frame of a camera.
-    let is_mask = black + white == pixels.len() && black > 0 && share(white) > 20.0;
+    let is_mask = black + white == pixels.len() && black > 0 && share(white) > LEAST_WHITE;
     let mut report = Report::new(if is_mask { "a mask" } else { "an image" });
     report.fact("size", format!("{width} x {height} px"));
     if is_mask {

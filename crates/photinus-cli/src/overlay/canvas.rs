@@ -98,9 +98,18 @@ impl<'c> Canvas<'c> {
             for row in shown {
                 brightest.iter_mut().zip(frame.row(row)).for_each(|(most, &level)| *most = level.max(*most));
             }
-            for (x, pixel) in pixels[begin..begin + columns].iter_mut().enumerate() {
-                let across = &brightest[zoom.shown(x, frame.width())];
-                *pixel = greys[usize::from(across.iter().copied().max().unwrap_or_default())];
+            let row = &mut pixels[begin..begin + columns];
+            match zoom {
+                Zoom::In(times) => {
+                    let shown = row.chunks_mut(times as usize).zip(&brightest);
+                    shown.for_each(|(shown, &level)| shown.fill(greys[usize::from(level)]));
+                }
+                Zoom::Out(times) => {
+                    let shown = row.iter_mut().zip(brightest.chunks(times as usize));
+                    for (pixel, across) in shown {
+                        *pixel = greys[usize::from(across.iter().copied().max().unwrap_or_default())];
+                    }
+                }
             }
         }
     }

@@ -41,9 +41,9 @@ impl FramePanel {
         frame: Option<FrameView<'_>>,
     ) {
         let Some(area) = self.area() else { return };
-        canvas.rectangle(area, colours::SHADE);
-        if let Some(frame) = frame {
-            canvas.frame(&frame, (self.left, self.top), self.zoom, &lifted_levels(&frame));
+        match frame {
+            Some(frame) => canvas.frame(&frame, (self.left, self.top), self.zoom, &lifted_levels(&frame)),
+            None => canvas.rectangle(area, colours::SHADE),
         }
         let mut labels = Labels::new(area);
         for spot in &record.spots {

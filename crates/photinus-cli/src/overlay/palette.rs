@@ -48,11 +48,20 @@ impl Palette {
 
     /// The entries of pixels, into a buffer that is used again.
     pub(super) fn entries_of(&self, pixels: &[PremultipliedColorU8], entries: &mut Vec<u8>) {
+        // Most pixels are like the one before.
+        let mut last = (PremultipliedColorU8::TRANSPARENT, 0);
         entries.clear();
-        entries.extend(pixels.iter().map(|pixel| {
-            let [red, green, blue] = [pixel.red(), pixel.green(), pixel.blue()];
-            if red == green && green == blue { red >> 1 } else { self.nearest[place_of([red, green, blue])] }
+        entries.extend(pixels.iter().map(|&pixel| {
+            if pixel != last.0 {
+                last = (pixel, self.entry_of(pixel));
+            }
+            last.1
         }));
+    }
+
+    fn entry_of(&self, pixel: PremultipliedColorU8) -> u8 {
+        let [red, green, blue] = [pixel.red(), pixel.green(), pixel.blue()];
+        if red == green && green == blue { red >> 1 } else { self.nearest[place_of([red, green, blue])] }
     }
 }
 

@@ -5,8 +5,8 @@ use photinus_io::image::{GreyImage, write_png};
 use crate::stage::{CAMERA, Stage, video};
 
 /// Files that may be taken for others.
-fn stage() -> Stage {
-    let stage = Stage::new("mistakes");
+fn stage(test: &str) -> Stage {
+    let stage = Stage::new(test);
     stage.dataset("rec", 2);
     stage.file("readme.md", "# Photinus\n\nPhotinus (the fireflies: they flash) tells a robot\n");
     stage.file("notes.txt", "hello\n");
@@ -173,7 +173,7 @@ const DOUBTS: [Mistake; 9] = [
 
 #[test]
 fn sixty_mistakes_and_what_is_answered() {
-    let stage = stage();
+    let stage = stage("mistakes");
     let mistakes = FILES.iter().chain(&OPTIONS).chain(&DOUBTS);
     assert!(mistakes.clone().count() >= 60);
     let before = stage.names("");
@@ -193,7 +193,7 @@ fn sixty_mistakes_and_what_is_answered() {
 
 #[test]
 fn a_layout_in_other_units_is_told_where_it_is_used() {
-    let stage = stage();
+    let stage = stage("mistakes-units");
     let done = stage.run("locate frame.png --camera camera.toml --airframe layout-cm.txt");
     assert!(
         done.code == 0 && done.err.contains("note: layout-cm.txt: its farthest marker is 24.04 m"),

@@ -142,7 +142,7 @@ fn other_units_than_metres_and_radians_are_told() {
         format!("{} 0 0 0 0.0 0.0 0\n-{} 0 0 0 0.0 {yaw} 1\n", 0.17 * scale, 0.17 * scale)
     };
     assert!(read(&row(1.0, core::f64::consts::PI)).notes.is_empty());
-    let notes = read(&row(100.0, 3.14)).notes;
+    let notes = read(&row(100.0, 3.0)).notes;
     assert!(notes[0].starts_with("its farthest marker is 17.00 m from the body's origin"), "{notes:?}");
     let notes = read(&row(1.0, 180.0)).notes;
     assert!(notes[0].starts_with("1 LED(s) have a pitch or yaw beyond a whole turn of 6.28"), "{notes:?}");

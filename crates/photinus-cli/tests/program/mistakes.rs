@@ -167,7 +167,7 @@ const DOUBTS: [Mistake; 9] = [
     ("info scores.json", 0, &["scores of `photinus evaluate`"]),
     ("info rec/frames.csv", 0, &["the frames.csv of a dataset"]),
     ("info rec/images", 0, &["a folder of images", "2"]),
-    ("detect rec/images", 0, &["frames  2"]),
+    ("detect rec/images", 0, &["frame     1  spot  0"]),
     ("detect frame.png --mask mask-inverted.png", 0, &["the mask ignores 81 % of the image"]),
 ];
 

@@ -17,11 +17,15 @@ use crate::terminal::Terminal;
 
 const EXAMPLES: &str = "\
 Examples:
-  photinus detect photo.png                         print the spots of a photo
-  photinus detect *.png --overlay seen              draw them into seen/
-  photinus detect video.y4m --out spots.jsonl       write them, a line per frame
+  # print the spots of a photo
+  photinus detect photo.png
+  # draw them into seen/
+  photinus detect *.png --overlay seen
+  # write them, a line per frame
+  photinus detect video.y4m --out spots.jsonl
   photinus detect recording --threshold 200 -q --out - | head -1
-  ffmpeg -i video.mp4 -pix_fmt gray -f yuv4mpegpipe -strict -1 - | photinus detect -
+  ffmpeg -i video.mp4 -pix_fmt gray -f yuv4mpegpipe -strict -1 - \\
+      | photinus detect -
   photinus detect frames.raw --raw 752x480@60";
 
 /// Find the spots of frames; no camera is needed

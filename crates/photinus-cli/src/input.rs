@@ -8,25 +8,26 @@ use nalgebra::{Unit, Vector3};
 use photinus_io::dataset::{Dataset, DatasetCamera};
 use photinus_io::frames::{Frame, FrameSource};
 use photinus_io::image::{Conversion, GreyImage};
+use photinus_io::kind::{self, Kind};
 use photinus_io::results::{FrameRecord, ResultsReader};
 use photinus_io::video::RawFormat;
 use photinus_io::{Error, Result};
 
 use crate::failure::Failure;
-use crate::kind::{Kind, kind_of};
+use crate::number;
 use crate::terminal::input_name;
 
 /// What the user says about frames.
 #[derive(Debug, clap::Args)]
 pub(crate) struct InputArgs {
-    /// A dataset folder, image files, a Y4M video, or - for Y4M on standard input
+    /// A dataset folder, a folder of images, image files, a Y4M video, or - for Y4M on standard input
     #[arg(value_name = "INPUT")]
     pub(crate) inputs: Vec<PathBuf>,
     /// The input is raw 8-bit grey frames of this size, nothing between them
     #[arg(long, value_name = "WIDTHxHEIGHT[@RATE]", value_parser = raw_format)]
     raw: Option<RawFormat>,
     /// Stop after N frames
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    #[arg(long, value_name = "N", value_parser = number::count)]
     frames: Option<u64>,
     #[command(flatten)]
     dataset: DatasetArgs,
@@ -207,14 +208,19 @@ impl InputArgs {
         }
         match self.inputs.as_slice() {
             [] => Err(Failure::Input(
-                "no input: name a dataset folder, image files, a Y4M video, or - for Y4M on standard input"
+                "no input: name a dataset folder, image files or a folder of them, a Y4M video, or - for Y4M on standard input"
                     .to_owned(),
             )),
             _ if self.raw.is_some() => Err(Failure::Input(
                 "--raw takes one stream: name one file, or - for standard input".to_owned(),
             )),
-            [path] if path.is_dir() => self.dataset(path),
-            [path] if is_video(path)? => video(FrameSource::y4m(open(path)?, path), path),
+            [path] if is_stream(path) => video(FrameSource::y4m(open(path)?, path), path),
+            [path] => match Kind::of(path).map_err(Failure::input)? {
+                Kind::Video => video(FrameSource::y4m(open(path)?, path), path),
+                Kind::ImageFolder => images(&kind::images_in(path).map_err(Failure::input)?),
+                Kind::Dataset | Kind::Folder => self.dataset(path),
+                _ => images(&self.inputs),
+            },
             paths => images(paths),
         }
     }
@@ -309,9 +315,14 @@ impl Entry {
     }
 }
 
-/// Whether an input is a video. Standard input is taken for one, since it can be read only once.
+/// Whether an input is standard input, which is taken for a video, since it can be read only once.
+fn is_stream(path: &Path) -> bool {
+    path.as_os_str() == "-"
+}
+
+/// Whether an input is a video.
 fn is_video(path: &Path) -> std::result::Result<bool, Failure> {
-    Ok(path.as_os_str() == "-" || kind_of(path).map_err(Failure::input)? == Kind::Video)
+    Ok(is_stream(path) || Kind::of(path).map_err(Failure::input)? == Kind::Video)
 }
 
 /// Image files: all of them must be there, whatever they hold.
@@ -322,9 +333,9 @@ fn images(paths: &[PathBuf]) -> std::result::Result<Input, Failure> {
         if path.as_os_str() == "-" {
             return refuse("a stream among several inputs", "name it alone, or image files");
         }
-        match kind_of(path).map_err(Failure::input)? {
-            Kind::Dataset => {
-                return refuse("a folder among several inputs", "name one dataset folder, or image files");
+        match Kind::of(path).map_err(Failure::input)? {
+            Kind::Dataset | Kind::ImageFolder | Kind::Folder => {
+                return refuse("a folder among several inputs", "name one folder, or image files");
             }
             Kind::Video => return refuse("a video among several inputs", "name one video, or image files"),
             _ => {}

@@ -28,18 +28,25 @@ use crate::terminal::Terminal;
 
 const EXAMPLES: &str = "\
 Examples:
-  photinus locate recording --out results.jsonl     a dataset folder says itself what camera and airframe are
-  photinus locate recording --out results.jsonl --resume     goes on where a stopped run ended
-  photinus locate *.png --camera camera.txt --airframe quad.toml --overlay seen
-  photinus locate video.y4m --camera camera.txt --airframe quad.toml --gravity 0,1,0 --csv results.csv
-  photinus locate --spots spots.jsonl --camera camera.txt --airframe quad.toml --out -
+  # a dataset folder says itself what camera and airframe are
+  photinus locate recording --out results.jsonl
+  # goes on where a stopped run ended
+  photinus locate recording --out results.jsonl --resume
+  photinus locate *.png --camera camera.txt --airframe quad.toml \\
+      --overlay seen
+  photinus locate video.y4m --camera camera.txt --airframe quad.toml \\
+      --gravity 0,1,0 --csv results.csv
+  photinus locate --spots spots.jsonl --camera camera.txt \\
+      --airframe quad.toml --out -
   ffmpeg -i video.mp4 -pix_fmt gray -f yuv4mpegpipe -strict -1 - |
     photinus locate - --camera camera.txt --airframe quad.toml
 
-Without --out and --csv a line per neighbour is printed: distance with its standard deviation, bounds that truth never
-leaves, and where it is seen from the camera.
+Without --out and --csv a line per neighbour is printed: distance with its
+standard deviation, bounds that truth never leaves, and where it is seen from
+the camera.
 
-Exit codes: 0 done, 1 some frames failed or writing did, 2 bad usage or input, or no frame could be used.";
+Exit codes: 0 done, 1 some frames failed or writing did, 2 bad usage or input,
+or no frame could be used.";
 
 /// Locate the neighbours in frames: how far, between which bounds, where
 #[derive(Debug, clap::Args)]

@@ -2,22 +2,26 @@
 //!
 //! ```text
 //! input -> run: detect or locate, frame by frame -> output (JSON lines, CSV, overlay, lines to read) -> summary
-//! info, convert: what a file holds, and the same in another format
+//! info, doctor, convert: what a file holds, what is doubtful about it, and the same in another format
 //! simulate: a scene -> frames with truth
 //! inject: a dataset -> the same with faults
 //! evaluate: results against the truth of a dataset
 //! calibrate: photos of a grid -> a camera whose errors are known
 //! demo: all of it on a flight that the program carries along
 //! reproduce: the experiments of the founding paper, each number beside the paper's
+//! completions, man: the command line itself, for shells and manuals
 //! ```
 
 mod aligned;
+mod arguments;
 mod beforehand;
 mod calibrate;
 mod clock;
 mod convert;
 mod demo;
 mod detect;
+mod doctor;
+mod ending;
 mod evaluate;
 mod failure;
 mod fault;
@@ -25,7 +29,6 @@ mod info;
 mod inject;
 mod input;
 mod interrupt;
-mod kind;
 mod locate;
 mod number;
 mod odd_frame;
@@ -38,6 +41,7 @@ mod quantiles;
 mod reproduce;
 mod resume;
 mod run;
+mod shell;
 mod simulate;
 mod spot_options;
 mod summary;
@@ -47,7 +51,7 @@ mod terminal;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 
 use failure::Failure;
 use terminal::Terminal;
@@ -62,23 +66,31 @@ struct Program {
 
 const EXAMPLES: &str = "\
 Examples:
-  photinus demo                                see it work: two robots fly, a page shows what was found
-  photinus info camera.txt                     what a file holds, whether it is in order
-  photinus detect photo.png --overlay seen     the spots of a photo, and a picture of them
+  # see it work: two robots fly, a page shows what was found
+  photinus demo
+  # what a file holds, whether it is in order
+  photinus info camera.txt
+  # the spots of a photo, and a picture of them
+  photinus detect photo.png --overlay seen
   photinus locate recording --out results.jsonl --overlay seen
-  photinus simulate scene.toml --out recording frames with truth, where there is no recording
-  photinus evaluate recording results.jsonl    how well that went, where the truth is known
-  photinus reproduce                           every figure of the founding paper, in simulation
+  # frames with truth, where there is no recording
+  photinus simulate scene.toml --out recording
+  # how well that went, where truth is known
+  photinus evaluate recording results.jsonl
+  # every figure of the founding paper, in simulation
+  photinus reproduce
 
 Every command explains itself: photinus locate --help
 
-Exit codes: 0 done, 1 something failed while running, 2 bad usage or input, 130 interrupted.";
+Exit codes: 0 done, 1 something failed while running, 2 bad usage or input, 130
+interrupted.";
 
 #[derive(Subcommand)]
 enum Command {
     Locate(Box<locate::Args>),
     Detect(detect::Args),
     Info(info::Args),
+    Doctor(doctor::Args),
     Convert(convert::Args),
     Simulate(simulate::Args),
     Inject(inject::Args),
@@ -86,12 +98,14 @@ enum Command {
     Demo(demo::Args),
     Reproduce(reproduce::Args),
     Calibrate(calibrate::Args),
+    Completions(shell::CompletionsArgs),
+    Man(shell::ManArgs),
 }
 
 fn main() -> ExitCode {
     fault::be_quiet();
     interrupt::listen();
-    let command = Program::parse().command;
+    let command = arguments::read::<Program>().command;
     let mut terminal = Terminal::new(command.quiet());
     let done = catch_unwind(AssertUnwindSafe(|| command.run(&mut terminal))).unwrap_or_else(|payload| {
         Err(Failure::Running(format!("{}; {}", fault::told(payload.as_ref()), fault::ADVICE)))
@@ -113,7 +127,12 @@ impl Command {
             Self::Evaluate(args) => args.quiet(),
             Self::Reproduce(args) => args.quiet(),
             Self::Calibrate(args) => args.quiet(),
-            Self::Info(_) | Self::Convert(_) | Self::Demo(_) => false,
+            Self::Info(_)
+            | Self::Doctor(_)
+            | Self::Convert(_)
+            | Self::Demo(_)
+            | Self::Completions(_)
+            | Self::Man(_) => false,
         }
     }
 
@@ -122,6 +141,7 @@ impl Command {
             Self::Locate(args) => locate::run(args, terminal),
             Self::Detect(args) => detect::run(args, terminal),
             Self::Info(args) => info::run(args, terminal),
+            Self::Doctor(args) => doctor::run(args, terminal),
             Self::Convert(args) => convert::run(args, terminal),
             Self::Simulate(args) => simulate::run(args, terminal),
             Self::Inject(args) => inject::run(args, terminal),
@@ -129,6 +149,8 @@ impl Command {
             Self::Demo(args) => demo::run(args, terminal),
             Self::Reproduce(args) => reproduce::run(args, terminal),
             Self::Calibrate(args) => calibrate::run(args, terminal),
+            Self::Completions(args) => shell::completions(args, Program::command(), terminal),
+            Self::Man(args) => shell::man(args, Program::command(), terminal),
         }
     }
 }
@@ -139,7 +161,52 @@ mod tests {
 
     #[test]
     fn the_command_line_is_in_order() {
-        use clap::CommandFactory;
         Program::command().debug_assert();
+    }
+
+    /// The commands in a text: lines that begin with `photinus`, with those that they go on in.
+    fn commands(text: &str) -> Vec<String> {
+        let joined = text.replace(" \\\n", " ");
+        let lines = joined
+            .lines()
+            .flat_map(|line| line.split([';', '|', '>', '`']).flat_map(|part| part.split("&&")));
+        lines.map(str::trim).filter(|part| part.starts_with("photinus ")).map(str::to_owned).collect()
+    }
+
+    #[test]
+    fn every_example_of_the_help_and_of_the_readme_is_a_command() {
+        fn of(command: &clap::Command) -> String {
+            let own = command.get_after_help().map_or(String::new(), |text| format!("{text}\n"));
+            own + &command.get_subcommands().map(of).collect::<String>()
+        }
+        let readme = include_str!("../../../README.md");
+        let blocks =
+            readme.split("```sh\n").skip(1).filter_map(|rest| rest.split("```").next()).collect::<String>();
+        let examples: Vec<String> =
+            commands(&of(&Program::command())).into_iter().chain(commands(&blocks)).collect();
+        assert!(examples.len() > 50, "{}", examples.len());
+        for example in examples {
+            let parsed = Program::try_parse_from(example.split_whitespace());
+            assert!(
+                parsed.is_ok(),
+                "{example}: {}",
+                parsed.err().map_or(String::new(), |error| error.to_string())
+            );
+        }
+    }
+
+    #[test]
+    fn examples_fit_a_narrow_terminal_and_none_is_cut_in_its_middle() {
+        fn of(command: &clap::Command) -> Vec<String> {
+            let own = command.get_after_help().map(ToString::to_string);
+            own.into_iter().chain(command.get_subcommands().flat_map(of)).collect()
+        }
+        let told = of(&Program::command());
+        assert!(told.len() >= 16, "{}", told.len());
+        let paragraphs =
+            told.iter().flat_map(|text| text.split("\n\n")).filter(|text| text.starts_with("Examples:"));
+        for line in paragraphs.flat_map(str::lines) {
+            assert!(line.chars().count() <= 80, "{line}");
+        }
     }
 }

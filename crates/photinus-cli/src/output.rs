@@ -8,9 +8,12 @@ use photinus::camera::Camera;
 use photinus_io::Result;
 use photinus_io::results::{CsvWriter, ResultsWriter};
 
+use crate::clock::Clock;
+use crate::ending::Content;
 use crate::failure::Failure;
 use crate::input::Entry;
-use crate::overlay::Overlay;
+use crate::number;
+use crate::overlay::{Overlay, Place};
 use crate::resume::Done;
 use crate::targets::{FileTarget, FolderTarget, Targets, WriteArgs};
 use crate::terminal::Terminal;
@@ -21,9 +24,13 @@ pub(crate) struct OutputArgs {
     /// Write the results as JSON lines, a line per frame; - is standard output
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
-    /// Draw what was found into a PNG per frame in this folder, which is made
-    #[arg(long, value_name = "DIR")]
+    /// Draw what was found: a PNG per frame into this folder, which is made; into a video if it ends in .y4m; - is a video on
+    /// standard output
+    #[arg(long, value_name = "DIR|FILE.y4m|-")]
     overlay: Option<PathBuf>,
+    /// Draw only every Nth frame
+    #[arg(long, value_name = "N", requires = "overlay", default_value_t = 1, hide_default_value = true, value_parser = number::count)]
+    overlay_every: u64,
     /// Go on after the last whole line that a stopped run left in --out
     #[arg(long, requires = "out", conflicts_with = "force")]
     resume: bool,
@@ -41,9 +48,16 @@ type Lines = fn(&Entry) -> Vec<String>;
 pub(crate) struct Claimed {
     out: Option<FileTarget>,
     csv: Option<FileTarget>,
-    overlay: Option<FolderTarget>,
+    overlay: Option<PicturesTarget>,
+    overlay_every: u64,
     cameras: Vec<Camera>,
     lines: Option<Lines>,
+}
+
+/// Where pictures may go.
+enum PicturesTarget {
+    Folder(FolderTarget),
+    Video(FileTarget),
 }
 
 /// Open outputs.
@@ -59,7 +73,7 @@ pub(crate) struct Outputs {
 enum Sink {
     Results(ResultsWriter<Box<dyn Write>>),
     Table(Box<CsvWriter<Box<dyn Write>>>),
-    Pictures(Overlay),
+    Pictures { overlay: Box<Overlay>, every: u64, seen: u64 },
     Lines(Lines),
 }
 
@@ -87,11 +101,13 @@ impl OutputArgs {
         // What goes on after a stopped run writes over its files.
         let write = WriteArgs { force: self.write.force || self.resume };
         let mut targets = Targets::new(write, read.iter().cloned());
-        let out = self.out.as_deref().map(|path| targets.file(path)).transpose()?;
-        let csv = csv.map(|path| targets.file(path)).transpose()?;
-        let overlay = self.overlay.as_deref().map(|path| targets.folder(path)).transpose()?;
-        let lines = (out.is_none() && csv.is_none()).then_some(lines);
-        Ok(Claimed { out, csv, overlay, cameras, lines })
+        let out = self.out.as_deref().map(|path| targets.file(path, Content::JsonLines)).transpose()?;
+        let csv = csv.map(|path| targets.file(path, Content::Csv)).transpose()?;
+        let overlay =
+            self.overlay.as_deref().map(|path| PicturesTarget::claim(path, &mut targets)).transpose()?;
+        let is_piped = matches!(&overlay, Some(PicturesTarget::Video(video)) if video.is_standard());
+        let lines = (out.is_none() && csv.is_none() && !is_piped).then_some(lines);
+        Ok(Claimed { out, csv, overlay, overlay_every: self.overlay_every, cameras, lines })
     }
 }
 
@@ -118,7 +134,8 @@ impl Claimed {
             sinks.push(Sink::Table(Box::new(table)));
         }
         if let Some(target) = self.overlay {
-            sinks.push(Sink::Pictures(Overlay::new(target.grow()?, self.cameras)?));
+            let overlay = Box::new(Overlay::new(target.open()?, self.cameras)?);
+            sinks.push(Sink::Pictures { overlay, every: self.overlay_every, seen: 0 });
         }
         sinks.extend(self.lines.map(Sink::Lines));
         Ok(Outputs { sinks, failed: false, results })
@@ -130,11 +147,20 @@ impl Outputs {
     ///
     /// # Errors
     /// [`Failure`] when no output is left.
-    pub(crate) fn write(&mut self, entry: &Entry, terminal: &Terminal) -> std::result::Result<(), Failure> {
+    pub(crate) fn write(
+        &mut self,
+        entry: &Entry,
+        clock: &mut Clock,
+        terminal: &Terminal,
+    ) -> std::result::Result<(), Failure> {
         let alone = self.sinks.len() == 1;
         let mut last = None;
+        clock.skip();
         self.sinks.retain_mut(|sink| match sink.write(entry, terminal) {
-            Ok(()) => true,
+            Ok(()) => {
+                clock.lap(sink.stage());
+                true
+            }
             Err(error) if alone => {
                 last = Some(error);
                 false
@@ -166,12 +192,42 @@ impl Outputs {
     }
 }
 
+impl PicturesTarget {
+    fn claim(path: &Path, targets: &mut Targets) -> std::result::Result<Self, Failure> {
+        let is_video = path.as_os_str() == "-" || path.extension().is_some_and(|ending| ending == "y4m");
+        Ok(match is_video {
+            true => Self::Video(targets.file(path, Content::Y4m)?),
+            false => Self::Folder(targets.folder(path)?),
+        })
+    }
+
+    fn open(&self) -> Result<Place> {
+        Ok(match self {
+            Self::Folder(folder) => Place::folder(folder.grow()?),
+            Self::Video(file) => Place::video(sink(file)?, file.name()),
+        })
+    }
+}
+
 impl Sink {
+    /// What the clock calls the writing of it.
+    fn stage(&self) -> &'static str {
+        match self {
+            Self::Results(_) | Self::Lines(_) => "writing",
+            Self::Table(_) => "table",
+            Self::Pictures { .. } => "overlay",
+        }
+    }
+
     fn write(&mut self, entry: &Entry, terminal: &Terminal) -> Result<()> {
         match self {
             Self::Results(results) => results.write(&entry.record),
             Self::Table(table) => table.write(&entry.record),
-            Self::Pictures(overlay) => {
+            Self::Pictures { overlay, every, seen } => {
+                *seen += 1;
+                if (*seen - 1) % *every != 0 {
+                    return Ok(());
+                }
                 let image = entry.image.as_ref().map(|image| image.view());
                 overlay.draw(entry.camera, &entry.record, image, entry.gravity.as_ref(), &[])
             }

@@ -58,7 +58,7 @@ pub(crate) fn run(
     let mut outputs = outputs.open(done).map_err(Failure::input)?;
     terminal.start(input.count);
     if let Some(again) = again {
-        outputs.write(&again, terminal)?;
+        outputs.write(&again, &mut clock, terminal)?;
         terminal.note(format_args!("{}: goes on after frame {}", place(&outputs), number(&again)));
     }
     while !interrupt::is_asked() {
@@ -73,9 +73,7 @@ pub(crate) fn run(
         });
         match filled {
             Ok(entry) => {
-                clock.skip();
-                outputs.write(&entry, terminal)?;
-                clock.lap("writing");
+                outputs.write(&entry, &mut clock, terminal)?;
                 tell_oddity(&entry, &mut summary, terminal);
                 summary.count(&entry.record);
             }

@@ -12,20 +12,26 @@ use photinus_sim::dataset::SceneDataset;
 use photinus_sim::scene::files_of;
 use photinus_sim::{Rendered, Scene, Simulator};
 
+use crate::ending::Content;
 use crate::failure::Failure;
 use crate::fault;
 use crate::interrupt;
+use crate::number;
 use crate::targets::{Targets, WriteArgs};
 use crate::terminal::Terminal;
 
 const EXAMPLES: &str = "\
 Examples:
-  photinus simulate scenes/outdoor-flight.toml --out flight            a dataset folder with truth
-  photinus simulate scenes/swarm-12.toml --out swarm.y4m --frames 300  a video
-  photinus simulate scenes/crossing.toml --out truth.jsonl             where everything was, no frames
+  # a dataset folder with truth
+  photinus simulate scenes/outdoor-flight.toml --out flight
+  # a video
+  photinus simulate scenes/swarm-12.toml --out swarm.y4m --frames 300
+  # where everything was, no frames
+  photinus simulate scenes/crossing.toml --out truth.jsonl
   photinus locate flight --out results.jsonl
 
-A scene with several cameras gives one dataset with all of them; its frames lie in a folder per camera.";
+A scene with several cameras gives one dataset with all of them; its frames lie
+in a folder per camera.";
 
 /// Render a scene: frames with truth
 #[derive(Debug, clap::Args)]
@@ -38,7 +44,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "OUT")]
     out: PathBuf,
     /// Frames to render, in place of the scene's duration
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    #[arg(long, value_name = "N", value_parser = number::count)]
     frames: Option<u64>,
     /// Seed of noise, wind and LED units, in place of the scene's
     #[arg(long, value_name = "SEED")]
@@ -191,8 +197,8 @@ impl<'a> Sink<'a> {
     fn create(args: &Args, scene: &'a Scene, cameras: &[usize], frames: u64) -> Result<Self, Failure> {
         let read = files_of(&args.scene).map_err(Failure::input)?;
         let mut targets = Targets::new(args.write, read);
-        let mut file = || {
-            let whole = targets.file(&args.out)?.whole().map_err(Failure::input)?;
+        let mut file = |content| {
+            let whole = targets.file(&args.out, content)?.whole().map_err(Failure::input)?;
             Ok(BufWriter::new(whole))
         };
         match extension(&args.out) {
@@ -201,9 +207,11 @@ impl<'a> Sink<'a> {
                 // a rate in thousandths: what Y4M can say of 59.9 Hz
                 let rate = ((scene.rate_hz * 1000.0).round() as u32, 1000);
                 let size = (view.width(), view.height());
-                Y4mWriter::new(file()?, &args.out, size, rate).map(Self::Video).map_err(Failure::running)
+                Y4mWriter::new(file(Content::Y4m)?, &args.out, size, rate)
+                    .map(Self::Video)
+                    .map_err(Failure::running)
             }
-            Some(_) => Ok(Self::Truth(file()?)),
+            Some(_) => Ok(Self::Truth(file(Content::JsonLines)?)),
             None => {
                 let making = targets.folder(&args.out)?.whole().map_err(Failure::input)?;
                 let writer = SceneDataset::create(making.path(), scene, cameras, frames);

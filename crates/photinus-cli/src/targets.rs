@@ -1,7 +1,7 @@
 //! What a run writes: enter the paths that a user names and the files that the run reads, leave places that may be written.
 //!
 //! One rule for every command: what is there stays, unless `--force` says otherwise; what the run reads stays even then; no
-//! two outputs go to one place. Pipes, devices and standard output hold nothing that could be lost.
+//! two outputs go to one place; a name says what is there. Pipes, devices and standard output hold nothing that could be lost.
 
 use std::fs::File;
 use std::path::{Path, PathBuf};
@@ -10,6 +10,7 @@ use photinus_io::whole::{Existing, WholeFile, WholeFolder, write_whole};
 use photinus_io::{Error, Result};
 use same_file::Handle;
 
+use crate::ending::Content;
 use crate::failure::Failure;
 use crate::interrupt;
 
@@ -46,8 +47,8 @@ impl Targets {
         Self { read: read.into_iter().collect(), claimed: Vec::new(), existing }
     }
 
-    /// The file `path`, if it may be written.
-    pub(crate) fn file(&mut self, path: &Path) -> std::result::Result<FileTarget, Failure> {
+    /// The file `path`, if it may be written and its name says what it will hold.
+    pub(crate) fn file(&mut self, path: &Path, content: Content) -> std::result::Result<FileTarget, Failure> {
         let target = FileTarget { path: path.to_owned(), existing: self.existing };
         if is_standard(path) {
             self.claim(path.to_owned(), path)?;
@@ -65,6 +66,7 @@ impl Targets {
         if path.is_file() && self.existing == Existing::Keep {
             return refuse(path, "it is there already", "write elsewhere, or over it with --force");
         }
+        agree(path, content)?;
         target.probe().map_err(Failure::input)?;
         Ok(target)
     }
@@ -86,6 +88,7 @@ impl Targets {
             let advice = "name another folder, or write into it with --force";
             return refuse(path, "it is there already", advice);
         }
+        agree(path, Content::Folder)?;
         // A folder that cannot be made is noticed before the work.
         let around = path.ancestors().skip(1).find(|folder| folder.is_dir()).unwrap_or(Path::new(""));
         drop(WholeFolder::create(around.join("photinus")).map_err(Failure::input)?);
@@ -196,6 +199,14 @@ impl FolderTarget {
     pub(crate) fn grow(&self) -> Result<PathBuf> {
         std::fs::create_dir_all(&self.0).map_err(|error| unmade(&self.0, error))?;
         Ok(self.0.clone())
+    }
+}
+
+/// Refuses a name that says another thing than what will be there.
+fn agree(path: &Path, content: Content) -> std::result::Result<(), Failure> {
+    match content.disagreement(path) {
+        Some((reason, advice)) => refuse(path, &reason, &advice),
+        None => Ok(()),
     }
 }
 

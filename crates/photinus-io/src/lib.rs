@@ -7,6 +7,7 @@
 //! image, video, dataset -> frames -> (photinus) -> results
 //! camera, airframe, mask, blink, spot_curve: what the method is told beforehand
 //! calibration: tables that calibrations are made from
+//! kind: which of these a file is, by its content
 //! whole: files that are read and written whole or not at all
 //! ```
 
@@ -19,6 +20,7 @@ pub mod dataset;
 mod error;
 pub mod frames;
 pub mod image;
+pub mod kind;
 mod lines;
 pub mod mask;
 pub mod physics;

@@ -7,6 +7,9 @@ use photinus::frame::{FrameView, Mask};
 use crate::image::{ImageFile, read_image};
 use crate::{Error, Result};
 
+/// A mask that ignores a larger share of the image is likely the wrong way round.
+const MOST_IGNORED: f64 = 0.6;
+
 /// A mask as read.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct MaskFile {
@@ -53,6 +56,13 @@ fn oddities(frame: &FrameView<'_>, ignored: usize) -> Vec<String> {
     if between > 0 {
         notes.push(format!(
             "{between} pixels of the mask are neither 0 nor 255: they are looked at, only 0 is ignored"
+        ));
+    }
+    let all = frame.width() * frame.height();
+    if ignored as f64 > MOST_IGNORED * all as f64 {
+        notes.push(format!(
+            "the mask ignores {:.0} % of the image, where it is 0: if that is what should be looked at, invert it",
+            100.0 * ignored as f64 / all as f64
         ));
     }
     if ignored == 0 {

@@ -6,6 +6,7 @@ use std::path::Path;
 use photinus::ranging::{Envelope, SpotCurve, SpotCurveError};
 use serde::{Deserialize, Serialize};
 
+use crate::kind::Kind;
 use crate::{Error, Place, Result, table, whole};
 
 const EXAMPLE: &str = "an example: upper = { offset_px = 1.3398, scale_px_m2 = 31.4704, shift_m = -0.0154 }";
@@ -81,6 +82,7 @@ pub fn read_spot_curve(path: impl AsRef<Path>) -> Result<SpotCurveFile> {
 /// spots have, and for a lower one above the upper one.
 pub fn parse_spot_curve(text: &str, path: impl AsRef<Path>) -> Result<SpotCurveFile> {
     let path = path.as_ref();
+    Kind::of_content(text.as_bytes()).expect(Kind::SpotCurve, path, EXAMPLE)?;
     let Table { exposure_us, threshold, limit_m, upper, lower } = table::parse(text, path)?;
     let refuse = |key: &str, reason: String, advice: &str| {
         Error::format(path, reason).at(Place::Key(key.to_owned())).advise(advice)

@@ -239,13 +239,13 @@ fn widened(rig: &Rig, seen: &[Seen]) -> Report {
 }
 
 fn from_above(seen: &[Seen]) -> Report {
-    let truth: Vec<(f64, f64)> = seen.iter().map(|seen| (-seen.position_m.x, seen.position_m.z)).collect();
+    let truth: Vec<(f64, f64)> = seen.iter().map(|seen| (seen.position_m.x, seen.position_m.z)).collect();
     let own: Vec<(f64, f64)> = seen
         .iter()
         .filter_map(|seen| {
             let found = seen.own.neighbour?;
             let place_m = found.bearing.vector() * found.estimate_m?;
-            Some((-place_m.x, place_m.z))
+            Some((place_m.x, place_m.z))
         })
         .collect();
     let errors = seen.iter().filter_map(|seen| {
@@ -255,8 +255,8 @@ fn from_above(seen: &[Seen]) -> Report {
     });
     let across_m = rms(errors);
     let told = share(seen.iter().map(|seen| seen.own.neighbour.is_some()));
-    let panel = Panel::new("From above, in the camera's frame", "to the left (m)", "ahead (m)")
-        .with_ranges([-4.0, 4.0], [0.0, 14.0])
+    let panel = Panel::new("From above, in the camera's frame", "to the right (m)", "ahead (m)")
+        .with_ranges([-3.0, 3.0], [0.0, 14.0])
         .with("Photinus, each frame by itself", Kind::Points, Role::Own, own)
         .with("truth", Kind::Line, Role::Truth, truth);
     let rows = vec![

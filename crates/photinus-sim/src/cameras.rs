@@ -217,13 +217,13 @@ pub fn worlds() -> Vec<World> {
             "measured-752",
             "752x480, the point spread of the real photos of that size: a pixel and its neighbours",
             W752,
-            &spread(measured(include_str!("../../../scenes/optics/measured-752x480.toml"))),
+            &spread(measured(include_str!("measured_optics/measured-752x480.toml"))),
         ),
         world(
             "measured-960",
             "960x600, the point spread of the real photos of that size: a disc 4 px wide, uneven",
             W960,
-            &spread(measured(include_str!("../../../scenes/optics/measured-960x600.toml"))),
+            &spread(measured(include_str!("measured_optics/measured-960x600.toml"))),
         ),
         world("twelve-bits", "1280x1024 at 190 deg, 0.9 px, 12 bits, unequal gains", W1280, &|preset| {
             preset.lens.spread = gaussian(0.9);

@@ -1,7 +1,7 @@
 //! The lens found -> a camera of `photinus`, and the same for tools that know OCamCalib only.
 
-use nalgebra::{DMatrix, DVector, Matrix2};
-use photinus::camera::{Camera, CameraError, KannalaBrandt, Model, OCam, Pixel};
+use nalgebra::{DMatrix, DVector, Matrix2, Vector2, Vector3};
+use photinus::camera::{Bearing, Camera, CameraError, KannalaBrandt, Model, OCam, Pixel};
 
 use super::Calibration;
 use crate::adjust::Cholesky;
@@ -69,46 +69,91 @@ pub(super) fn model_of(lens: &Lens) -> Result<(Model, DMatrix<f64>), CameraError
 const GOOD_ENOUGH_RAD: f64 = 5e-5;
 /// Degrees that are tried: programs in the field accept 63.
 const DEGREES: [usize; 7] = [4, 6, 8, 10, 12, 14, 16];
-/// Places along the radius at which the two are compared.
-const STEPS: usize = 400;
+/// Columns and rows of the places of the image at which the two are compared.
+const PLACES: [usize; 2] = [61, 41];
 
 impl Calibration {
     /// The same camera with the model OCam, for files that other tools read.
     ///
     /// # Errors
-    /// [`ExportError`] when no polynomial follows the lens over its field.
+    /// As [`ocam_of`].
     pub fn ocam(&self) -> Result<OcamExport, ExportError> {
-        if let Model::OCam(_) = self.camera().model() {
-            return Ok(OcamExport { camera: self.camera().clone(), max_off_rad: 0.0 });
-        }
-        let limit_rad = self.camera().field_limit_rad();
-        let nothing = ExportError::NoPolynomial { limit_rad };
-        let radius_px = self.lens().radius_px(limit_rad).ok_or(nothing.clone())?;
-        let curve: Vec<(f64, f64)> = (1..=STEPS)
-            .filter_map(|i| {
-                let angle = limit_rad * i as f64 / STEPS as f64;
-                Some((self.lens().radius_px(angle)?, angle))
-            })
-            .collect();
-        let mut best: Option<(Vec<f64>, f64)> = None;
-        for degree in DEGREES {
-            let Some(direct) = even_polynomial(&curve, radius_px, degree) else { continue };
-            let off_rad = largest_off_rad(&curve, &direct);
-            if best.as_ref().is_none_or(|(_, least)| off_rad < *least) {
-                best = Some((direct, off_rad));
-            }
-            if off_rad < GOOD_ENOUGH_RAD {
-                break;
-            }
-        }
-        let (direct, max_off_rad) = best.ok_or(nothing)?;
-        let p = self.lens().all_parameters();
-        let centre = Pixel::new(p[CENTRE], p[CENTRE + 1]);
-        let lens = OCam::new(&direct, centre, Matrix2::new(p[AFFINE], p[AFFINE + 1], 0.0, 1.0))?;
-        let [width_px, height_px] = self.size_px();
-        let camera = Camera::new(Model::OCam(lens), width_px, height_px, Some(limit_rad))?;
-        Ok(OcamExport { camera, max_off_rad })
+        ocam_of(self.camera())
     }
+}
+
+/// A camera of any model as one of model OCam. What is not symmetric about the axis, but for an affine part, is not followed; how far
+/// that is off at most is said.
+///
+/// # Errors
+/// [`ExportError`] when no polynomial follows the lens over its field.
+pub fn ocam_of(camera: &Camera) -> Result<OcamExport, ExportError> {
+    if let Model::OCam(_) = camera.model() {
+        return Ok(OcamExport { camera: camera.clone(), max_off_rad: 0.0 });
+    }
+    let limit_rad = camera.field_limit_rad();
+    let nothing = ExportError::NoPolynomial { limit_rad };
+    let axis = Bearing::new(Vector3::z())
+        .and_then(|axis| camera.pixel_with_jacobian(&axis))
+        .ok_or(nothing.clone())?;
+    let (centre, jacobian) = axis;
+    // On (row, column), in the unit of columns.
+    let [across, down] = [0, 1].map(|row| [jacobian[(row, 0)], jacobian[(row, 1)]]);
+    let unit = across[0];
+    let stretch = Matrix2::new(down[1] / unit, down[0] / unit, across[1] / unit, 1.0);
+    let from_image = stretch.try_inverse().ok_or(nothing.clone())?;
+    let seen: Vec<(Pixel, Bearing)> = places(camera).collect();
+    let mut curve: Vec<(f64, f64)> = seen
+        .iter()
+        .map(|(pixel, bearing)| {
+            let radius = (from_image * Vector2::new(pixel.v - centre.v, pixel.u - centre.u)).norm();
+            let ray = bearing.vector();
+            (radius, libm::atan2(libm::hypot(ray.x, ray.y), ray.z))
+        })
+        .filter(|(radius, _)| *radius > 1.0)
+        .collect();
+    curve.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let radius_px = curve.last().ok_or(nothing.clone())?.0;
+    let mut best: Option<OcamExport> = None;
+    for degree in DEGREES {
+        let Some(direct) = even_polynomial(&curve, radius_px, degree) else { continue };
+        let Ok(lens) = OCam::new(&direct, centre, stretch) else { continue };
+        let Ok(export) = Camera::new(Model::OCam(lens), camera.width(), camera.height(), Some(limit_rad))
+        else {
+            continue;
+        };
+        let max_off_rad = largest_off_rad(&seen, &export);
+        if best.as_ref().is_none_or(|best| max_off_rad < best.max_off_rad) {
+            best = Some(OcamExport { camera: export, max_off_rad });
+        }
+        if max_off_rad < GOOD_ENOUGH_RAD {
+            break;
+        }
+    }
+    best.ok_or(nothing)
+}
+
+/// Places all over the image that have a bearing.
+fn places(camera: &Camera) -> impl Iterator<Item = (Pixel, Bearing)> {
+    let along = |side: usize, step: usize, steps: usize| (side - 1) as f64 * step as f64 / (steps - 1) as f64;
+    let [columns, rows] = PLACES;
+    (0..columns * rows).filter_map(move |place| {
+        let pixel = Pixel::new(
+            along(camera.width(), place % columns, columns),
+            along(camera.height(), place / columns, rows),
+        );
+        Some((pixel, camera.bearing(pixel)?))
+    })
+}
+
+/// The largest angle between what two cameras see at a place; a place where one is blind tells nothing.
+fn largest_off_rad(seen: &[(Pixel, Bearing)], other: &Camera) -> f64 {
+    let off = |(pixel, bearing): &(Pixel, Bearing)| {
+        let apart = bearing.vector() - other.bearing(*pixel)?.vector();
+        // The chord of a small angle, without the loss of digits of its cosine.
+        Some(2.0 * libm::asin((apart.norm() / 2.0).min(1.0)))
+    };
+    seen.iter().filter_map(off).fold(0.0, f64::max)
 }
 
 /// z(r) in even powers of r (a smooth lens has no others) that follows a curve of (radius, angle) best in angle.
@@ -166,10 +211,33 @@ fn plain_powers(weights: &[f64], radius_px: f64) -> Vec<f64> {
     powers
 }
 
-fn largest_off_rad(curve: &[(f64, f64)], direct: &[f64]) -> f64 {
-    let off = |&(radius, angle): &(f64, f64)| {
-        let z = direct.iter().rev().fold(0.0, |sum, a| sum * radius + a);
-        (libm::atan2(radius, -z) - angle).abs()
-    };
-    curve.iter().map(off).fold(0.0, f64::max)
+#[cfg(test)]
+mod tests {
+    use photinus::camera::{Ideal, IdealLaw};
+
+    use super::*;
+
+    #[test]
+    fn every_model_is_followed_and_what_is_said_of_it_is_so() {
+        let centre = Pixel::new(370.3, 236.2);
+        let ideal = |law| Model::Ideal(Ideal::new(law, [265.0, 266.0], centre).unwrap());
+        let kannala_brandt =
+            KannalaBrandt::with_shear([265.0, 266.0], centre, [-0.02, 0.004, 0.0, 0.0], 0.3).unwrap();
+        for model in [
+            ideal(IdealLaw::Equidistant),
+            ideal(IdealLaw::Equisolid),
+            ideal(IdealLaw::Stereographic),
+            Model::KannalaBrandt(kannala_brandt),
+        ] {
+            let camera = Camera::new(model, 752, 480, Some(1.6)).unwrap();
+            let export = ocam_of(&camera).unwrap();
+            assert!(export.max_off_rad < 1e-4, "{:?} off by {}", camera.model(), export.max_off_rad);
+            // Places that the fit did not take.
+            for (u, v) in [(13.3, 401.7), (377.1, 9.2), (640.9, 77.7), (370.3, 236.9)] {
+                let [a, b] = [&camera, &export.camera].map(|camera| camera.bearing(Pixel::new(u, v)));
+                let (Some(a), Some(b)) = (a, b) else { continue };
+                assert!((a.vector() - b.vector()).norm() < 1.2e-4, "at {u}, {v}");
+            }
+        }
+    }
 }

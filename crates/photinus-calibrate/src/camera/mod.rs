@@ -32,7 +32,7 @@ pub use bearings::{Difference, Field, RING_RAD, Ring};
 pub use covariance::Inflation;
 pub use coverage::{Coverage, Lack, Part, STRIP};
 pub use error::CalibrateError;
-pub use export::{ExportError, OcamExport};
+pub use export::{ExportError, OcamExport, ocam_of};
 pub use misfits::{Misfit, MisfitReason};
 pub use repeats::{Half, Split};
 pub use residuals::{Outlier, Residual, Summary};

@@ -11,18 +11,24 @@ use photinus_io::whole::{Existing, write_whole};
 use super::photos::{PhotoArgs, side_by_side};
 use super::report::{CameraReport, Repeats};
 use super::{advice, page, table};
+use crate::ending::Content;
 use crate::failure::Failure;
 use crate::targets::{FileTarget, FolderTarget, Targets, WriteArgs};
 use crate::terminal::Terminal;
 
 const EXAMPLES: &str = "\
 Examples:
-  photinus calibrate camera photos/*.png --grid 7x5 --pitch 0.05 --out camera.toml
-  photinus calibrate camera photos/*.png --grid 7x5 --out camera.toml --ocam calib_results.txt --report report
-  photinus calibrate camera corners.csv --size 752x480 --grid 8x6 --out camera.toml
-  photinus calibrate camera photos/*.png --grid 7x5 --model ocam:4 --board flat --out camera.toml
+  photinus calibrate camera photos/*.png --grid 7x5 --pitch 0.05 \\
+      --out camera.toml
+  photinus calibrate camera photos/*.png --grid 7x5 --out camera.toml \\
+      --ocam calib_results.txt --report report
+  photinus calibrate camera corners.csv --size 752x480 --grid 8x6 \\
+      --out camera.toml
+  photinus calibrate camera photos/*.png --grid 7x5 --model ocam:4 \\
+      --board flat --out camera.toml
 
-15 to 30 photos with the grid near, far, tilted and at every edge of the image make a good calibration.";
+15 to 30 photos with the grid near, far, tilted and at every edge of the image
+make a good calibration.";
 
 /// Calibrate a camera from photos of a flat grid of LEDs
 #[derive(Debug, clap::Args)]
@@ -95,8 +101,8 @@ impl Args {
 pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> Result<(), Failure> {
     let mut targets = Targets::new(args.write, args.photos.files().iter().cloned());
     let out = Outputs {
-        camera: targets.file(&args.out)?,
-        ocam: args.ocam.as_deref().map(|path| targets.file(path)).transpose()?,
+        camera: targets.file(&args.out, Content::Toml)?,
+        ocam: args.ocam.as_deref().map(|path| targets.file(path, Content::OcamText)).transpose()?,
         report: args.report.as_deref().map(|path| targets.folder(path)).transpose()?,
     };
     let searched = args.photos.search(terminal)?;

@@ -10,6 +10,7 @@ use photinus_io::{Cause, Error};
 use super::Format;
 use super::dataset::DatasetSink;
 use crate::detect::in_frame;
+use crate::ending::Content;
 use crate::failure::Failure;
 use crate::input::{DatasetArgs, Entry, Input};
 use crate::interrupt;
@@ -71,7 +72,11 @@ pub(super) fn convert(
             rate_hz,
             dataset.zip(input.cameras.first()),
         )?),
-        _ => Sink::Video { target: targets.file(out)?, writer: None, rate: rate_hz.map_or((0, 0), fraction) },
+        _ => Sink::Video {
+            target: targets.file(out, Content::Y4m)?,
+            writer: None,
+            rate: rate_hz.map_or((0, 0), fraction),
+        },
     };
     if format == Format::Y4m && rate_hz.is_none() {
         terminal.note(format_args!(

@@ -7,21 +7,28 @@ mod text;
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
+use photinus_io::kind::Kind;
 
+use crate::ending::Content;
 use crate::failure::Failure;
 use crate::input::InputArgs;
-use crate::kind::{Kind, kind_of};
 use crate::targets::{FileTarget, Targets, WriteArgs};
 use crate::terminal::Terminal;
 
 const EXAMPLES: &str = "\
 Examples:
-  photinus convert calib_results.txt camera.toml        OCamCalib text to Photinus TOML
-  photinus convert kalibr.yaml camera.toml              any camera format that Photinus reads
-  photinus convert camera.toml calib_results.txt        with an inverse polynomial that fits
-  photinus convert quad.txt quad.toml                   an LED layout to an airframe, and back
-  photinus convert results.jsonl results.csv            a row per neighbour
-  photinus convert video.y4m recording --camera camera.txt --airframe quad.toml --exposure-us 1000
+  # OCamCalib text to Photinus TOML
+  photinus convert calib_results.txt camera.toml
+  # any camera format that Photinus reads
+  photinus convert kalibr.yaml camera.toml
+  # with an inverse polynomial that fits
+  photinus convert camera.toml calib_results.txt
+  # an LED layout to an airframe, and back
+  photinus convert quad.txt quad.toml
+  # a row per neighbour
+  photinus convert results.jsonl results.csv
+  photinus convert video.y4m recording --camera camera.txt \\
+      --airframe quad.toml --exposure-us 1000
   photinus convert *.png video.y4m --rate 60
   photinus convert recording copy --camera recalibrated.txt
 
@@ -69,7 +76,7 @@ pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> Result<(), Failure> {
         return Err(Failure::Input("nothing to convert: name an input and an output".to_owned()));
     };
     let is_stream = first.as_os_str() == "-";
-    let kind = if is_stream { Kind::Video } else { kind_of(first).map_err(Failure::input)? };
+    let kind = if is_stream { Kind::Video } else { Kind::of(first).map_err(Failure::input)? };
     let format = format(args, kind)?;
     if args.out.as_os_str() == "-" {
         return Err(Failure::Input("standard output: convert writes files; name one".to_owned()));
@@ -82,28 +89,29 @@ pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> Result<(), Failure> {
         )));
     }
     let targets = |read: &[PathBuf]| Targets::new(args.write, read.iter().cloned());
-    if is_frames && matches!(kind, Kind::Image | Kind::Video | Kind::Dataset) {
+    if is_frames && kind.holds_frames() {
         let input = InputArgs::of(&args.inputs, &args.frames.dataset).open()?;
         let read: Vec<PathBuf> = input.files.iter().cloned().chain(args.frames.files()).collect();
         return frames::convert(input, &args.out, format, &args.frames, targets(&read), terminal);
     }
-    let convert: fn(&Path, &FileTarget, &Terminal) -> Result<(), Failure> = match (kind, format) {
-        (Kind::Camera, Format::Ocam) => text::camera_to_ocam,
-        (Kind::Camera, Format::Toml) => text::camera_to_toml,
-        (Kind::Airframe, Format::Layout) => text::airframe_to_layout,
-        (Kind::Airframe, Format::Toml) => text::airframe_to_toml,
-        (Kind::Results, Format::Csv) => text::results_to_csv,
+    type Convert = fn(&Path, &FileTarget, &Terminal) -> Result<(), Failure>;
+    let (convert, content): (Convert, Content) = match (kind, format) {
+        (Kind::Camera(_), Format::Ocam) => (text::camera_to_ocam, Content::OcamText),
+        (Kind::Camera(_), Format::Toml) => (text::camera_to_toml, Content::Toml),
+        (Kind::Airframe, Format::Layout) => (text::airframe_to_layout, Content::Layout),
+        (Kind::Airframe, Format::Toml) => (text::airframe_to_toml, Content::Toml),
+        (Kind::Results, Format::Csv) => (text::results_to_csv, Content::Csv),
         _ => {
             return Err(Failure::Input(format!(
-                "{}: this is {}, which cannot become {}; choose {}",
+                "{}: this is {}, which cannot become {}; {}",
                 first.display(),
-                what(kind),
+                kind,
                 name(format),
-                choices(kind)
+                choices(kind, first)
             )));
         }
     };
-    convert(first, &targets(&args.inputs).file(&args.out)?, terminal)
+    convert(first, &targets(&args.inputs).file(&args.out, content)?, terminal)
 }
 
 /// What was asked for, or what the extension tells.
@@ -137,27 +145,14 @@ fn name(format: Format) -> &'static str {
     }
 }
 
-fn what(kind: Kind) -> &'static str {
+/// What to do with a file of this kind instead.
+fn choices(kind: Kind, path: &Path) -> String {
     match kind {
-        Kind::Airframe => "an airframe",
-        Kind::Blink => "a list of blink sequences",
-        Kind::Camera => "a camera, or no file that Photinus knows",
-        Kind::Dataset => "a folder of frames",
-        Kind::DatasetTable => "the table of a dataset",
-        Kind::Image => "an image",
-        Kind::Results => "results",
-        Kind::SpotCurve => "a curve of spot sizes",
-        Kind::Video => "a video",
-    }
-}
-
-fn choices(kind: Kind) -> &'static str {
-    match kind {
-        Kind::Airframe => "--to toml or --to layout",
-        Kind::Camera => "--to toml or --to ocam",
-        Kind::Results => "--to csv",
-        Kind::Dataset | Kind::Image | Kind::Video => "--to y4m or --to dataset",
-        Kind::DatasetTable => "its folder as the input",
-        Kind::Blink | Kind::SpotCurve => "another input: there is only one format of it",
+        Kind::Airframe => "choose --to toml or --to layout".to_owned(),
+        Kind::Camera(_) => "choose --to toml or --to ocam".to_owned(),
+        Kind::Results => "choose --to csv".to_owned(),
+        Kind::DatasetTable => "name its folder instead".to_owned(),
+        _ if kind.holds_frames() => "choose --to y4m or --to dataset".to_owned(),
+        _ => kind.remedy(path).unwrap_or_else(|| "name a camera, an airframe, results, or frames".to_owned()),
     }
 }

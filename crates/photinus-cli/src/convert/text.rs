@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use photinus_calibrate::camera::ocam_of;
+use photinus_io::Error;
 use photinus_io::airframe::{AirframeFile, Tolerances, layout_text, toml_text};
 use photinus_io::camera::{write_calibrated_camera_toml, write_ocam_text};
 use photinus_io::results::{CsvWriter, read_results};
@@ -18,8 +20,18 @@ pub(super) fn camera_to_ocam(path: &Path, target: &FileTarget, terminal: &Termin
     let out = target.path();
     let file = beforehand::camera(path, terminal).map_err(Failure::input)?;
     let mut text = Vec::new();
-    let inverse = write_ocam_text(&file.camera, &mut text, out).map_err(Failure::input)?;
+    let export = ocam_of(&file.camera).map_err(|error| {
+        Failure::input(Error::format(path, error.to_string()).advise("write it as Photinus TOML"))
+    })?;
+    let inverse = write_ocam_text(&export.camera, &mut text, out).map_err(Failure::input)?;
     target.write(&text).map_err(Failure::running)?;
+    if export.max_off_rad > 0.0 {
+        terminal.note(format_args!(
+            "{}: the model is another one: bearings differ by {:.3} mrad at most",
+            out.display(),
+            1e3 * export.max_off_rad
+        ));
+    }
     let told = format!(
         "{}: the inverse polynomial is a new one of degree {}, within {:.2e} px of the direct one",
         out.display(),

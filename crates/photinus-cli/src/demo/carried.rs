@@ -8,11 +8,11 @@ use photinus_sim::Scene;
 
 const SCENE: &str = "outdoor-flight.toml";
 
-/// The scene and the files it names, as they lie in `scenes/`.
+/// The scene and the files it names: links to those in `scenes/`, so that they are packed with the crate.
 const FILES: [(&str, &str); 3] = [
-    (SCENE, include_str!("../../../../scenes/outdoor-flight.toml")),
-    ("cameras/bluefox-dsl215.toml", include_str!("../../../../scenes/cameras/bluefox-dsl215.toml")),
-    ("airframes/hexarotor-0.4.toml", include_str!("../../../../scenes/airframes/hexarotor-0.4.toml")),
+    (SCENE, include_str!("scene/outdoor-flight.toml")),
+    ("cameras/bluefox-dsl215.toml", include_str!("scene/cameras/bluefox-dsl215.toml")),
+    ("airframes/hexarotor-0.4.toml", include_str!("scene/airframes/hexarotor-0.4.toml")),
 ];
 
 /// Writes the scene and its files into `folder`, where a newcomer can look at them and change them, and reads them.

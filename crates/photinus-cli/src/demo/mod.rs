@@ -20,19 +20,19 @@ use photinus::locator::{Locator, Settings};
 use photinus_evaluate::evaluate;
 use photinus_io::dataset::TruthFrame;
 use photinus_io::frames::Frame;
-use photinus_io::results::{FrameRecord, ResultsWriter};
+use photinus_io::results::{FrameRecord, NeighbourRecord, ResultsWriter};
 use photinus_io::whole::WholeFolder;
 use photinus_io::{Error, Result};
-use photinus_sim::scene::Target;
 use photinus_sim::{Rendered, Scene, Simulator};
 
 use crate::clock::Clock;
-use crate::evaluate::plot;
+use crate::evaluate::plots::page::with_figures;
+use crate::evaluate::plots::{Drawn, plot};
 use crate::failure::Failure;
 use crate::input::Entry;
 use crate::locate;
-use crate::overlay::{self, Overlay};
-use crate::page::Page;
+use crate::overlay::{self, Overlay, Place};
+use crate::page::{Moment, Page, Player, Shot, Timeline};
 use crate::simulate::write_truth;
 use crate::targets::{Targets, WriteArgs};
 use crate::terminal::Terminal;
@@ -59,8 +59,8 @@ pub(crate) struct Args {
 struct Flown {
     truth: Vec<TruthFrame>,
     records: Vec<FrameRecord>,
-    /// Numbers of the frames that were drawn.
-    drawn: Vec<u64>,
+    /// Numbers and times of the frames that were drawn.
+    drawn: Vec<(u64, f64)>,
 }
 
 /// Runs the command.
@@ -81,40 +81,65 @@ pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> std::result::Result<(
     let evaluation = evaluate(&flown.truth, &flown.records, &settings)
         .map_err(|error| Failure::Running(error.to_string()))?;
     let figures = made(folder.join(FIGURES)).map_err(broken)?;
-    plot(&figures, &evaluation, &flown.truth).map_err(broken)?;
+    let drawn = plot(&figures, &evaluation, &flown.truth).map_err(broken)?;
     let told = told::lines(&scene, &flown.truth, &evaluation.scores);
-    page(&scene, &flown.drawn, &told).write(folder).map_err(broken)?;
+    page(&scene, &flown, &told, &drawn).write(folder).map_err(broken)?;
     making.keep().map_err(Failure::running)?;
     let out = args.out.display();
     terminal.result(told)?;
     terminal.result(format_args!(
-        "Done in {:.0} s. Open {out}/index.html in a browser: the flight as it was seen, and the distance over time.\n\
-         {out}/{FIGURES} holds that figure and others, PNG and SVG; results.jsonl and truth.jsonl every number.",
+        "Done in {:.0} s. Open {out}/index.html in a browser: the flight as it was seen, the distance over time, and how good it is.\n\
+         {out}/{FIGURES} holds the figures, PNG and SVG; results.jsonl and truth.jsonl every number.",
         started.elapsed().as_secs_f64()
     ))
 }
 
-/// The pictures and the figure of every neighbour, on a page.
-fn page<'a>(scene: &Scene, drawn: &[u64], told: &'a str) -> Page<'a> {
-    let figure = |target: &Target| {
-        let name = format!("{FIGURES}/distance-over-time-{}.svg", target.id);
-        (name, format!("Distance of neighbour {} over time", target.id))
+/// Pictures with a timeline, what came out, and every figure, on a page.
+fn page(scene: &Scene, flown: &Flown, told: &str, figures: &[Drawn]) -> Page {
+    let shots = flown
+        .drawn
+        .iter()
+        .map(|&(frame, time_s)| Shot { file: format!("{PICTURES}/{}", overlay::numbered(frame)), time_s });
+    let timelines = scene.targets.iter().map(|target| Timeline {
+        title: format!("Distance of neighbour {} over time", target.id),
+        moments: moments(flown, target.id),
+    });
+    let player = Player {
+        caption: "Left: the frame, brightened, with what was found in it. Right: the same from above, the strict bounds as a bar, \
+                  the estimate as a disc. One picture a second."
+            .to_owned(),
+        shots: shots.collect(),
+        timelines: timelines.collect(),
     };
-    Page {
-        title: "Photinus: a flight of two robots",
-        told,
-        caption: "Left: the frame, brightened, with what was found in it. Right: the same from above. Pictures stand 5 s \
-                  apart, and 0.2 s apart while the neighbour spins.",
-        pictures: drawn
-            .iter()
-            .map(|&frame| format!("{PICTURES}/{}", overlay::file_name(None, frame)))
-            .collect(),
-        about_figures: (
-            "Distance over time",
-            "The strict bounds as a band, the two estimates of the paper, l_A and l_B, the estimate, and truth.",
-        ),
-        figures: scene.targets.iter().map(figure).collect(),
-    }
+    let page = Page::new("A flight of two robots").lines(told).player(&player);
+    let page = with_figures(page.heading("Every frame beside ground truth"), &format!("{FIGURES}/"), figures);
+    page.heading("Files").links(&[
+        ("results.jsonl", "what was found, a line per frame"),
+        ("truth.jsonl", "where everything was, a line per frame"),
+        ("scene/outdoor-flight.toml", "the flight: change it, and run `photinus simulate` with it"),
+        (FIGURES, "the figures, PNG and SVG"),
+    ])
+}
+
+/// Truth, estimate and bounds of a neighbour, frame by frame.
+fn moments(flown: &Flown, id: u32) -> Vec<Moment> {
+    let frames = flown.truth.iter().zip(&flown.records);
+    let moment = |(truth, record): (&TruthFrame, &FrameRecord)| {
+        let there = truth.neighbours.iter().find(|neighbour| neighbour.id == id)?;
+        // The nearest bearing, if any: the flight has one neighbour.
+        let towards = |found: &&NeighbourRecord| {
+            found.bearing.iter().zip(there.position_m).map(|(a, b)| a * b).sum::<f64>()
+        };
+        let found = record.neighbours.iter().max_by(|a, b| towards(a).total_cmp(&towards(b)));
+        let distance = found.map(|found| &found.distance_m);
+        Some(Moment {
+            time_s: truth.time_s,
+            truth_m: there.distance_m,
+            estimate_m: distance.and_then(|distance| distance.estimate),
+            bounds_m: distance.map(|distance| (distance.min, distance.max)),
+        })
+    };
+    frames.filter_map(moment).collect()
 }
 
 /// A folder, made.
@@ -131,7 +156,7 @@ fn fly(scene: &Scene, making: &WholeFolder, terminal: &mut Terminal) -> std::res
     let airframe = &scene.targets.first().ok_or_else(no_target)?.airframe;
     let camera = scene.cameras[0].camera.clone();
     let pictures = made(out.join(PICTURES)).map_err(broken)?;
-    let overlay = Overlay::new(pictures, vec![camera.clone()]).map_err(broken)?;
+    let mut overlay = Overlay::new(Place::folder(pictures), vec![camera.clone()]).map_err(broken)?;
     let mut locator = Locator::new(camera, airframe, None, Settings::default())
         .map_err(|error| Failure::Running(error.to_string()))?;
     let (truth_path, results_path) = (out.join("truth.jsonl"), out.join("results.jsonl"));
@@ -139,7 +164,7 @@ fn fly(scene: &Scene, making: &WholeFolder, terminal: &mut Terminal) -> std::res
     let mut truth_file = BufWriter::new(create(&truth_path)?);
     let mut results = ResultsWriter::new(create(&results_path)?, &results_path);
 
-    let (mut flown, mut pace, mut clock) = (Flown::default(), Pace::of(scene), Clock::new());
+    let (mut flown, mut pace, mut clock) = (Flown::default(), Pace::default(), Clock::new());
     terminal.start(Some(scene.frames));
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     let take = |rendered: Rendered| -> Result<()> {
@@ -150,7 +175,7 @@ fn fly(scene: &Scene, making: &WholeFolder, terminal: &mut Terminal) -> std::res
         if pace.is_due(truth.time_s) {
             let image = entry.image.as_ref().map(|image| image.view());
             overlay.draw(0, &entry.record, image, entry.gravity.as_ref(), &[])?;
-            flown.drawn.push(truth.frame);
+            flown.drawn.push((truth.frame, truth.time_s));
         }
         flown.truth.push(truth);
         flown.records.push(entry.record);

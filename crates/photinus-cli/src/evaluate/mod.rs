@@ -3,42 +3,46 @@
 //! What is counted and how stands in [`photinus_evaluate`]; here it is read, refused in words, and shown.
 
 mod bins;
-mod plots;
+pub(crate) mod plots;
 mod tables;
+mod truth;
 
 use std::path::{Path, PathBuf};
 
 use photinus_evaluate::{EvaluateError, RangeBins, Scores, Settings, Side, evaluate};
-use photinus_io::dataset::{Dataset, DatasetCamera, TruthFrame};
 use photinus_io::results::{FrameRecord, read_results};
 use photinus_io::{Cause, Error, Place};
 use serde::Serialize;
 
+use crate::ending::Content;
 use crate::failure::Failure;
-use crate::input::names;
 use crate::number;
 use crate::targets::{FileTarget, Targets, WriteArgs};
 use crate::terminal::Terminal;
-pub(crate) use plots::plot;
+use plots::plot;
+use truth::GroundTruth;
 
 const EXAMPLES: &str = "\
 Examples:
-  photinus locate flight --out results.jsonl        first, locate
-  photinus evaluate flight results.jsonl            then see how well
-  photinus evaluate flight results.jsonl --plots figures --json scores.json
-  photinus evaluate flight results.jsonl --bins 2,5,10 -q --json - | jq .distance.overall
+  # first, locate, then see how well
+  photinus locate flight --out results.jsonl
+  photinus evaluate flight results.jsonl
+  # what `photinus demo` leaves
+  photinus evaluate photinus-demo/truth.jsonl photinus-demo/results.jsonl
+  photinus evaluate flight results.jsonl --plots figures --json s.json
+  photinus evaluate flight results.jsonl -q --json - | jq .distance.overall
 
 Frames of truth that the results do not hold count as missed.";
 
 /// After so many bad lines the others are only counted.
 const REPORTED_LINES: usize = 5;
 
-/// Hold results against the truth of a dataset: recall, errors, bounds, covariances
+/// Compare results with ground truth: recall, errors, bounds, covariances
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Args {
-    /// The folder of a dataset with truth.jsonl
-    #[arg(value_name = "DIR")]
+    /// The folder of a dataset with truth.jsonl, or such a file alone
+    #[arg(value_name = "TRUTH")]
     dataset: PathBuf,
     /// What `photinus locate --out` wrote for it
     #[arg(value_name = "RESULTS")]
@@ -46,7 +50,7 @@ pub(crate) struct Args {
     /// Write every number as JSON, described in docs/file-formats.md; - is standard output, in place of the tables
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
-    /// Draw plots, PNG and SVG, into this folder, which is made
+    /// Write a page with the tables and plots, each also as PNG and SVG, into this folder, which is made
     #[arg(long, value_name = "DIR")]
     plots: Option<PathBuf>,
     /// Edges between bins of true distance [default: 1,2,3,4,6,8,10,12,15,20,30,50]
@@ -84,19 +88,19 @@ impl Args {
         self.quiet
     }
 
-    fn settings(&self, dataset: &Dataset) -> Settings {
+    fn settings(&self, truth: &GroundTruth) -> Settings {
         Settings {
             spot_gate_px: self.spot_gate,
             bearing_gate_rad: self.bearing_gate.to_radians(),
-            time_tolerance_s: 0.5 / dataset.info().rate_hz,
+            time_tolerance_s: truth.time_tolerance_s,
             bins: self.bins.clone().unwrap_or_default(),
             ..Settings::default()
         }
     }
 
-    fn refuse(&self, error: &EvaluateError) -> Failure {
+    fn refuse(&self, error: &EvaluateError, truth: &GroundTruth) -> Failure {
         let (file, advice) = match error.side() {
-            Side::Truth => (self.dataset.join("truth.jsonl"), "mend the truth, or make it again"),
+            Side::Truth => (truth.path.clone(), "mend the truth, or make it again"),
             Side::Results if matches!(error, EvaluateError::RepeatedFrame(..)) => {
                 (self.results.clone(), "give the results of one run")
             }
@@ -112,17 +116,15 @@ impl Args {
 
 /// Runs the command.
 pub(crate) fn run(args: &Args, terminal: &Terminal) -> Result<(), Failure> {
-    let dataset = Dataset::read(&args.dataset).map_err(Failure::input)?;
-    let mut targets = Targets::new(args.write, dataset.files().into_iter().chain([args.results.clone()]));
-    let json = args.json.as_deref().map(|path| targets.file(path)).transpose()?;
+    let truth = GroundTruth::read(&args.dataset, args.only.as_ref())?;
+    let mut targets = Targets::new(args.write, truth.files.iter().cloned().chain([args.results.clone()]));
+    let json = args.json.as_deref().map(|path| targets.file(path, Content::Json)).transpose()?;
     let plots = args.plots.as_deref().map(|path| targets.folder(path)).transpose()?;
-    let camera = one_camera(args, &dataset)?;
-    let mut truth = read_truth(args, &dataset)?;
-    let (mut results, bad_lines) = read_records(args, camera, &dataset, terminal)?;
-    truth.retain(|truth| truth.camera == camera.name);
-    results.retain(|record| record.camera == camera.name);
-    let settings = args.settings(&dataset);
-    let evaluation = evaluate(&truth, &results, &settings).map_err(|error| args.refuse(&error))?;
+    let (mut results, bad_lines) = read_records(args, &truth, terminal)?;
+    results.retain(|record| record.camera == truth.camera);
+    let settings = args.settings(&truth);
+    let evaluation =
+        evaluate(&truth.frames, &results, &settings).map_err(|error| args.refuse(&error, &truth))?;
 
     let is_for_people = !args.quiet && !json.as_ref().is_some_and(FileTarget::is_standard);
     if let Some(json) = json {
@@ -131,8 +133,11 @@ pub(crate) fn run(args: &Args, terminal: &Terminal) -> Result<(), Failure> {
     }
     if let Some(plots) = plots {
         let folder = plots.whole().map_err(Failure::running)?;
-        let drawn = plot(folder.path(), &evaluation, &truth).map_err(|error| folder.tell(error));
-        drawn.and_then(|()| folder.keep()).map_err(Failure::running)?;
+        let tables = tables::Tables(&evaluation.scores).to_string();
+        let drawn = plot(folder.path(), &evaluation, &truth.frames).and_then(|figures| {
+            plots::page::write(folder.path(), &args.results, tables.trim_end(), &figures)
+        });
+        drawn.map_err(|error| folder.tell(error)).and_then(|()| folder.keep()).map_err(Failure::running)?;
     }
     warn(&evaluation.scores, args, terminal);
     if is_for_people {
@@ -141,34 +146,10 @@ pub(crate) fn run(args: &Args, terminal: &Terminal) -> Result<(), Failure> {
     if bad_lines > 0 { Err(Failure::Frames { all: results.is_empty() }) } else { Ok(()) }
 }
 
-/// The camera whose results are held against the truth.
-fn one_camera<'a>(args: &Args, dataset: &'a Dataset) -> Result<&'a DatasetCamera, Failure> {
-    let told = || format!("{}: it has {}", args.dataset.display(), names(dataset.cameras()));
-    match (dataset.cameras(), &args.only) {
-        ([camera], None) => Ok(camera),
-        (_, None) => Err(Failure::Input(format!("{}; choose one with --only NAME", told()))),
-        (cameras, Some(_)) => cameras
-            .iter()
-            .find(|camera| camera.name == args.only)
-            .ok_or_else(|| Failure::Input(format!("{}; --only names another", told()))),
-    }
-}
-
-fn read_truth(args: &Args, dataset: &Dataset) -> Result<Vec<TruthFrame>, Failure> {
-    let truth = dataset.truth().map_err(Failure::input)?;
-    truth.ok_or_else(|| {
-        Failure::input(
-            Error::format(&args.dataset, "the folder holds no truth.jsonl")
-                .advise("only results of a dataset with truth can be evaluated, such as a simulated one"),
-        )
-    })
-}
-
 /// The records that can be read, and how many lines cannot: their frames count as missed.
 fn read_records(
     args: &Args,
-    camera: &DatasetCamera,
-    dataset: &Dataset,
+    truth: &GroundTruth,
     terminal: &Terminal,
 ) -> Result<(Vec<FrameRecord>, usize), Failure> {
     let (mut records, mut bad_lines) = (Vec::new(), 0);
@@ -194,12 +175,11 @@ fn read_records(
             refused.advise("give what `photinus locate --out` wrote for this dataset"),
         ));
     }
-    let is_listed = |frame: u64| camera.frames.binary_search_by_key(&frame, |row| row.frame).is_ok();
-    let of_camera = records.iter().filter(|record| record.camera == camera.name);
-    match of_camera.filter_map(|record| record.frame).find(|&frame| !is_listed(frame)) {
+    let (listed, frames) = &truth.listed;
+    let of_camera = records.iter().filter(|record| record.camera == truth.camera);
+    match of_camera.filter_map(|record| record.frame).find(|frame| !frames.contains(frame)) {
         None => Ok((records, bad_lines)),
         Some(frame) => {
-            let listed = dataset.path(&camera.frames_file);
             let reason = format!("{} lists no such frame", listed.display());
             let refused = Error::format(&args.results, reason).at(Place::Frame(frame));
             Err(Failure::input(refused.advise("give the results of this dataset")))

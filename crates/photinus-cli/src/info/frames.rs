@@ -1,13 +1,18 @@
 //! Images, masks and videos.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use photinus_io::Result;
 use photinus_io::image::{ImageFile, read_image};
+use photinus_io::kind;
+use photinus_io::mask::read_mask;
 use photinus_io::video::Y4mFrames;
 use photinus_io::whole::open_regular;
 
 use super::Report;
+
+/// A frame of nothing but black and white with a larger share of white than spots have is a mask, %.
+const LEAST_WHITE: f64 = 5.0;
 
 pub(super) fn image(path: &Path) -> Result<Report> {
     let ImageFile { image, conversions } = read_image(path)?;
@@ -15,12 +20,12 @@ pub(super) fn image(path: &Path) -> Result<Report> {
     let black = pixels.iter().filter(|&&pixel| pixel == 0).count();
     let white = pixels.iter().filter(|&&pixel| pixel == u8::MAX).count();
     let share = |count: usize| 100.0 * count as f64 / pixels.len() as f64;
-    // A frame of nothing but black and white with more than spots of white is no frame of a camera.
-    let is_mask = black + white == pixels.len() && black > 0 && share(white) > 20.0;
+    let is_mask = black + white == pixels.len() && black > 0 && share(white) > LEAST_WHITE;
     let mut report = Report::new(if is_mask { "a mask" } else { "an image" });
     report.fact("size", format!("{width} x {height} px"));
     if is_mask {
         report.fact("ignored", format!("{black} px, {:.1} % of the image", share(black)));
+        report.notes.extend(mask_notes(path));
     } else {
         let mut sorted = pixels.to_vec();
         sorted.sort_unstable();
@@ -32,6 +37,40 @@ pub(super) fn image(path: &Path) -> Result<Report> {
         report.fact("saturated", counted_px(white));
     }
     report.notes.extend(conversions.iter().map(ToString::to_string));
+    Ok(report)
+}
+
+/// What is odd about a mask.
+fn mask_notes(path: &Path) -> Vec<String> {
+    read_mask(path).map(|file| file.notes).unwrap_or_default()
+}
+
+/// Images that lie together: how many, and whether they are of one size.
+pub(super) fn folder(path: &Path) -> Result<Report> {
+    let images = kind::images_in(path)?;
+    let mut report = Report::new("a folder of images");
+    report.fact("images", images.len().to_string());
+    let mut sizes: Vec<((usize, usize), &PathBuf)> = Vec::new();
+    for image in &images {
+        match read_image(image) {
+            Ok(file) => {
+                let size = (file.image.width(), file.image.height());
+                if !sizes.iter().any(|(known, _)| *known == size) {
+                    sizes.push((size, image));
+                }
+            }
+            Err(error) => report.broken(error.to_string()),
+        }
+    }
+    let told: Vec<String> =
+        sizes.iter().map(|((width, height), _)| format!("{width} x {height} px")).collect();
+    report.fact("size", told.join(", "));
+    if let [_, (_, other), ..] = sizes.as_slice() {
+        report.broken(format!(
+            "{} has another size than those before it: sort the images by camera",
+            other.display()
+        ));
+    }
     Ok(report)
 }
 

@@ -5,25 +5,30 @@ mod camera;
 mod dataset;
 mod frames;
 mod optics;
+mod own;
 mod records;
+mod tables;
 
 use std::path::{Path, PathBuf};
 
-use photinus_io::Result;
+use photinus_io::kind::Kind;
+use photinus_io::{Error, Result};
 
 use crate::aligned::{Aligned, Side};
 use crate::failure::Failure;
-use crate::kind::{Kind, kind_of};
 use crate::terminal::Terminal;
 
 const EXAMPLES: &str = "\
 Examples:
-  photinus info camera.txt             field of view, resolution, checks, oddities
-  photinus info airframe.toml          markers, and how many show from which side
+  # field of view, resolution, checks, oddities
+  photinus info camera.txt
+  # markers, and how many show from which side
+  photinus info airframe.toml
   photinus info recording results.jsonl mask.png
 
-Knows cameras (OCamCalib text, Photinus TOML, UVDAR YAML, Kalibr, ROS CameraInfo, pyocamcalib), airframes, datasets,
-images, masks, Y4M videos, results, blink sequences and spot curves. Exits with 2 when a file is not in order.";
+Knows cameras (OCamCalib text, Photinus TOML, UVDAR YAML, Kalibr, ROS
+CameraInfo, pyocamcalib), airframes, datasets, images, masks, Y4M videos, and
+every file that Photinus writes. Exits with 2 when a file is not in order.";
 
 /// Tell what files hold and whether they are in order
 #[derive(Debug, clap::Args)]
@@ -92,18 +97,40 @@ pub(crate) fn run(args: &Args, terminal: &Terminal) -> std::result::Result<(), F
 }
 
 fn report(path: &Path) -> Result<Report> {
-    match kind_of(path)? {
+    match Kind::of(path)? {
         Kind::Airframe => airframe::report(path),
         Kind::Blink => records::blink(path),
-        Kind::Camera => camera::report(path),
+        Kind::Camera(_) => camera::report(path),
         Kind::Dataset => dataset::dataset(path),
         Kind::DatasetTable => dataset::dataset(path.parent().unwrap_or(Path::new("."))),
         Kind::Image => frames::image(path),
+        Kind::ImageFolder => frames::folder(path),
+        Kind::Video => frames::video(path),
         Kind::Results => records::results(path),
         Kind::SpotCurve => records::spot_curve(path),
-        Kind::Video => frames::video(path),
+        Kind::Truth => records::truth(path),
+        Kind::Scene => own::scene(path),
+        Kind::Mounting => own::mounting(path),
+        Kind::Vehicles => own::vehicles(path),
+        Kind::PointSpread => own::part_of_a_scene(path, Kind::PointSpread, "[optics]"),
+        Kind::Sensor => own::part_of_a_scene(path, Kind::Sensor, "[sensor]"),
+        Kind::Scores => own::scores(path),
+        Kind::CalibrationReport => own::calibration_report(path),
+        Kind::SpotSizeReport => own::spot_size_report(path),
+        Kind::Table(table) => tables::report(path, table),
+        other @ (Kind::Folder
+        | Kind::Foreign(_)
+        | Kind::Keys(_)
+        | Kind::Text
+        | Kind::Binary
+        | Kind::Empty) => {
+            let refused = Error::format(path, format!("this is {other}"));
+            Err(refused.advise(other.remedy(path).unwrap_or_else(|| KNOWN.to_owned())))
+        }
     }
 }
+
+const KNOWN: &str = "name a camera, an airframe, a mask, frames, or a file that Photinus wrote; docs/file-formats.md shows each";
 
 fn print(path: &Path, report: &Report, terminal: &Terminal) -> std::result::Result<(), Failure> {
     terminal.result(format_args!("{}: {}", path.display(), report.what))?;

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use photinus_io::Result;
 use photinus_io::blink::read_blink_codes;
+use photinus_io::dataset::read_truth;
 use photinus_io::results::read_results;
 use photinus_io::spot_curve::{SpotCurveFile, read_spot_curve};
 
@@ -40,6 +41,25 @@ pub(super) fn results(path: &Path) -> Result<Report> {
         summary.span(first_s, last_s);
     }
     report.facts = summary.counts(2);
+    Ok(report)
+}
+
+/// Where everything was, frame by frame.
+pub(super) fn truth(path: &Path) -> Result<Report> {
+    let frames = read_truth(path)?;
+    let mut report = Report::new("ground truth");
+    report.fact("frames", frames.len().to_string());
+    if let (Some(first), Some(last)) = (frames.first(), frames.last()) {
+        report.fact("time", format!("{:.3} to {:.3} s", first.time_s, last.time_s));
+    }
+    let neighbours = || frames.iter().flat_map(|frame| &frame.neighbours);
+    report.fact("neighbours", format!("{} over all frames", neighbours().count()));
+    let (near_m, far_m) = neighbours()
+        .map(|neighbour| neighbour.distance_m)
+        .fold((f64::INFINITY, 0.0_f64), |(near_m, far_m), m| (near_m.min(m), far_m.max(m)));
+    if near_m <= far_m {
+        report.fact("distance", format!("{near_m:.2} to {far_m:.2} m"));
+    }
     Ok(report)
 }
 

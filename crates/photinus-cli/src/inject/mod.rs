@@ -21,10 +21,13 @@ use crate::terminal::Terminal;
 const EXAMPLES: &str = "\
 Examples:
   photinus inject flight --fault noise=8 --out noisy
-  photinus inject flight --fault lamp=25px-beside --fault gravity=5 --out bad-day --seed 3
-  photinus locate bad-day --out results.jsonl && photinus evaluate bad-day results.jsonl
+  photinus inject flight --fault lamp=25px-beside --fault gravity=5 \\
+      --out bad-day --seed 3
+  photinus locate bad-day --out results.jsonl \\
+      && photinus evaluate bad-day results.jsonl
 
-Faults happen in the order in which they are given; the same seed gives the same bytes. Frames are 8 bit before and after each.";
+Faults happen in the order in which they are given; the same seed gives the same
+bytes. Frames are 8 bit before and after each.";
 
 /// Wrap faults around the frames of a dataset: noise, lamps, dead LEDs, lost frames, ...
 #[derive(Debug, clap::Args)]

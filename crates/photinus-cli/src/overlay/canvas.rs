@@ -6,7 +6,7 @@ use tiny_skia::{
     PremultipliedColorU8, Rect, Stroke, Transform,
 };
 
-use super::text::Font;
+use super::text::{Font, Stamp};
 use super::zoom::Zoom;
 
 /// How a line is drawn.
@@ -47,28 +47,22 @@ pub(super) struct Words<'a> {
     pub(super) halo: Option<Colour>,
 }
 
-/// A picture in the making.
-pub(super) struct Canvas<'f> {
-    pixmap: Pixmap,
-    font: &'f Font,
+/// A picture in the making, opaque everywhere.
+pub(super) struct Canvas<'c> {
+    pixmap: &'c mut Pixmap,
+    font: &'c mut Font,
 }
 
-impl<'f> Canvas<'f> {
-    /// A picture of one colour; `None` when there is no memory for one so large.
-    pub(super) fn new(width: u32, height: u32, ground: Colour, font: &'f Font) -> Option<Self> {
-        let mut pixmap = Pixmap::new(width, height)?;
-        pixmap.fill(tiny_skia::Color::from_rgba8(
-            ground.red(),
-            ground.green(),
-            ground.blue(),
-            ground.alpha(),
-        ));
-        Some(Self { pixmap, font })
+impl<'c> Canvas<'c> {
+    /// Goes on with what is drawn already.
+    pub(super) fn on(pixmap: &'c mut Pixmap, font: &'c mut Font) -> Self {
+        Self { pixmap, font }
     }
 
-    /// The bytes of a PNG file.
-    pub(super) fn png(&self) -> Result<Vec<u8>, String> {
-        self.pixmap.encode_png().map_err(|error| error.to_string())
+    /// Makes all of it one colour.
+    pub(super) fn fill_all(&mut self, ground: Colour) {
+        let (red, green, blue) = (ground.red(), ground.green(), ground.blue());
+        self.pixmap.fill(tiny_skia::Color::from_rgba8(red, green, blue, u8::MAX));
     }
 
     /// A grey frame, its levels replaced through `levels`.
@@ -84,16 +78,37 @@ impl<'f> Canvas<'f> {
         let drawn = |px: usize| zoom.drawn_px(u32::try_from(px).unwrap_or(u32::MAX)) as usize;
         let rows = drawn(frame.height()).min(height.saturating_sub(top));
         let columns = drawn(frame.width()).min(width.saturating_sub(left));
+        let greys = levels.map(|level| {
+            // Opaque, so that no part of the colour is above its opacity.
+            PremultipliedColorU8::from_rgba(level, level, level, u8::MAX)
+                .unwrap_or(PremultipliedColorU8::TRANSPARENT)
+        });
         let pixels = self.pixmap.pixels_mut();
+        let mut brightest = vec![0_u8; frame.width()];
+        let mut last = None;
         for y in 0..rows {
             let begin = (top + y) * width + left;
-            for (x, pixel) in pixels[begin..begin + columns].iter_mut().enumerate() {
-                // The brightest of what is shown, so that no spot is lost in a smaller picture.
-                let across = zoom.shown(x, frame.width());
-                let rows = zoom.shown(y, frame.height()).map(|row| &frame.row(row)[across.clone()]);
-                let level = levels[usize::from(rows.flatten().copied().max().unwrap_or_default())];
-                if let Some(grey) = PremultipliedColorU8::from_rgba(level, level, level, u8::MAX) {
-                    *pixel = grey;
+            let shown = zoom.shown(y, frame.height());
+            if last.replace(shown.clone()) == Some(shown.clone()) {
+                pixels.copy_within(begin - width..begin - width + columns, begin);
+                continue;
+            }
+            // The brightest of what is shown, so that no spot is lost in a smaller picture.
+            brightest.fill(0);
+            for row in shown {
+                brightest.iter_mut().zip(frame.row(row)).for_each(|(most, &level)| *most = level.max(*most));
+            }
+            let row = &mut pixels[begin..begin + columns];
+            match zoom {
+                Zoom::In(times) => {
+                    let shown = row.chunks_mut(times as usize).zip(&brightest);
+                    shown.for_each(|(shown, &level)| shown.fill(greys[usize::from(level)]));
+                }
+                Zoom::Out(times) => {
+                    let shown = row.iter_mut().zip(brightest.chunks(times as usize));
+                    for (pixel, across) in shown {
+                        *pixel = greys[usize::from(across.iter().copied().max().unwrap_or_default())];
+                    }
                 }
             }
         }
@@ -157,11 +172,16 @@ impl<'f> Canvas<'f> {
             Align::Left => at.x,
             Align::Middle => at.x - width / 2.0,
         };
-        let Some(path) = self.font.outline(words.text, x, at.y, words.size) else { return };
+        let row = at.y.round() as i32;
+        let (width, pixels) = (self.pixmap.width() as usize, self.pixmap.pixels_mut());
         if let Some(halo) = words.halo {
-            self.stroke(&path, Pen::new(halo, 0.26 * words.size));
+            self.font.stamps(words.text, x, words.size, true, |stamp, column| {
+                press(stamp, (column, row), halo, (pixels, width));
+            });
         }
-        self.fill(&path, words.colour);
+        self.font.stamps(words.text, x, words.size, false, |stamp, column| {
+            press(stamp, (column, row), words.colour, (pixels, width));
+        });
     }
 
     fn fill(&mut self, path: &Path, colour: Colour) {
@@ -178,6 +198,38 @@ impl<'f> Canvas<'f> {
             draw(halo, 2.4 * pen.width);
         }
         draw(pen.colour, pen.width);
+    }
+}
+
+/// Lays a colour over the pixels that a stamp covers, as far as they are in the picture.
+fn press(
+    stamp: &Stamp,
+    (column, row): (i32, i32),
+    colour: Colour,
+    (pixels, width): (&mut [PremultipliedColorU8], usize),
+) {
+    for (line, y) in stamp.cover.chunks_exact(stamp.width).zip(row + stamp.top..) {
+        let Some(begin) =
+            usize::try_from(y).ok().map(|y| y * width).filter(|begin| begin + width <= pixels.len())
+        else {
+            continue;
+        };
+        for (&cover, x) in line.iter().zip(column + stamp.left..) {
+            let Some(x) = usize::try_from(x).ok().filter(|&x| x < width && cover > 0) else { continue };
+            let pixel = &mut pixels[begin + x];
+            let mix = |over: u8, under: u8| {
+                let (over, under, cover) = (u32::from(over), u32::from(under), u32::from(cover));
+                ((over * cover + under * (255 - cover) + 127) / 255) as u8
+            };
+            let (red, green, blue) = (
+                mix(colour.red(), pixel.red()),
+                mix(colour.green(), pixel.green()),
+                mix(colour.blue(), pixel.blue()),
+            );
+            if let Some(mixed) = PremultipliedColorU8::from_rgba(red, green, blue, u8::MAX) {
+                *pixel = mixed;
+            }
+        }
     }
 }
 

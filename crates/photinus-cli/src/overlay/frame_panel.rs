@@ -12,6 +12,10 @@ use super::zoom::Zoom;
 
 /// Grey level to which the middle level of a dark frame is lifted.
 const LIFTED_MIDDLE: f64 = 44.0;
+/// More neighbours than this are named in the frame by their letter alone.
+const CROWD: usize = 16;
+/// Of more rejected regions than this each has its mark, but the heading alone says why.
+const MOST_TOLD: usize = 10;
 /// The strongest lift, as an exponent.
 const STRONGEST_LIFT: f64 = 0.35;
 
@@ -28,26 +32,37 @@ pub(super) struct FramePanel {
 }
 
 impl FramePanel {
-    /// Draws everything.
-    pub(super) fn draw(&self, canvas: &mut Canvas<'_>, record: &FrameRecord, frame: Option<FrameView<'_>>) {
+    /// Draws everything; `names` are the numbers that the neighbours go by.
+    pub(super) fn draw(
+        &self,
+        canvas: &mut Canvas<'_>,
+        record: &FrameRecord,
+        names: &[usize],
+        frame: Option<FrameView<'_>>,
+    ) {
         let Some(area) = self.area() else { return };
-        canvas.rectangle(area, colours::SHADE);
-        if let Some(frame) = frame {
-            canvas.frame(&frame, (self.left, self.top), self.zoom, &lifted_levels(&frame));
+        match frame {
+            Some(frame) => canvas.frame(&frame, (self.left, self.top), self.zoom, &lifted_levels(&frame)),
+            None => canvas.rectangle(area, colours::SHADE),
         }
         let mut labels = Labels::new(area);
         for spot in &record.spots {
             labels.take(self.at(spot.u_px, spot.v_px), self.radius_of(record, spot));
         }
-        for (number, neighbour) in record.neighbours.iter().enumerate() {
+        for (neighbour, &number) in record.neighbours.iter().zip(names) {
             self.neighbour(canvas, &mut labels, record, neighbour, number);
         }
         for (index, spot) in record.spots.iter().enumerate() {
-            let mark = (self.radius_of(record, spot), colour_of_spot(record, index));
+            let mark = (self.radius_of(record, spot), colour_of_spot(record, names, index));
             self.spot(canvas, &mut labels, spot, index, mark);
         }
+        let are_told = record.rejected.len() <= MOST_TOLD;
         for rejected in &record.rejected {
-            self.rejected(canvas, &mut labels, rejected);
+            self.rejected(canvas, rejected);
+            if are_told {
+                let (centre, reach) = self.rejected_at(rejected);
+                self.label(canvas, &mut labels, centre, reach, &rejected.reason, colours::REJECTED);
+            }
         }
     }
 
@@ -85,7 +100,11 @@ impl FramePanel {
             }
         }
         let Some(middle) = middle_of(&path) else { return };
-        let (first, second) = distance_lines(&neighbour.distance_m, number);
+        let is_crowd = record.neighbours.len() > CROWD;
+        let (first, second) = match is_crowd {
+            true => (name(number), String::new()),
+            false => distance_lines(&neighbour.distance_m, number),
+        };
         let size = 15.0 * self.unit;
         let words = |text| Words { text, size, colour, halo: Some(colours::SHADE) };
         let width = canvas.width_of(words(&first)).max(canvas.width_of(words(&second)));
@@ -93,8 +112,24 @@ impl FramePanel {
             (across.max((point.x - middle.x).abs()), down.max((point.y - middle.y).abs()))
         });
         let gap = 22.0 * self.unit;
-        let room = (width, 2.4 * size);
-        let Some(corner) = labels.place(middle, (reach.0 + gap, reach.1 + gap), room) else { return };
+        let (room, gap) = match is_crowd {
+            true => ((width, size), 0.5 * gap),
+            false => ((width, 2.4 * size), gap),
+        };
+        let reach = (reach.0 + gap, reach.1 + gap);
+        let placed = match is_crowd {
+            true => labels.place(middle, reach, room).map(|corner| (corner, 1.0)),
+            false => labels.place_near(middle, reach, room),
+        };
+        let Some((corner, times)) = placed else { return };
+        if times > 1.0 {
+            // From what is named to its words, where they found no room beside it.
+            let end = Point::from_xy(
+                middle.x.clamp(corner.x, corner.x + room.0),
+                middle.y.clamp(corner.y, corner.y + room.1),
+            );
+            canvas.line(&[middle, end], Pen::new(colour, self.unit).on(colours::SHADE));
+        }
         canvas.words(words(&first), Point::from_xy(corner.x, corner.y + size), Align::Left);
         canvas.words(words(&second), Point::from_xy(corner.x, corner.y + 2.2 * size), Align::Left);
     }
@@ -115,13 +150,16 @@ impl FramePanel {
         self.label(canvas, labels, centre, radius, &format!("{index}{chance}"), colour);
     }
 
-    fn rejected(&self, canvas: &mut Canvas<'_>, labels: &mut Labels, rejected: &RejectedRecord) {
-        let centre = self.at(rejected.u_px, rejected.v_px);
-        let r = 1.25 * self.radius(rejected.area_px);
+    /// Where the mark of something rejected stands, and how far it reaches.
+    fn rejected_at(&self, rejected: &RejectedRecord) -> (Point, f32) {
+        (self.at(rejected.u_px, rejected.v_px), 1.25 * self.radius(rejected.area_px))
+    }
+
+    fn rejected(&self, canvas: &mut Canvas<'_>, rejected: &RejectedRecord) {
+        let (centre, r) = self.rejected_at(rejected);
         let corners = [(r, 0.0), (0.0, r), (-r, 0.0), (0.0, -r)];
         let diamond = corners.map(|(x, y)| Point::from_xy(centre.x + x, centre.y + y));
         canvas.outline(&diamond, Pen::new(colours::REJECTED, 1.4 * self.unit).on(colours::SHADE));
-        self.label(canvas, labels, centre, r, &rejected.reason, colours::REJECTED);
     }
 
     /// A short word beside a mark, where there is room.
@@ -186,17 +224,16 @@ fn distance_lines(distance: &Distance, number: usize) -> (String, String) {
     (format!("{}  {estimate}", name(number)), bounds)
 }
 
-/// What a neighbour of a frame is called in the picture: A, B, ... and by its number after Z.
+/// What a neighbour of a frame is called in the picture: A to Z, then A2 to Z2, and so on.
 pub(super) fn name(number: usize) -> String {
-    let letter =
-        u8::try_from(number).ok().filter(|&number| number < 26).map(|number| char::from(b'A' + number));
-    letter.map_or_else(|| (number + 1).to_string(), |letter| letter.to_string())
+    let (round, letter) = (number / 26, (b'A'..=b'Z').map(char::from).nth(number % 26).unwrap_or('?'));
+    if round == 0 { letter.to_string() } else { format!("{letter}{}", round + 1) }
 }
 
 /// The neighbour's colour, or that of spots that belong to none.
-fn colour_of_spot(record: &FrameRecord, index: usize) -> Colour {
-    let owner = record.neighbours.iter().position(|neighbour| neighbour.spots.contains(&index));
-    owner.map_or(colours::SPOT, colours::neighbour)
+fn colour_of_spot(record: &FrameRecord, names: &[usize], index: usize) -> Colour {
+    let owner = record.neighbours.iter().zip(names).find(|(neighbour, _)| neighbour.spots.contains(&index));
+    owner.map_or(colours::SPOT, |(_, &number)| colours::neighbour(number))
 }
 
 /// Spots in the order along their longer side, so that a line joins neighbours of each other.
@@ -261,7 +298,7 @@ mod tests {
 
     #[test]
     fn neighbours_have_names_however_many() {
-        assert_eq!([name(0), name(25), name(26)], ["A", "Z", "27"]);
+        assert_eq!([name(0), name(25), name(26)], ["A", "Z", "A2"]);
     }
 
     #[test]

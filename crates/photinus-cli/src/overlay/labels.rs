@@ -24,6 +24,20 @@ impl Labels {
         ));
     }
 
+    /// Takes room for a box of `size` beside `centre`, or farther away where there is none near: the second value says how far,
+    /// in multiples of `reach`.
+    pub(super) fn place_near(
+        &mut self,
+        centre: Point,
+        reach: (f32, f32),
+        size: (f32, f32),
+    ) -> Option<(Point, f32)> {
+        [1.0, 1.7, 2.6, 4.0, 6.0].into_iter().find_map(|times| {
+            let far = (reach.0 + 0.7 * (times - 1.0) * size.1, reach.1 + 0.7 * (times - 1.0) * size.1);
+            Some((self.place(centre, far, size)?, times))
+        })
+    }
+
     /// Takes room for a box of `width` x `height` beside `centre`, at least `reach` away across and down, and gives its
     /// upper left corner; `None` when there is none.
     pub(super) fn place(

@@ -17,7 +17,7 @@ enum Mark {
 }
 
 /// Which marks there are besides those of spots.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, PartialEq)]
 pub(super) struct Kinds {
     pub(super) neighbours: bool,
     pub(super) truth: bool,

@@ -27,15 +27,8 @@ pub(super) struct MapPanel<'a> {
 }
 
 impl<'a> MapPanel<'a> {
-    /// A plot in `area` wide enough for the neighbours of a frame. `field`: see [`Ground::field`].
-    pub(super) fn new(
-        area: Rect,
-        ground: Ground,
-        field: &'a [bool],
-        record: &FrameRecord,
-        unit: f32,
-    ) -> Self {
-        let range_m = range_for(record);
+    /// A plot in `area` that reaches as far as `range_m`. `field`: see [`Ground::field`].
+    pub(super) fn new(area: Rect, ground: Ground, field: &'a [bool], range_m: f64, unit: f32) -> Self {
         // How far the field reaches behind the camera, as a share of the range.
         let cos = |degree: usize| libm::cos((degree as f64).to_radians());
         let seen = (0..field.len()).filter(|&degree| field[degree]);
@@ -53,17 +46,21 @@ impl<'a> MapPanel<'a> {
         Self { area, ground, field, unit, camera, range_m, px_per_m: radius_px / range_m }
     }
 
-    /// Draws everything.
-    pub(super) fn draw(&self, canvas: &mut Canvas<'_>, record: &FrameRecord) {
+    /// Draws what is the same whoever is there.
+    pub(super) fn draw_ground(&self, canvas: &mut Canvas<'_>) {
         self.title(canvas);
         self.field(canvas);
         self.rings(canvas);
+    }
+
+    /// Draws the neighbours; `names` are the numbers that they go by.
+    pub(super) fn draw(&self, canvas: &mut Canvas<'_>, record: &FrameRecord, names: &[usize]) {
         let mut labels = Labels::new(self.area);
         labels.take(self.camera, 12.0 * self.unit);
-        for (number, neighbour) in record.neighbours.iter().enumerate() {
+        for (neighbour, &number) in record.neighbours.iter().zip(names) {
             self.neighbour(canvas, &mut labels, neighbour, number);
         }
-        for (number, neighbour) in record.neighbours.iter().enumerate() {
+        for (neighbour, &number) in record.neighbours.iter().zip(names) {
             self.label(canvas, &mut labels, neighbour, number);
         }
         self.own_camera(canvas);
@@ -79,12 +76,10 @@ impl<'a> MapPanel<'a> {
     }
 
     fn field(&self, canvas: &mut Canvas<'_>) {
-        for degree in 0..self.field.len() {
-            if self.field[degree] && self.field[(degree + 1) % self.field.len()] {
-                // A little wider than a degree: no seam shows between neighbours.
-                let rim = [degree as f64 - 0.1, degree as f64 + 1.1].map(|degree| self.on_rim(degree));
-                canvas.polygon(&[self.camera, rim[0], rim[1]], colours::FIELD);
-            }
+        for (from, to) in stretches(self.field) {
+            let rim = (from..=to).map(|degree| self.on_rim(degree as f64));
+            let corners: Vec<Point> = std::iter::once(self.camera).chain(rim).collect();
+            canvas.polygon(&corners, colours::FIELD);
         }
     }
 
@@ -130,7 +125,7 @@ impl<'a> MapPanel<'a> {
             return canvas.disc(self.camera, 6.0 * self.unit, colour);
         }
         let across = Vector2::new(way.y, -way.x) / slant;
-        let rim_m = self.range_m / slant;
+        let rim_m = self.rim_m(way);
         let far_m = distance.max.unwrap_or(f64::INFINITY);
         let near_m = distance.min.min(rim_m);
         for step in 0..=40 {
@@ -147,7 +142,7 @@ impl<'a> MapPanel<'a> {
         if far_m <= rim_m {
             cap(canvas, far_m, 8.0 * self.unit, 1.6 * self.unit);
         } else {
-            self.arrow(canvas, way / slant, across, number);
+            self.arrow(canvas, (way / slant, rim_m * slant), across, number);
         }
         let Some(estimate_m) = distance.estimate else { return };
         if let Some(sigma_m) = distance.sigma {
@@ -161,11 +156,24 @@ impl<'a> MapPanel<'a> {
         }
     }
 
-    /// It goes on past the rim.
-    fn arrow(&self, canvas: &mut Canvas<'_>, ahead: Vector2<f64>, across: Vector2<f64>, number: usize) {
+    /// How far along a direction the plot reaches, m: to its rim, or to where its room ends behind the camera.
+    fn rim_m(&self, way: Vector2<f64>) -> f64 {
+        let rim_m = self.range_m / way.norm().max(1e-3);
+        let below_m = f64::from(self.area.bottom() - self.camera.y - 12.0 * self.unit) / self.px_per_m;
+        if way.y < 0.0 { rim_m.min(below_m.max(0.0) / -way.y) } else { rim_m }
+    }
+
+    /// It goes on past the rim, `rim_m` away on the plane.
+    fn arrow(
+        &self,
+        canvas: &mut Canvas<'_>,
+        (ahead, rim_m): (Vector2<f64>, f64),
+        across: Vector2<f64>,
+        number: usize,
+    ) {
         let px = |px: f32| f64::from(px * self.unit) / self.px_per_m;
-        let tip = ahead * (self.range_m + px(8.0));
-        let base = ahead * (self.range_m - px(4.0));
+        let tip = ahead * (rim_m + px(8.0));
+        let base = ahead * (rim_m - px(4.0));
         let corners = [tip, base + across * px(9.0), base - across * px(9.0)];
         canvas.polygon(&corners.map(|corner| self.at(corner)), colours::neighbour(number));
     }
@@ -179,7 +187,7 @@ impl<'a> MapPanel<'a> {
     ) {
         let distance = &neighbour.distance_m;
         let way = self.ground.of(&neighbour.bearing.into());
-        let rim_m = self.range_m / way.norm().max(1e-3);
+        let rim_m = self.rim_m(way);
         let at = self.at(way * distance.estimate.unwrap_or(distance.min).min(rim_m));
         let text = match distance.estimate {
             Some(estimate_m) => format!("{}  {estimate_m:.1} m", name(number)),
@@ -188,9 +196,15 @@ impl<'a> MapPanel<'a> {
         let size = 13.0 * self.unit;
         let words = Words { text: &text, size, colour: colours::INK, halo: Some(colours::PAPER) };
         labels.take(at, 6.0 * self.unit);
-        if let Some(corner) =
-            labels.place(at, (10.0 * self.unit, 10.0 * self.unit), (canvas.width_of(words), size))
-        {
+        let room = (canvas.width_of(words), size);
+        if let Some((corner, times)) = labels.place_near(at, (10.0 * self.unit, 10.0 * self.unit), room) {
+            if times > 1.0 {
+                let end = Point::from_xy(
+                    at.x.clamp(corner.x, corner.x + room.0),
+                    at.y.clamp(corner.y, corner.y + room.1),
+                );
+                canvas.line(&[at, end], Pen::new(colours::FAINT_INK, self.unit));
+            }
             canvas.words(words, Point::from_xy(corner.x, corner.y + 0.86 * size), Align::Left);
         }
     }
@@ -225,10 +239,34 @@ impl<'a> MapPanel<'a> {
     }
 }
 
+/// Stretches of whole degrees that are seen, the first and the last one of each; past 359 where one goes over 0.
+fn stretches(field: &[bool]) -> Vec<(usize, usize)> {
+    let count = field.len();
+    let Some(gap) = field.iter().position(|&seen| !seen) else { return vec![(0, count)] };
+    let (mut found, mut begin) = (Vec::new(), None);
+    for degree in gap..=gap + count {
+        match (field[degree % count], begin) {
+            (true, None) => begin = Some(degree),
+            (false, Some(from)) => {
+                found.push((from, degree - 1));
+                begin = None;
+            }
+            _ => {}
+        }
+    }
+    found
+}
+
 /// Right and forward of an azimuth.
 fn on_circle(degree: f64) -> Vector2<f64> {
     let (sin, cos) = libm::sincos(degree.to_radians());
     Vector2::new(sin, cos)
+}
+
+/// The range that a plot shows after one that showed `last_m`: as far unless more is needed, or less than half of it.
+pub(super) fn range_after(last_m: Option<f64>, record: &FrameRecord) -> f64 {
+    let needed_m = range_for(record);
+    last_m.filter(|last_m| (needed_m..2.0 * needed_m + 1e-9).contains(last_m)).unwrap_or(needed_m)
 }
 
 /// The least range that shows every estimate with its sigma, and every far bound that is not out of all proportion.
@@ -254,6 +292,18 @@ fn ring_step(range_m: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_field_is_drawn_in_whole_stretches() {
+        let field = |seen: fn(usize) -> bool| (0..360).map(seen).collect::<Vec<bool>>();
+        assert_eq!(stretches(&field(|_| true)), [(0, 360)]);
+        assert_eq!(stretches(&field(|_| false)), []);
+        assert_eq!(stretches(&field(|degree| !(90..270).contains(&degree))), [(270, 360 + 89)]);
+        assert_eq!(
+            stretches(&field(|degree| degree < 10 || (20..30).contains(&degree))),
+            [(20, 29), (360, 369)]
+        );
+    }
 
     #[test]
     fn rings_divide_every_range() {

@@ -1,9 +1,12 @@
-//! Pictures of what was found: enters a record of results with its frame, leaves a PNG.
+//! Pictures of what was found: enters a record of results with its frame, leaves a PNG or a picture of a video.
 //!
 //! ```text
 //! frame_panel  the frame, its brightness lifted, with spots, rejections, neighbours
 //! map_panel    the same from above (the plane of ground.rs): what can be where
 //! legend       what the marks mean
+//! names        what neighbours are called from picture to picture
+//! place        where pictures go
+//! palette      the colours of a PNG
 //! zoom         how large a pixel of the frame is drawn
 //! canvas, text, labels, colours: how to draw, how words are drawn and where they find room, in which colours
 //! ```
@@ -17,23 +20,26 @@ mod ground;
 mod labels;
 mod legend;
 mod map_panel;
+mod names;
+mod palette;
+mod place;
 mod text;
 mod zoom;
-
-use std::path::PathBuf;
 
 use nalgebra::{Unit, Vector3};
 use photinus::camera::{Bearing, Camera};
 use photinus::frame::FrameView;
 use photinus_io::results::FrameRecord;
-use photinus_io::whole::{Existing, write_whole};
 use photinus_io::{Error, Result};
-use tiny_skia::{Point, Rect};
+use tiny_skia::{Pixmap, Point, Rect};
 
 use canvas::{Align, Canvas, Words};
 use frame_panel::FramePanel;
 use ground::Ground;
 use map_panel::MapPanel;
+use names::Names;
+use palette::Palette;
+pub(crate) use place::{Place, numbered};
 use text::Font;
 use zoom::Zoom;
 
@@ -42,22 +48,55 @@ const LARGEST_MAP_PX: u32 = 2480;
 /// The picture's smallest height without legend, px: the map needs room.
 const SMALLEST_HEIGHT_PX: u32 = 480;
 
-/// A folder of pictures.
+/// Pictures in the making, one after the other.
 pub(crate) struct Overlay {
-    folder: PathBuf,
+    place: Place,
     cameras: Vec<Camera>,
     font: Font,
+    /// What was seen in the last picture of each camera.
+    last: Vec<Last>,
+    /// What is under the marks of the last picture, and what it was drawn for.
+    under: Option<(Under, Pixmap)>,
+    picture: Option<Pixmap>,
+    palette: Palette,
+    bytes: Vec<u8>,
+}
+
+/// What pictures of a camera take over from the one before, so that names, colours and the range of the map stay.
+#[derive(Default)]
+struct Last {
+    names: Names,
+    range_m: Option<f64>,
+}
+
+/// All that shows under the marks: pictures with the same are begun with a copy.
+#[derive(Clone, PartialEq)]
+struct Under {
+    frame_px: (u32, u32),
+    kinds: legend::Kinds,
+    /// Range of the map, m, whether it is level, and what the camera sees.
+    map: Option<(f64, bool, Vec<bool>)>,
 }
 
 impl Overlay {
-    /// Pictures into `folder`, which is there. With cameras they show the view from above, too.
+    /// Pictures to `place`. With cameras they show the view from above, too.
     ///
     /// # Errors
     /// [`Error`] when the program's font is damaged.
-    pub(crate) fn new(folder: PathBuf, cameras: Vec<Camera>) -> Result<Self> {
+    pub(crate) fn new(place: Place, cameras: Vec<Camera>) -> Result<Self> {
         let font =
-            Font::new().ok_or_else(|| Error::format(&folder, "the font of the pictures is damaged"))?;
-        Ok(Self { folder, cameras, font })
+            Font::new().ok_or_else(|| Error::format("the pictures", "the font of the program is damaged"))?;
+        let last = cameras.iter().map(|_| Last::default()).collect();
+        Ok(Self {
+            place,
+            cameras,
+            font,
+            last,
+            under: None,
+            picture: None,
+            palette: Palette::new(),
+            bytes: Vec::new(),
+        })
     }
 
     /// Writes the picture of a frame; without pixels, spots stand on black. `truth_m` is where neighbours are, camera frame, m,
@@ -66,34 +105,53 @@ impl Overlay {
     /// # Errors
     /// [`Error`] when it cannot be drawn or written.
     pub(crate) fn draw(
-        &self,
+        &mut self,
         camera: usize,
         record: &FrameRecord,
         frame: Option<FrameView<'_>>,
         gravity: Option<&Unit<Vector3<f64>>>,
         truth_m: &[Vector3<f64>],
     ) -> Result<()> {
+        let (names, range_m) = match self.last.get_mut(camera) {
+            Some(last) => {
+                let range_m = map_panel::range_after(last.range_m, record);
+                last.range_m = Some(range_m);
+                (last.names.follow(&record.neighbours), range_m)
+            }
+            None => ((0..record.neighbours.len()).collect(), 0.0),
+        };
         let camera = self.cameras.get(camera);
-        let path = self.folder.join(file_name(record.camera.as_deref(), record.frame.unwrap_or_default()));
         let layout = Layout::new(size(camera, record, frame), camera.is_some());
-        let mut canvas = Canvas::new(layout.width, layout.height, colours::PAPER, &self.font)
-            .ok_or_else(|| Error::format(&path, "no memory for a picture of this size"))?;
+        let ground = Ground::new(gravity);
+        let field = camera.map_or(Vec::new(), |camera| ground.field(camera));
+        let map = layout.map.map(|area| MapPanel::new(area, ground, &field, range_m, layout.unit));
+        let under = Under {
+            frame_px: layout.frame.size,
+            kinds: legend::Kinds { neighbours: camera.is_some(), truth: !truth_m.is_empty() },
+            map: map.as_ref().map(|_| (range_m, ground.is_level, field.clone())),
+        };
+        let no_memory = || Error::format(&record.source, "no memory for a picture of this size");
+        if self.under.as_ref().is_none_or(|(drawn, _)| *drawn != under) {
+            let mut pixmap = Pixmap::new(layout.width, layout.height).ok_or_else(no_memory)?;
+            layout.draw_under(&mut Canvas::on(&mut pixmap, &mut self.font), map.as_ref(), under.kinds);
+            self.picture = Some(pixmap.clone());
+            self.under = Some((under, pixmap));
+        }
+        let (Some((_, under)), Some(picture)) = (&self.under, &mut self.picture) else {
+            return Err(no_memory());
+        };
+        picture.data_mut().copy_from_slice(under.data());
+        let mut canvas = Canvas::on(picture, &mut self.font);
         layout.heading(&mut canvas, record);
-        layout.frame.draw(&mut canvas, record, frame);
+        layout.frame.draw(&mut canvas, record, &names, frame);
         let seen =
             |place_m: &Vector3<f64>| Bearing::new(*place_m).and_then(|bearing| camera?.pixel(&bearing));
         truth_m.iter().filter_map(seen).for_each(|place| layout.frame.truth(&mut canvas, place));
-        if let (Some(camera), Some(area)) = (camera, layout.map) {
-            let ground = Ground::new(gravity);
-            let field = ground.field(camera);
-            let map = MapPanel::new(area, ground, &field, record, layout.unit);
-            map.draw(&mut canvas, record);
+        if let Some(map) = map {
+            map.draw(&mut canvas, record, &names);
             truth_m.iter().for_each(|place_m| map.truth(&mut canvas, place_m));
         }
-        let kinds = legend::Kinds { neighbours: camera.is_some(), truth: !truth_m.is_empty() };
-        legend::draw(&mut canvas, layout.legend, kinds, layout.unit);
-        let bytes = canvas.png().map_err(|reason| Error::format(&path, reason))?;
-        write_whole(&path, &bytes, Existing::Replace)
+        self.place.write(picture, &self.palette, record, &mut self.bytes)
     }
 }
 
@@ -110,12 +168,6 @@ fn size(camera: Option<&Camera>, record: &FrameRecord, frame: Option<FrameView<'
     let (width, height) = of_frame.or(of_camera).unwrap_or_else(of_spots);
     let side = |px: usize| u32::try_from(px).unwrap_or(u32::MAX).min(FrameView::MAX_SIDE_PX as u32);
     (side(width), side(height))
-}
-
-/// What the picture of a frame is called, of a camera that has a name or has none.
-pub(crate) fn file_name(camera: Option<&str>, frame: u64) -> String {
-    let camera = camera.map_or(String::new(), |name| format!("{name}-"));
-    format!("overlay-{camera}{frame:06}.png")
 }
 
 /// Where everything stands.
@@ -157,12 +209,36 @@ impl Layout {
         }
     }
 
+    /// Draws what is under the marks: paper, the ground of the map, the legend.
+    fn draw_under(&self, canvas: &mut Canvas<'_>, map: Option<&MapPanel<'_>>, kinds: legend::Kinds) {
+        canvas.fill_all(colours::PAPER);
+        if let Some(map) = map {
+            map.draw_ground(canvas);
+        }
+        legend::draw(canvas, self.legend, kinds, self.unit);
+    }
+
     fn heading(&self, canvas: &mut Canvas<'_>, record: &FrameRecord) {
         let time = record.time_s.map_or(String::new(), |time_s| format!("   {time_s:.3} s"));
-        let text = format!("Frame {}{time}   {}", record.frame.unwrap_or_default(), record.source);
+        let rejected = counted(record);
+        let text = format!("Frame {}{time}   {}{rejected}", record.frame.unwrap_or_default(), record.source);
         let words = Words { text: &text, size: 14.0 * self.unit, colour: colours::INK, halo: None };
         canvas.words(words, Point::from_xy(self.frame.left as f32, 22.0 * self.unit), Align::Left);
     }
+}
+
+/// How many regions were rejected, by reason, the most frequent first; nothing where none was.
+fn counted(record: &FrameRecord) -> String {
+    let mut reasons: Vec<(&str, usize)> = Vec::new();
+    for rejected in &record.rejected {
+        match reasons.iter_mut().find(|(reason, _)| *reason == rejected.reason) {
+            Some((_, count)) => *count += 1,
+            None => reasons.push((&rejected.reason, 1)),
+        }
+    }
+    reasons.sort_by(|a, b| b.1.cmp(&a.1).then(a.0.cmp(b.0)));
+    let told: Vec<String> = reasons.iter().map(|(reason, count)| format!("{count} {reason}")).collect();
+    if told.is_empty() { String::new() } else { format!("   rejected: {}", told.join(", ")) }
 }
 
 #[cfg(test)]

@@ -1,3 +1,5 @@
+use std::path::PathBuf;
+
 use nalgebra::Vector3;
 use photinus::camera::{Bearing, Ideal, IdealLaw, Model, Pixel};
 use photinus_io::image::{GreyImage, read_image};
@@ -125,7 +127,7 @@ fn picture(
     camera: Option<Camera>,
 ) -> GreyImage {
     std::fs::create_dir_all(&folder.0).unwrap();
-    let overlay = Overlay::new(folder.0.clone(), camera.into_iter().collect()).unwrap();
+    let mut overlay = Overlay::new(Place::folder(folder.0.clone()), camera.into_iter().collect()).unwrap();
     overlay.draw(0, record, frame, None, &[]).unwrap();
     read_image(folder.0.join("overlay-000017.png")).unwrap().image
 }

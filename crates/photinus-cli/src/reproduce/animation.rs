@@ -12,17 +12,17 @@ use crate::demo::apart;
 use crate::demo::pace::Pace;
 use crate::failure::Failure;
 use crate::locate;
-use crate::overlay::{self, Overlay};
-use crate::page::Page;
+use crate::overlay::{self, Overlay, Place};
+use crate::page::{Player, Shot};
 use crate::terminal::Terminal;
 
 const PICTURES: &str = "figure-17";
 /// Pictures of a quick run.
 const QUICK: usize = 4;
 
-/// Numbers of the frames that are drawn: few while the target flies, more while it spins.
+/// Numbers of the frames that are drawn.
 pub(super) fn numbers(scene: &Scene, effort: Effort) -> Vec<u64> {
-    let mut pace = Pace::of(scene);
+    let mut pace = Pace::default();
     let due = (0..scene.frames).filter(|&number| pace.is_due(number as f64 / scene.rate_hz));
     match effort {
         Effort::Full => due.collect(),
@@ -30,13 +30,13 @@ pub(super) fn numbers(scene: &Scene, effort: Effort) -> Vec<u64> {
     }
 }
 
-/// Draws the frames and writes the page that plays them.
+/// Draws the frames, and gives what plays them.
 pub(super) fn save(
     making: &WholeFolder,
     scene: &Scene,
     numbers: &[u64],
     terminal: &Terminal,
-) -> Result<(), Failure> {
+) -> Result<Player, Failure> {
     let (folder, broken) = (making.path(), |error| Failure::running(making.tell(error)));
     let lacks = || Failure::Running("the scene has no camera or no target".to_owned());
     let mut simulator = Simulator::new(scene, 0).ok_or_else(lacks)?;
@@ -44,10 +44,17 @@ pub(super) fn save(
     let camera = scene.cameras[0].camera.clone();
     let pictures = folder.join(PICTURES);
     std::fs::create_dir_all(&pictures).map_err(|error| broken(Error::io(&pictures, error)))?;
-    let overlay = Overlay::new(pictures, vec![camera.clone()]).map_err(broken)?;
+    let mut overlay = Overlay::new(Place::folder(pictures), vec![camera.clone()]).map_err(broken)?;
     let mut locator = Locator::new(camera, airframe, None, Settings::default())
         .map_err(|error| Failure::Running(error.to_string()))?;
     let mut clock = Clock::new();
+    let mut player = Player {
+        caption: "Left: the frame, brightened. Right: the same from above: the strict bounds as a bar, the estimate as a disc, truth \
+                  as a square. Each frame by itself, no radio, no track; one picture a second."
+            .to_owned(),
+        shots: Vec::new(),
+        timelines: Vec::new(),
+    };
     for &number in numbers {
         let (truth, mut entry) = apart(simulator.frame(number));
         locate::fill(&mut entry, &mut locator, airframe.name(), &mut clock).map_err(broken)?;
@@ -55,22 +62,10 @@ pub(super) fn save(
             truth.neighbours.iter().map(|neighbour| Vector3::from(neighbour.position_m)).collect();
         let image = entry.image.as_ref().map(|image| image.view());
         overlay.draw(0, &entry.record, image, entry.gravity.as_ref(), &places_m).map_err(broken)?;
+        player
+            .shots
+            .push(Shot { file: format!("{PICTURES}/{}", overlay::numbered(number)), time_s: truth.time_s });
         terminal.frame_done();
     }
-    page(numbers).write(folder).map_err(broken)
-}
-
-fn page(numbers: &[u64]) -> Page<'static> {
-    Page {
-        title: "Figure 17: where the neighbour can be",
-        told: "The outdoor flight of two robots, as one of them sees the other: each frame by itself, no radio, no track.",
-        caption: "Left: the frame, brightened. Right: the same from above: the strict bounds as a bar, the estimate as a disc, \
-                  truth as a square. Pictures stand 5 s apart, and 0.2 s apart while the neighbour spins.",
-        pictures: numbers
-            .iter()
-            .map(|&frame| format!("{PICTURES}/{}", overlay::file_name(None, frame)))
-            .collect(),
-        about_figures: ("All of the flight", "Where the neighbour was and where it was found."),
-        figures: vec![("figure-17.svg".to_owned(), "The flight from above".to_owned())],
-    }
+    Ok(player)
 }

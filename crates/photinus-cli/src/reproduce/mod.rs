@@ -4,11 +4,13 @@
 //! ```text
 //! drawing    panels of an experiment -> PNG and SVG
 //! tables     series and rows -> CSV, and a table to read
-//! animation  figure 17: the flight as it was seen, on a page that a browser plays
+//! animation  figure 17: the flight as it was seen, frame by frame
+//! index      all of it on a page
 //! ```
 
 mod animation;
 mod drawing;
+mod index;
 mod tables;
 
 use std::collections::BTreeSet;
@@ -27,14 +29,19 @@ use crate::terminal::Terminal;
 
 const EXAMPLES: &str = "\
 Examples:
-  photinus reproduce                             every figure, into photinus-reproduce/
-  photinus reproduce 10 11 --out spots           the sizes of spots over distance
-  photinus reproduce range heading --out more    what the paper says in words
-  photinus reproduce --quick --out glance        a fraction of the frames: numbers scatter more
+  # every figure, into photinus-reproduce/
+  photinus reproduce
+  # the sizes of spots over distance
+  photinus reproduce 10 11 --out spots
+  # what the paper says in words
+  photinus reproduce range heading --out more
+  # a fraction of the frames: numbers scatter more
+  photinus reproduce --quick --out glance
 
-Figures: 4 sunlight and the UV band; 7, 8 layouts and lobes; 10, 11 spot sizes; 12 bearings; 13, 14 distances;
-15, 16, 17 the outdoor flight (17 is index.html); range; heading.
-DIR/summary.csv holds each number beside the paper's. A number out of its tolerance is shown with its reason; it is a
+Figures: 4 sunlight and the UV band; 7, 8 layouts and lobes; 10, 11 spot sizes;
+12 bearings; 13, 14 distances; 15, 16, 17 the outdoor flight; range; heading.
+DIR/index.html shows all of them, DIR/summary.csv holds each number beside the
+paper's. A number out of its tolerance is shown with its reason; it is a
 finding, not a failure of the program.";
 
 /// Run the experiments of the founding paper in simulation, each number beside the paper's
@@ -101,9 +108,11 @@ pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> Result<(), Failure> {
         drawing::save(folder, report).map_err(broken)?;
         tables::save_data(folder, report).map_err(broken)?;
     }
-    if !pictures.is_empty() {
-        animation::save(&making, rig.scene(), &pictures, terminal)?;
-    }
+    let player = match pictures.as_slice() {
+        [] => None,
+        pictures => Some(animation::save(&making, rig.scene(), pictures, terminal)?),
+    };
+    index::write(folder, &reports, player.as_ref()).map_err(broken)?;
     tables::save_summary(folder, &reports).map_err(broken)?;
     making.keep().map_err(Failure::running)?;
     terminal.finish();
@@ -112,7 +121,7 @@ pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> Result<(), Failure> {
     }
     let seconds = started.elapsed().as_secs_f64();
     terminal.summary(format_args!(
-        "{frames} frames in {seconds:.0} s; figures, data and summary.csv are in {}",
+        "{frames} frames in {seconds:.0} s; open {}/index.html in a browser; figures and data are beside it",
         args.out.display()
     ));
     Ok(())

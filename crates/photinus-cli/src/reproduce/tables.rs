@@ -7,6 +7,7 @@ use photinus_io::Result;
 use photinus_reproduce::{Report, Row};
 
 use super::refuse;
+use crate::page::escaped;
 
 /// Digits that a number of the summary keeps.
 const DIGITS: i32 = 4;
@@ -55,10 +56,28 @@ pub(super) fn to_read(reports: &[Report]) -> String {
         // nothing can go wrong when writing to a string
         let _ = writeln!(text, "| {} |", cells.collect::<Vec<_>>().join(" | "));
     }
-    let held: Vec<bool> = rows(reports).filter_map(|(_, row)| row.is_within()).collect();
-    let within = held.iter().filter(|within| **within).count();
-    let _ = writeln!(text, "\n{within} of {} numbers with a tolerance are within it.", held.len());
+    let (within, held) = held(reports);
+    let _ = writeln!(text, "\n{within} of {held} numbers with a tolerance are within it.");
     text
+}
+
+/// How many numbers are within their tolerance, and how many have one.
+pub(super) fn held(reports: &[Report]) -> (usize, usize) {
+    let held: Vec<bool> = rows(reports).filter_map(|(_, row)| row.is_within()).collect();
+    (held.iter().filter(|within| **within).count(), held.len())
+}
+
+/// The numbers of a figure as a table of a page.
+pub(super) fn html(report: &Report) -> String {
+    let heads = ["quantity", "paper", "reproduced", "ratio", "tolerance", "within", "note"];
+    let head: String = heads.iter().map(|head| format!("<th>{head}</th>")).collect();
+    let row = |row: &Row| {
+        let cells = [row.quantity.clone()].into_iter().chain(cells(row)).chain([row.note.to_string()]);
+        let cells: String = cells.map(|cell| format!("<td>{}</td>", escaped(&cell))).collect();
+        format!("<tr>{cells}</tr>\n")
+    };
+    let rows: String = report.rows.iter().map(row).collect();
+    format!("<div class=\"wide\"><table>\n<tr>{head}</tr>\n{rows}</table></div>")
 }
 
 fn rows(reports: &[Report]) -> impl Iterator<Item = (&Report, &Row)> {

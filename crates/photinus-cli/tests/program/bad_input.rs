@@ -52,7 +52,8 @@ fn usage() {
     refuses(&stage, &format!("{LOCATE} --marker-sigma 2"), 2, &["--marker-sigma"]);
     refuses(&stage, &format!("{LOCATE} --marker-sigma nan"), 2, &["metres, 0 to 1"]);
     refuses(&stage, "detect frame.png --reflection-ratio 2", 2, &["--reflection-ratio", "a share, 0 to 1"]);
-    refuses(&stage, "detect .", 2, &["holds no dataset.toml", "; name the folder of a dataset"]);
+    std::fs::create_dir(stage.path("nothing")).unwrap();
+    refuses(&stage, "detect nothing", 2, &["holds no dataset.toml", "; name the folder of a dataset"]);
     refuses(&stage, "detect . frame.png", 2, &["a folder among several inputs; name"]);
     refuses(
         &stage,
@@ -74,7 +75,12 @@ fn images_that_are_none() {
     stage.file("text.png", "no image");
     refuses(&stage, "detect empty.png", 2, &["empty.png: the file is empty; "]);
     refuses(&stage, "detect cut.png", 2, &["cut.png: ", "; copy or record it again"]);
-    refuses(&stage, "detect text.png", 2, &["text.png: this is no image", "; use PNG"]);
+    refuses(
+        &stage,
+        "detect text.png",
+        2,
+        &["text.png: this is text in no format that Photinus knows, not an image", "; use PNG"],
+    );
     refuses(&stage, "info cut.png", 2, &["cut.png: ", "; copy or record it again"]);
 
     // One bad frame in a run is reported, counted and skipped; the others are there.

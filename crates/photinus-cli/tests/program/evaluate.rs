@@ -261,3 +261,16 @@ fn what_cannot_be_compared_is_refused() {
     std::fs::remove_file(stage.path("flight/truth.jsonl")).unwrap();
     refuses("evaluate flight results.jsonl", &["flight: the folder holds no truth.jsonl; only results of"]);
 }
+
+#[test]
+fn a_truth_file_alone_gives_the_same_scores() {
+    let stage = stage("evaluate-files");
+    std::fs::copy(stage.path("flight/truth.jsonl"), stage.path("alone.jsonl")).unwrap();
+    let of_dataset = stage.run("evaluate flight results.jsonl");
+    let of_files = stage.run("evaluate alone.jsonl results.jsonl");
+    assert_eq!((of_files.code, &of_files.out), (0, &of_dataset.out));
+    let refused = stage.run("evaluate alone.jsonl results.jsonl --json alone.jsonl --force");
+    assert!(refused.code == 2 && refused.err.contains("it would be replaced"), "{}", refused.err);
+    let swapped = stage.run("evaluate results.jsonl alone.jsonl");
+    assert_eq!(swapped.code, 2, "{}", swapped.err);
+}

@@ -22,7 +22,7 @@ fn a_narrow_frame_takes_no_more_memory_than_a_square_one() {
             format!("ulimit -v {LIMIT_KB} && exec {program} detect narrow.pgm --overlay {columns}x{rows}");
         let done = Command::new("sh").args(["-c", &limited]).current_dir(stage.path("")).output().unwrap();
         assert!(done.status.success(), "{columns}x{rows}: {}", String::from_utf8_lossy(&done.stderr));
-        let picture = read_image(stage.path(&format!("{columns}x{rows}/overlay-000000.png"))).unwrap().image;
+        let picture = read_image(stage.path(&format!("{columns}x{rows}/overlay-narrow.png"))).unwrap().image;
         assert!(picture.width() >= 300 && picture.height() >= 480, "{columns}x{rows}");
         assert!(picture.width() <= 6800 && picture.height() <= 4400, "{columns}x{rows}");
     }

@@ -13,7 +13,7 @@ fn every_marker_of_a_grid_is_found() {
     assert_eq!(done.code, 0);
     let record = read_results(stage.path("s.jsonl")).unwrap().next().unwrap().unwrap();
     assert_eq!(record.spots.len(), 48, "8 x 6 LEDs");
-    assert!(stage.path("seen/overlay-000000.png").is_file());
+    assert!(stage.path("seen/overlay-image_01.png").is_file());
 }
 
 #[test]

@@ -32,8 +32,24 @@ pub(super) fn parse(text: &str, path: &Path) -> Result<AirframeFile> {
         Airframe::new(name, leds).map_err(|error| refuse(path, error, |led, _| Place::Line(lines[led])))?;
     let ring_note =
         || format!("{rings} LED(s) of type 1 (ring) are taken as shining the same in every direction");
-    let notes = (rings > 0).then(ring_note).into_iter().collect();
+    let turned = rows_in_degrees(text);
+    let degrees_note = || {
+        format!(
+            "{turned} LED(s) have a pitch or yaw beyond a whole turn of 6.28: angles are taken as radians; if they are degrees, \
+                 divide them by 57.296"
+        )
+    };
+    let notes = (rings > 0).then(ring_note).into_iter().chain((turned > 0).then(degrees_note)).collect();
     Ok(AirframeFile { airframe, tolerances: Tolerances::default(), notes })
+}
+
+/// How many rows turn an LED by more than a whole turn, as nobody writes in radians.
+fn rows_in_degrees(text: &str) -> usize {
+    let is_turned = |row: &&str| {
+        let angles = row.split_whitespace().skip(4).take(2).filter_map(|word| word.parse::<f64>().ok());
+        angles.into_iter().any(|angle| angle.abs() > core::f64::consts::TAU + 0.01)
+    };
+    text.lines().map(|line| line.split('#').next().unwrap_or_default()).filter(is_turned).count()
 }
 
 /// What is wrong, and what to do.

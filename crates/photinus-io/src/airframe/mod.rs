@@ -11,7 +11,8 @@ use std::path::Path;
 
 use photinus::airframe::{Airframe, AirframeError};
 
-use crate::{Error, Place, Result, whole};
+use crate::kind::{Kind, Syntax};
+use crate::{CameraFormat, Error, Place, Result, whole};
 pub use layout::layout_text;
 pub use own::toml_text;
 pub use tolerances::Tolerances;
@@ -45,12 +46,29 @@ pub fn parse_airframe(text: &str, path: impl AsRef<Path>) -> Result<AirframeFile
     let path = path.as_ref();
     let first = text.lines().map(str::trim).find(|line| !line.is_empty() && !line.starts_with('#'));
     let Some(first) = first else { return Err(Error::format(path, "it holds no LED").advise(KNOWN)) };
-    if let Some(other) = other_kind(first, text) {
-        return Err(Error::format(path, format!("this looks like {other}, not an airframe")).advise(KNOWN));
-    }
-    match first.split_whitespace().next().is_some_and(is_number) {
-        true => layout::parse(text, path),
-        false => own::parse(text, path),
+    let mut file = match Kind::of_content(text.as_bytes()) {
+        Kind::Airframe | Kind::Camera(CameraFormat::OcamText) if is_row_of_layout(first) => {
+            layout::parse(text, path)?
+        }
+        Kind::Airframe | Kind::Keys(Syntax::Toml) => own::parse(text, path)?,
+        other => return Err(other.refuse(path, "an airframe", KNOWN)),
+    };
+    file.remark_size();
+    Ok(file)
+}
+
+/// No airframe that carries UV LEDs reaches farther, m.
+const LARGEST_M: f64 = 3.0;
+
+impl AirframeFile {
+    fn remark_size(&mut self) {
+        let reach_m = self.airframe.max_radius_m();
+        if reach_m > LARGEST_M {
+            self.notes.push(format!(
+                "its farthest marker is {reach_m:.2} m from the body's origin: positions are taken as metres; if they are \
+                 centimetres, divide them by 100"
+            ));
+        }
     }
 }
 
@@ -61,26 +79,11 @@ fn is_number(word: &str) -> bool {
     word.parse::<f64>().is_ok()
 }
 
-/// What a text is that is no airframe, by its `first` line that says anything.
-fn other_kind(first: &str, text: &str) -> Option<&'static str> {
+/// Whether a line is of numbers, and not the first of OCamCalib text, which counts the others; seven may be a row all the same.
+fn is_row_of_layout(first: &str) -> bool {
     let words: Vec<&str> = first.split_whitespace().collect();
-    if words.iter().all(|word| word.split(',').all(|bit| matches!(bit, "" | "0" | "1")))
-        && first.contains(',')
-    {
-        return Some("a list of blink sequences");
-    }
-    if words.first().is_some_and(|word| is_number(word)) {
-        let count = words[0].parse().is_ok_and(|count: usize| count + 1 == words.len());
-        return (count && words.len() != 7).then_some("a camera in OCamCalib text");
-    }
-    let is_toml = first.starts_with('[') || first.contains('=');
-    let is_camera = |line: &str| line.split('=').next().is_some_and(|key| key.trim() == "model");
-    match is_toml {
-        true => text.lines().any(is_camera).then_some("a camera"),
-        false if first.starts_with('{') => Some("JSON"),
-        false if first.contains(':') => Some("YAML"),
-        false => Some("some other text"),
-    }
+    let counts_itself = words[0].parse().is_ok_and(|count: usize| count + 1 == words.len());
+    is_number(words[0]) && (words.len() == 7 || !counts_itself)
 }
 
 /// The error of LEDs that are no airframe; `place` says where LED number `led` stands in the file.

@@ -137,16 +137,28 @@ fn a_layout_points_down_with_positive_pitch_and_is_named_by_its_file() {
 }
 
 #[test]
+fn other_units_than_metres_and_radians_are_told() {
+    let row = |scale: f64, yaw: f64| {
+        format!("{} 0 0 0 0.0 0.0 0\n-{} 0 0 0 0.0 {yaw} 1\n", 0.17 * scale, 0.17 * scale)
+    };
+    assert!(read(&row(1.0, core::f64::consts::PI)).notes.is_empty());
+    let notes = read(&row(100.0, 3.0)).notes;
+    assert!(notes[0].starts_with("its farthest marker is 17.00 m from the body's origin"), "{notes:?}");
+    let notes = read(&row(1.0, 180.0)).notes;
+    assert!(notes[0].starts_with("1 LED(s) have a pitch or yaw beyond a whole turn of 6.28"), "{notes:?}");
+}
+
+#[test]
 fn another_kind_of_file_is_named() {
     for (text, kind) in [
         ("# c\n5 -259 0 1e-3 -2e-6 6e-9\n", "a camera in OCamCalib text"),
-        ("width_px = 752\nmodel = \"ocam\"\n", "a camera"),
+        ("width_px = 752\nmodel = \"ocam\"\n", "a camera in Photinus TOML"),
         ("0,1,1,0\n", "a list of blink sequences"),
-        ("{\"spots\":[]}", "JSON"),
-        ("image_width: 752\n", "YAML"),
-        ("hello world\n", "some other text"),
+        ("{\"spots\":[]}", "results, or spots in place of frames"),
+        ("image_width: 752\n", "YAML with keys that Photinus does not know"),
+        ("hello world\n", "text in no format that Photinus knows"),
     ] {
-        let start = format!("quad: this looks like {kind}, not an airframe; an airframe is TOML with");
+        let start = format!("quad: this is {kind}, not an airframe; an airframe is TOML with");
         assert!(message(text).starts_with(&start), "{}", message(text));
     }
 }

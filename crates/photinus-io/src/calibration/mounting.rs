@@ -5,6 +5,7 @@ use std::path::Path;
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 use serde::{Deserialize, Serialize};
 
+use crate::kind::Kind;
 use crate::{Error, Place, Result, table, whole};
 
 /// How a camera sits on its vehicle.
@@ -46,6 +47,8 @@ pub fn read_mounting(path: impl AsRef<Path>) -> Result<MountingFile> {
 /// length is more than 1 % from 1, and for a covariance that is none.
 pub fn parse_mounting(text: &str, path: impl AsRef<Path>) -> Result<MountingFile> {
     let path = path.as_ref();
+    let known = "`photinus calibrate mounting` writes one; docs/file-formats.md has an example";
+    Kind::of_content(text.as_bytes()).expect(Kind::Mounting, path, known)?;
     let table: Table = table::parse(text, path)?;
     let refuse = |key: &str, reason: &str, advice: &str| {
         Err(Error::format(path, reason).at(Place::Key(key.to_owned())).advise(advice))

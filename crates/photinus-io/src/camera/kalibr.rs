@@ -7,11 +7,11 @@ use photinus::camera::{CameraError, KannalaBrandt, Model, Pixel};
 use serde::Deserialize;
 
 use super::camera_info::plumb_bob;
-use super::detect::is_kalibr_camera;
 use super::numbers::{Finite, exactly};
 use super::yaml::{at_key, keys, parse, required};
 use super::{CameraFile, CameraFormat, RENEW, camera_error};
 use crate::Result;
+use crate::kind::is_kalibr_camera;
 
 #[derive(Deserialize)]
 struct Chain {

@@ -124,8 +124,8 @@ pub fn read_camera(path: &Path) -> Result<CameraFile> {
 /// # Errors
 /// Those of [`read_camera`].
 pub fn parse_camera(bytes: &[u8], path: &Path) -> Result<CameraFile> {
-    let text = detect::text(bytes, path)?;
-    match detect::format(text, path)? {
+    let (format, text) = detect::format(bytes, path)?;
+    match format {
         CameraFormat::OcamText => parse_ocam_text(text, path),
         CameraFormat::Toml => parse_camera_toml(text, path),
         CameraFormat::UvdarYaml => parse_uvdar_yaml(text, path),

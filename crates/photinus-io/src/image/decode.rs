@@ -8,6 +8,7 @@ use image::{ImageDecoder, ImageFormat, ImageReader, Limits};
 use photinus::frame::FrameView;
 
 use super::{Conversion, GreyImage, ImageFile, MAX_PIXELS, jpeg};
+use crate::kind::Kind;
 use crate::{Error, Result};
 
 /// Decoded samples, interleaved: 1 grey, 2 grey and opacity, 3 colours, 4 colours and opacity.
@@ -52,8 +53,11 @@ fn decode(bytes: &[u8], path: &Path) -> Result<ImageFile> {
         Ok(format @ (ImageFormat::Png | ImageFormat::Bmp | ImageFormat::Tiff | ImageFormat::Pnm)) => {
             decode_as(bytes, format).map_err(refuse)
         }
-        _ => Err(Error::format(path, "this is no image that Photinus reads")
-            .advise("use PNG, JPEG, BMP, TIFF or PGM/PPM; for video, Y4M")),
+        _ => Err(Kind::of_content(bytes).refuse(
+            path,
+            "an image",
+            "use PNG, JPEG, BMP, TIFF or PGM/PPM; for video, Y4M",
+        )),
     }
 }
 

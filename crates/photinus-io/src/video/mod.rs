@@ -4,6 +4,7 @@
 //! frames, of which both must be told. A stream cut in the middle of a frame gives all the frames before, then one
 //! error with the byte counts, then nothing.
 
+mod colour;
 mod raw;
 mod writer;
 mod y4m;
@@ -14,6 +15,7 @@ use std::path::Path;
 
 use crate::image::GreyImage;
 use crate::{Error, Place, Result};
+pub use colour::ColourY4mWriter;
 pub use raw::{RawFormat, RawFrames};
 pub use writer::Y4mWriter;
 pub use y4m::Y4mFrames;

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use super::y4m_header::Header;
 use super::{VideoFrame, cut, read_plane, y4m_header};
 use crate::image::{Conversion, GreyImage, check_maximum};
-use crate::{Error, Place, Result};
+use crate::{Error, Place, Result, kind};
 
 /// Longest line that a stream may have before its pixels.
 const MAX_LINE_BYTES: u64 = 4096;
@@ -38,9 +38,8 @@ impl<R: Read> Y4mFrames<R> {
             ended => Header::parse(ended.unwrap_or(&line)),
         }
         .map_err(|reason| {
-            Error::format(&name, format!("no Y4M stream that Photinus reads: {reason}")).advise(
-                "make one, for example with `ffmpeg -i video -pix_fmt gray -f yuv4mpegpipe -strict -1 video.y4m`",
-            )
+            Error::format(&name, format!("no Y4M stream that Photinus reads: {reason}"))
+                .advise(kind::decoding(Path::new("video.mp4")))
         })?;
         Ok(Self { source, name, header, next: 0, ended: false })
     }

@@ -29,15 +29,21 @@ fn areas(by_exposure: &[Vec<Shot>], single_px_m: &[f64]) -> Panel {
         panel = panel.with(format!("{exposure_us} us"), Kind::Points, Role::Member(member), points);
         let upright = |at: f64| vec![(at, 0.0), (at, 0.92 * SHOWN_PX)];
         if let Some(paper_m) = paper_m {
-            let label = if member == 0 { "lines: the paper" } else { "" };
-            panel = panel.with(label, Kind::Dashed, Role::Member(member), upright(paper_m));
+            panel = panel.with("", Kind::Dashed, Role::Member(member), upright(paper_m));
         }
         if single_px_m[member] < FAR_M {
-            let label = if member == 0 { "lines: here" } else { "" };
-            panel = panel.with(label, Kind::Line, Role::Member(member), upright(single_px_m[member]));
+            panel = panel.with("", Kind::Line, Role::Member(member), upright(single_px_m[member]));
         }
     }
-    panel
+    // The legend tells exposures in order, then lines: those of the first exposure once more.
+    let upright = |at: f64| vec![(at, 0.0), (at, 0.92 * SHOWN_PX)];
+    let of_paper = EXPOSURES[0].1.map_or(Vec::new(), upright);
+    panel.with("upright lines: the paper", Kind::Dashed, Role::Member(0), of_paper).with(
+        "upright lines: here",
+        Kind::Line,
+        Role::Member(0),
+        upright(single_px_m[0]),
+    )
 }
 
 fn ranges(by_exposure: &[Vec<Shot>]) -> Panel {

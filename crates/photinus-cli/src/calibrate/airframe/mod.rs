@@ -17,6 +17,7 @@ use photinus_io::calibration::{self, read_led_sightings};
 use photinus_io::{Error, Place};
 
 use crate::beforehand;
+use crate::ending::Content;
 use crate::failure::Failure;
 use crate::number;
 use crate::targets::{Targets, WriteArgs};
@@ -24,13 +25,14 @@ use crate::terminal::Terminal;
 
 const EXAMPLES: &str = "\
 Examples:
-  photinus calibrate airframe seen.csv --camera camera.toml --nominal quad.toml --distance 0-3=0.8 --out measured.toml
+  photinus calibrate airframe seen.csv --camera camera.toml \\
+      --nominal quad.toml --distance 0-3=0.8 --out measured.toml
 
-The table has the columns photo,led,u_px,v_px and, if known, sigma_px: where each LED is in
-each photo. LEDs are counted as in the nominal airframe, which may be off by centimetres:
-from it come the axes and lobes of the LEDs, the body frame, and without --distance the
-scale. Take a dozen photos or more from all around and from above, with four LEDs or more in
-each.";
+The table has the columns photo,led,u_px,v_px and, if known, sigma_px: where
+each LED is in each photo. LEDs are counted as in the nominal airframe, which
+may be off by centimetres: from it come the axes and lobes of the LEDs, the body
+frame, and without --distance the scale. Take a dozen photos or more from all
+around and from above, with four LEDs or more in each.";
 
 /// Standard deviation of a place that says none, px: only its ratio to others matters.
 const SIGMA_PX: f64 = 1.0;
@@ -75,7 +77,7 @@ impl Args {
 pub(crate) fn run(args: &Args, terminal: &Terminal) -> Result<(), Failure> {
     let mut targets =
         Targets::new(args.write, [args.table.clone(), args.camera.clone(), args.nominal.clone()]);
-    let out = args.out.as_deref().map(|path| targets.file(path)).transpose()?;
+    let out = args.out.as_deref().map(|path| targets.file(path, Content::Toml)).transpose()?;
     let camera = beforehand::camera(&args.camera, terminal).map_err(Failure::input)?.camera;
     let AirframeFile { airframe: nominal, tolerances, .. } =
         beforehand::airframe(&args.nominal, terminal).map_err(Failure::input)?;

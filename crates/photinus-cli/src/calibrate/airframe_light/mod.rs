@@ -12,6 +12,7 @@ use photinus_io::airframe::{AirframeFile, Tolerances, toml_text};
 use photinus_io::{Error, Place};
 
 use crate::beforehand;
+use crate::ending::Content;
 use crate::failure::Failure;
 use crate::input::{DatasetArgs, Input, InputArgs};
 use crate::spot_options::{SpotArgs, mask_of};
@@ -21,14 +22,16 @@ use crate::terminal::Terminal;
 const EXAMPLES: &str = "\
 Examples:
   photinus calibrate airframe-light flight --out learned.toml
-  photinus calibrate airframe-light morning evening --airframe quad.toml --out learned.toml
+  photinus calibrate airframe-light morning evening --airframe quad.toml \\
+      --out learned.toml
   photinus locate other-flight --airframe learned.toml
 
-A recording is a dataset folder. Fly one robot alone in front of the camera, 500 frames or more at
-10 per second or faster; let it turn about itself several times, near by and farther away, so that
-every LED is seen from all sides, often without a saturated pixel: a short exposure helps. Gravity
-in the recording makes it surer. Faint spots count where a marker is.
-What is not learned stays as the airframe file has it: positions, axes and signals.";
+A recording is a dataset folder. Fly one robot alone in front of the camera, 500
+frames or more at 10 per second or faster; let it turn about itself several
+times, near by and farther away, so that every LED is seen from all sides, often
+without a saturated pixel: a short exposure helps. Gravity in the recording
+makes it surer. Faint spots count where a marker is. What is not learned stays
+as the airframe file has it: positions, axes and signals.";
 
 /// Recordings further apart than any loss within one, s.
 const APART_S: f64 = 1e6;
@@ -80,7 +83,7 @@ pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> Result<(), Failure> {
     let files = inputs.iter().flat_map(|input| input.files.iter().cloned());
     let beside = args.camera.iter().cloned().chain([path.clone()]).chain(args.spots.file());
     let mut targets = Targets::new(args.write, files.chain(beside));
-    let out = args.out.as_deref().map(|out| targets.file(out)).transpose()?;
+    let out = args.out.as_deref().map(|out| targets.file(out, Content::Toml)).transpose()?;
     let known = beforehand::airframe(&path, terminal).map_err(Failure::input)?;
     let mut flight = Flight::new(&known.airframe);
     for (number, input) in inputs.into_iter().enumerate() {

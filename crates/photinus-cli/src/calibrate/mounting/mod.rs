@@ -12,19 +12,22 @@ use photinus_io::calibration::{self, KnownSighting, mounting_text, read_known_si
 use photinus_io::{Error, Place};
 
 use crate::beforehand;
+use crate::ending::Content;
 use crate::failure::Failure;
 use crate::targets::{Targets, WriteArgs};
 use crate::terminal::Terminal;
 
 const EXAMPLES: &str = "\
 Examples:
-  photinus calibrate mounting seen.csv --camera camera.toml --out mounting.toml
+  photinus calibrate mounting seen.csv --camera camera.toml \\
+      --out mounting.toml
 
-The table has the columns u_px,v_px and x,y,z: the direction in the body frame (x forward, y
-left, z up) in which a marker stood, for markers so far away that the camera's place does
-not matter. With x_m,y_m,z_m in their place, positions in the body frame, the camera's place
-is found as well. A column sigma_px may say how sure each row is. Spread the markers over
-the image; ten or more, of which a few may be wrong.";
+The table has the columns u_px,v_px and x,y,z: the direction in the body frame
+(x forward, y left, z up) in which a marker stood, for markers so far away that
+the camera's place does not matter. With x_m,y_m,z_m in their place, positions
+in the body frame, the camera's place is found as well. A column sigma_px may
+say how sure each row is. Spread the markers over the image; ten or more, of
+which a few may be wrong.";
 
 /// Standard deviation of a place that says none, px: only its ratio to others matters.
 const SIGMA_PX: f64 = 1.0;
@@ -59,7 +62,7 @@ impl Args {
 /// Runs the command.
 pub(crate) fn run(args: &Args, terminal: &Terminal) -> Result<(), Failure> {
     let mut targets = Targets::new(args.write, [args.table.clone(), args.camera.clone()]);
-    let out = args.out.as_deref().map(|path| targets.file(path)).transpose()?;
+    let out = args.out.as_deref().map(|path| targets.file(path, Content::Toml)).transpose()?;
     let camera = beforehand::camera(&args.camera, terminal).map_err(Failure::input)?.camera;
     let rows = read_known_sightings(&args.table).map_err(Failure::input)?;
     let observations: Vec<Observation> =

@@ -17,6 +17,7 @@ use std::path::PathBuf;
 use photinus_calibrate::optics::{Collection, LearnError, Learned, learn};
 use photinus_io::camera::{OpticsSummary, write_calibrated_camera_toml};
 
+use crate::ending::Content;
 use crate::failure::Failure;
 use crate::input::{Input, InputArgs};
 use crate::targets::{Targets, WriteArgs};
@@ -31,10 +32,11 @@ Examples:
   photinus calibrate optics video.y4m --camera camera.toml --out measured.toml
   photinus info measured.toml
 
-Any frames with LEDs will do, moving or not; where the LEDs are need not be known. Let there be
-a hundred spots or more that stand 10 px and more apart, all over the image, some so bright that
-pixels are full, most not. What the frames do not tell is said, and stays what is believed of
-any camera. Without --camera a dataset's own is taken.";
+Any frames with LEDs will do, moving or not; where the LEDs are need not be
+known. Let there be a hundred spots or more that stand 10 px and more apart, all
+over the image, some so bright that pixels are full, most not. What the frames
+do not tell is said, and stays what is believed of any camera. Without --camera
+a dataset's own is taken.";
 
 /// Calibrate lens and sensor: point spread, noise, saturation, from any frames with LEDs
 #[derive(Debug, clap::Args)]
@@ -76,7 +78,7 @@ pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> Result<(), Failure> {
     let files = inputs.iter().flat_map(|input| input.files.iter().cloned());
     let read: Vec<PathBuf> = files.chain(args.camera.clone()).chain(args.mask.clone()).collect();
     let mut targets = Targets::new(args.write, read);
-    let out = args.out.as_deref().map(|path| targets.file(path)).transpose()?;
+    let out = args.out.as_deref().map(|path| targets.file(path, Content::Toml)).transpose()?;
     let report = args.report.as_deref().map(|path| targets.folder(path)).transpose()?;
     let name = inputs.first().map_or(String::new(), |input| input.name.clone());
     let mut collection = Collection::default();

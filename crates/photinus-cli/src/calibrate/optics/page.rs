@@ -7,9 +7,10 @@ use kuva::prelude::{BarPlot, Heatmap, Plot};
 use photinus::camera::Pixel;
 use photinus::optics::PointSpread;
 use photinus_calibrate::optics::Learned;
-use photinus_io::{Error, Result};
+use photinus_io::Result;
 
 use super::table;
+use crate::page::Page;
 use crate::plots::style::{BOUNDS, ESTIMATE, INLINE, TRUTH, axes, level, line, plain, points};
 use crate::plots::{Figure, FigureFolder};
 
@@ -26,21 +27,15 @@ struct Shown {
 /// [`Error`] when something cannot be drawn or written.
 pub(super) fn write(folder: &Path, learned: &Learned, size_px: [usize; 2]) -> Result<()> {
     let figures = FigureFolder::new(folder);
-    let mut sections = String::new();
+    let mut page = Page::new("Optics of a camera").lines(&table::Told(learned).to_string());
     for Shown { title, caption, mut figure } in
         [over_the_image(learned, size_px), by_phase(learned), noise(learned), summits(learned)]
     {
         let name = figure.name.clone();
         figure.layout = figure.layout.with_title(title);
-        // names of clip paths would be the same in every figure of the page
-        let svg = figures.write(figure)?.replace("kuva-clip-", &format!("{name}-"));
-        sections += &format!("<figure>\n{svg}\n<figcaption>{caption}</figcaption>\n</figure>\n");
+        page = page.svg(&figures.write(figure)?, &name, "", caption);
     }
-    let page = include_str!("page.html")
-        .replace("{told}", &table::Told(learned).to_string())
-        .replace("{figures}", &sections);
-    let path = folder.join("index.html");
-    std::fs::write(&path, page).map_err(|error| Error::io(&path, error))
+    page.write(folder)
 }
 
 /// The point spread at nine places of the image, side by side.

@@ -8,7 +8,7 @@ use photinus_calibrate::camera::STRIP;
 
 use super::Shown;
 use super::image::{arrows, over_image};
-use crate::calibrate::report::{CameraReport, RingReport};
+use crate::calibrate::report::{CameraReport, MoveReport, RingReport};
 use crate::plots::Figure;
 use crate::plots::style::{BOUNDS, ESTIMATE, INLINE, PERPENDICULAR, axes, line, points};
 
@@ -97,12 +97,14 @@ fn halves(report: &CameraReport) -> Option<Shown> {
     let (arrows, _) = arrows(drawn, rms_mrad, report.width_px, ESTIMATE);
     let plots: Vec<Plot> = vec![Plot::Quiver(arrows)];
     let layout = over_image(&plots, report);
-    let most_mrad = moves.iter().map(|at| libm::hypot(at.move_mrad[0], at.move_mrad[1])).fold(0.0, f64::max);
+    // As long as the rms is: all three parts of the turn, of which two are drawn.
+    let length = |at: &MoveReport| at.move_mrad.iter().map(|part| part * part).sum::<f64>().sqrt();
+    let most_mrad = moves.iter().map(length).fold(0.0, f64::max);
     Some(Shown {
         title: "From one half of the photos to the other",
         caption: format!(
             "How bearings move from the calibration of one half of the photos to that of the other, a common turn taken out: rms \
-             {rms_mrad:.2} mrad, the longest arrow {most_mrad:.2} mrad. Two independent calibrations differ by about one and a half \
+             {rms_mrad:.2} mrad, at most {most_mrad:.2} mrad. Two independent calibrations differ by about one and a half \
              to two sigmas of one."
         ),
         figure: Figure { name: "halves".to_owned(), plots, layout },
@@ -135,11 +137,16 @@ fn coverage(report: &CameraReport) -> Shown {
         };
         layout = layout.with_annotation(TextAnnotation::new(text, x, y).with_font_size(15));
     }
+    let thin = report.coverage.iter().filter(|part| part.photos == 1).count();
     let wanted = report.coverage.iter().map(|part| part.more_wanted).sum::<usize>();
     Shown {
         title: "Photos of each part of the image",
         caption: match wanted {
-            0 => "How many photos show the grid in each part of the image. Every part is covered.".to_owned(),
+            0 if thin == 0 => "How many photos show the grid in each part of the image. Every part is covered.".to_owned(),
+            0 => format!(
+                "How many photos show the grid in each part of the image. No part is empty, but {thin} of them have one photo only: \
+                 there the calibration rests on little."
+            ),
             _ => "How many photos show the grid in each part of the image, and where more should be taken: beyond the outermost LED \
                   the calibration is not known."
                 .to_owned(),

@@ -147,7 +147,7 @@ fn board(report: &CameraReport) -> Option<Shown> {
         vec![points(dots, TRUTH, MarkerShape::Circle, "on the grid").into(), Plot::Quiver(arrows)];
     let reach = |count: usize| (count as f64 - 0.4) * pitch_mm;
     let down = |height: f64| format!("{:.0}", -height + 0.0);
-    let mut layout = axes(&plots, "along the columns (mm)", "along the rows (mm)")
+    let mut layout = axes(&plots, "across the board (mm)", "down the board (mm)")
         .with_width(720.0)
         .with_height(160.0 + 620.0 * shape(report.grid_columns as f64, report.grid_rows as f64))
         .with_x_axis_min(-0.6 * pitch_mm)
@@ -167,7 +167,7 @@ fn board(report: &CameraReport) -> Option<Shown> {
         title: "The board as found",
         caption: format!(
             "Where each LED is off the grid, drawn {TIMES} times as long; the number is how far it stands out of the board's plane, \
-             mm. The pitch along the columns over that along the rows is {:.5}: 1 if the given pitch agrees with itself. Photos \
+             mm. The distance between columns over that between rows is {:.5}: 1 if the given pitch agrees with itself. Photos \
              agree on these places with a correlation of {:.2}; noise would give {:.2}.",
             report.pitch_ratio, report.board_agreement, report.board_agreement_by_chance
         ),

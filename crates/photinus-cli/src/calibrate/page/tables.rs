@@ -3,11 +3,7 @@
 use std::fmt::Write;
 
 use crate::calibrate::report::CameraReport;
-
-/// Text that holds no mark-up.
-pub(super) fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
-}
+use crate::page::escaped;
 
 /// What came out, in a few sentences.
 pub(super) fn told(report: &CameraReport) -> String {
@@ -67,7 +63,7 @@ pub(super) fn photos(report: &CameraReport) -> String {
         |value: Option<f64>, digits: usize| value.map_or(String::new(), |value| format!("{value:.digits$}"));
     let rows = report.photos.iter().map(|photo| {
         [
-            escaped(&photo.name),
+            escaped(file_name(&photo.name)),
             photo.leds.to_string(),
             number(photo.mean_px, 3),
             number(photo.max_px, 3),
@@ -98,7 +94,7 @@ pub(super) fn outliers(report: &CameraReport) -> String {
         return "<p>None.</p>".to_owned();
     }
     let rows = report.outliers.iter().map(|outlier| {
-        let photo = report.photos.get(outlier.photo).map_or("", |photo| photo.name.as_str());
+        let photo = report.photos.get(outlier.photo).map_or("", |photo| file_name(&photo.name));
         [
             escaped(photo),
             format!("{}, {}", outlier.column, outlier.row),
@@ -109,21 +105,19 @@ pub(super) fn outliers(report: &CameraReport) -> String {
     table(["photo", "column, row", "seen at (px)", "why"], rows)
 }
 
+/// The name of a photo without its folders, which are the same for all of them.
+fn file_name(path: &str) -> &str {
+    std::path::Path::new(path).file_name().and_then(|name| name.to_str()).unwrap_or(path)
+}
+
 fn table<const N: usize>(heads: [&str; N], rows: impl Iterator<Item = [String; N]>) -> String {
     let head: String = heads.iter().map(|head| format!("<th>{head}</th>")).collect();
     let row = |cells: [String; N]| {
         let cells: String = cells.iter().map(|cell| format!("<td>{cell}</td>")).collect();
         format!("<tr>{cells}</tr>\n")
     };
-    format!("<table>\n<tr>{head}</tr>\n{}</table>", rows.map(row).collect::<String>())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn names_of_files_are_no_markup() {
-        assert_eq!(escaped("a<b>&\"c\".png"), "a&lt;b&gt;&amp;&quot;c&quot;.png");
-    }
+    format!(
+        "<div class=\"wide\"><table>\n<tr>{head}</tr>\n{}</table></div>",
+        rows.map(row).collect::<String>()
+    )
 }

@@ -15,6 +15,7 @@ use std::path::{Path, PathBuf};
 use photinus_calibrate::spot_size::{SpotSizeError, calibrate};
 use photinus_io::Error;
 
+use crate::ending::Content;
 use crate::failure::Failure;
 use crate::input::DatasetArgs;
 use crate::number;
@@ -28,13 +29,15 @@ const EXAMPLES: &str = "\
 Examples:
   photinus calibrate spot-size recording --threshold 200 --out spots.toml
   photinus calibrate spot-size areas.csv --out spots.toml --plots figures
-  photinus simulate scenes/receding-led.toml --out recording     where there is no recording
+  # where there is no recording
+  photinus simulate scenes/receding-led.toml --out recording
   photinus locate flight --threshold 200 --spot-curve spots.toml
 
-A recording is a dataset folder with truth.jsonl and one LED in sight; a table has the
-columns distance_m,area_px and, for several exposures, exposure_us (docs/file-formats.md).
-Let the LED face the camera, move it through all distances that matter, and let it sway, so
-that it is seen at every place within a pixel.";
+A recording is a dataset folder with truth.jsonl and one LED in sight; a table
+has the columns distance_m,area_px and, for several exposures, exposure_us
+(docs/file-formats.md). Let the LED face the camera, move it through all
+distances that matter, and let it sway, so that it is seen at every place within
+a pixel.";
 
 /// Calibrate how large the spot of an LED can be at a distance
 #[derive(Debug, clap::Args)]
@@ -88,12 +91,13 @@ impl Args {
 /// Runs the command.
 pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> Result<(), Failure> {
     let mut targets = Targets::new(args.write, [args.input.clone()].into_iter().chain(args.spots.file()));
-    let json = args.json.as_deref().map(|path| targets.file(path)).transpose()?;
+    let json = args.json.as_deref().map(|path| targets.file(path, Content::Json)).transpose()?;
     let plots = args.plots.as_deref().map(|path| targets.folder(path)).transpose()?;
     let recordings = recordings::read(&args.input, &args.dataset, &args.spots, terminal)?;
     let out = |recording| args.out(recording, recordings.len() > 1);
-    let curves =
-        recordings.iter().map(|recording| out(recording).map(|path| targets.file(&path)).transpose());
+    let curves = recordings
+        .iter()
+        .map(|recording| out(recording).map(|path| targets.file(&path, Content::Toml)).transpose());
     let curves: Vec<Option<FileTarget>> = curves.collect::<Result<_, _>>()?;
     let figures = plots.map(|plots| plots.whole()).transpose().map_err(Failure::input)?;
     let mut reports = Vec::new();

@@ -26,9 +26,48 @@ pub(super) fn figures(evaluation: &Evaluation<'_>) -> Vec<Figure> {
     figures.into_iter().flatten().collect()
 }
 
-fn figure(name: &str, plots: Vec<Plot>, y_label: &str) -> Option<Figure> {
+/// Name, title, and what there is to see in it.
+type About = (&'static str, &'static str, &'static str);
+
+const RECALL: About = (
+    "recall-precision",
+    "Recall and precision",
+    "Recall: the share of what is there that was found. Precision: the share of what was found that is there. Marks that lie on \
+     one another are drawn smaller and smaller.",
+);
+const CENTRE: About = (
+    "centre-error",
+    "Error of the spots' centres",
+    "Against where the simulator put the centre of each LED's image.",
+);
+const BEARING: About =
+    ("bearing-error", "Error of bearings", "Angle between the bearing of a neighbour and the true one.");
+const DISTANCE_ERROR: About = (
+    "distance-error",
+    "Error of distances",
+    "Estimate minus truth, by the true distance. Bias is what all have in common; rms is all of it.",
+);
+const BOUNDS_HELD: About = (
+    "bounds",
+    "Strict bounds",
+    "How far the bounds are from truth. Near bounds lie below zero and far bounds above it: a cross on the wrong side is a \
+     violation, and a bug.",
+);
+const NEES: About = (
+    "position-nees",
+    "Consistency of position covariances",
+    "Mean squared error over what the covariance claims. 1 is right; above, covariances are too small.",
+);
+const PAPER: About = (
+    "paper-distances",
+    "The two distances of the founding paper",
+    "l_A takes the two nearest markers as perpendicular to the line of sight, l_B as along it; truth lies between.",
+);
+
+fn figure((name, title, caption): About, plots: Vec<Plot>, y_label: &str) -> Option<Figure> {
     let layout = axes(&plots, DISTANCE, y_label);
-    (!plots.is_empty()).then(|| Figure { name: name.to_owned(), plots, layout })
+    let (name, title) = (name.to_owned(), title.to_owned());
+    (!plots.is_empty()).then(|| Figure { name, title, caption, plots, layout })
 }
 
 /// A value of each bin at its middle; what lies beyond the last edge stands at that edge.
@@ -83,7 +122,13 @@ fn recall(scores: &Scores) -> Option<Figure> {
         plots.extend(marked(recall, WRONG, MarkerShape::Triangle, "spots, recall"));
         plots.extend(marked(precision, PERPENDICULAR, MarkerShape::Diamond, "spots, precision"));
     }
-    let mut figure = figure("recall-precision", plots, "share (%)")?;
+    let mut figure = figure(RECALL, plots, "share (%)")?;
+    // Curves that lie on one another are all seen: those that are drawn later have smaller marks.
+    let marks = figure
+        .plots
+        .iter_mut()
+        .filter_map(|plot| if let Plot::Scatter(marks) = plot { Some(marks) } else { None });
+    marks.zip([8.0, 6.2, 4.4, 2.6]).for_each(|(marks, size)| *marks = std::mem::take(marks).with_size(size));
     figure.layout = figure.layout.with_y_axis_min(0.0).with_y_axis_max(105.0);
     Some(figure)
 }
@@ -104,7 +149,7 @@ fn centre_error(scores: &Scores) -> Option<Figure> {
         MarkerShape::Triangle,
         "bias, row",
     ));
-    figure("centre-error", plots, "error of a spot's centre (px)")
+    figure(CENTRE, plots, "error of a spot's centre (px)")
 }
 
 fn bearing_error(scores: &Scores, pairs: &[Pair<'_>]) -> Option<Figure> {
@@ -115,7 +160,7 @@ fn bearing_error(scores: &Scores, pairs: &[Pair<'_>]) -> Option<Figure> {
     let rms = at_middles(&scores.bearing_error_rad.bins, |error| error.rms.map(|rad| 1e3 * rad));
     let mut plots: Vec<Plot> = vec![points(each, BOUNDS, MarkerShape::Circle, "each neighbour").into()];
     plots.extend(marked(rms, ESTIMATE, MarkerShape::Square, "rms"));
-    figure("bearing-error", plots, "bearing error (mrad)")
+    figure(BEARING, plots, "bearing error (mrad)")
 }
 
 fn distance_error(scores: &Scores, pairs: &[Pair<'_>]) -> Option<Figure> {
@@ -129,7 +174,7 @@ fn distance_error(scores: &Scores, pairs: &[Pair<'_>]) -> Option<Figure> {
     let rms = at_middles(bins, |score| score.error_m.rms);
     plots.extend(marked(bias, ESTIMATE, MarkerShape::Square, "bias"));
     plots.extend(marked(rms, WRONG, MarkerShape::Triangle, "rms"));
-    let mut figure = figure("distance-error", plots, "estimate - truth (m)")?;
+    let mut figure = figure(DISTANCE_ERROR, plots, "estimate - truth (m)")?;
     figure.layout = figure.layout.with_reference_line(level(0.0));
     Some(figure)
 }
@@ -151,7 +196,7 @@ fn bounds(pairs: &[Pair<'_>]) -> Option<Figure> {
         let crosses = points(violations, WRONG, MarkerShape::Cross, "violated");
         plots.push(crosses.with_size(5.0).with_marker_opacity(1.0).into());
     }
-    let mut figure = figure("bounds", plots, "bound - truth (m)")?;
+    let mut figure = figure(BOUNDS_HELD, plots, "bound - truth (m)")?;
     figure.layout = figure.layout.with_reference_line(level(0.0));
     Some(figure)
 }
@@ -170,7 +215,7 @@ fn position_nees(scores: &Scores) -> Option<Figure> {
         plots.push(band(&expected, FAINT).with_legend("95 % of means, were all right").into());
     }
     plots.extend(marked(nees, ESTIMATE, MarkerShape::Circle, "mean NEES / 3"));
-    let mut figure = figure("position-nees", plots, "NEES of the position / 3")?;
+    let mut figure = figure(NEES, plots, "NEES of the position / 3")?;
     figure.layout = figure.layout.with_reference_line(level(1.0)).with_y_axis_min(0.0);
     Some(figure)
 }
@@ -188,5 +233,5 @@ fn paper(pairs: &[Pair<'_>]) -> Option<Figure> {
         (inline, INLINE, MarkerShape::Triangle, "l_B (inline)"),
     ]);
     plots.push(line(vec![(nearest, nearest), (farthest, farthest)], TRUTH).with_legend("truth").into());
-    figure("paper-distances", plots, "distance (m)")
+    figure(PAPER, plots, "distance (m)")
 }

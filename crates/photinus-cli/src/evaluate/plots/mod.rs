@@ -2,11 +2,13 @@
 //!
 //! ```text
 //! by_range   a number over distance: recall, centre, bearing, distance, bounds, NEES, l_A and l_B
-//! over_time  the distance of one neighbour: truth, estimate, bounds, l_A and l_B
+//! over_time  the distance of one neighbour: truth, estimate, bounds, l_A and l_B; and the error of the estimate
+//! page       all of them on a page, with the tables
 //! ```
 
 mod by_range;
 mod over_time;
+pub(crate) mod page;
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -16,23 +18,40 @@ use photinus_evaluate::Evaluation;
 use photinus_io::Result;
 use photinus_io::dataset::TruthFrame;
 
-/// A figure: what is drawn, and on which axes.
+/// A figure: what is drawn, on which axes, and what there is to see in it.
 struct Figure {
     name: String,
+    title: String,
+    caption: &'static str,
     plots: Vec<Plot>,
     layout: Layout,
 }
 
-/// Draws every figure for which there is something to show into `folder`.
+/// A figure that lies in a folder.
+pub(crate) struct Drawn {
+    /// Its file without an ending: there is a PNG and an SVG.
+    pub(crate) name: String,
+    /// What it shows.
+    pub(crate) title: String,
+    /// What there is to see in it.
+    pub(crate) caption: &'static str,
+}
+
+/// Draws every figure for which there is something to show into `folder`, and says which.
 ///
 /// # Errors
 /// [`photinus_io::Error`] when a figure cannot be drawn or written.
-pub(crate) fn plot(folder: &Path, evaluation: &Evaluation<'_>, truth: &[TruthFrame]) -> Result<()> {
+pub(crate) fn plot(folder: &Path, evaluation: &Evaluation<'_>, truth: &[TruthFrame]) -> Result<Vec<Drawn>> {
     let neighbours: BTreeSet<u32> =
         truth.iter().flat_map(|frame| &frame.neighbours).map(|neighbour| neighbour.id).collect();
-    let over_time = neighbours.into_iter().filter_map(|id| over_time::distance(id, evaluation, truth));
-    by_range::figures(evaluation).into_iter().chain(over_time).try_for_each(|figure| {
-        let scene = kuva::render::render::render_multiple(figure.plots, figure.layout);
-        crate::plots::save(folder, &figure.name, &scene).map(drop)
-    })
+    let over_time = neighbours.into_iter().flat_map(|id| over_time::figures(id, evaluation, truth));
+    let draw = |Figure { name, title, caption, plots, layout }: Figure| {
+        let scene = kuva::render::render::render_multiple(
+            plots,
+            layout.with_title(title.clone()).with_title_size(15),
+        );
+        crate::plots::save(folder, &name, &scene)?;
+        Ok(Drawn { name, title, caption })
+    };
+    over_time.chain(by_range::figures(evaluation)).map(draw).collect()
 }

@@ -1,4 +1,4 @@
-//! The distance of one neighbour over time, as figures 15 and 16 of the paper show it: truth, estimate, bounds, l_A, l_B.
+//! One neighbour over time: its distance, as figures 15 and 16 of the paper show it, and the error of the estimate.
 
 use std::collections::BTreeMap;
 
@@ -9,15 +9,20 @@ use photinus_io::dataset::TruthFrame;
 
 use super::Figure;
 use crate::plots::style::{
-    BOUNDS, ESTIMATE, INLINE, PERPENDICULAR, TRUTH, axes, band, line, points, thinned,
+    BOUNDS, ESTIMATE, FAINT, INLINE, PERPENDICULAR, axes, band, level, line, plain, points, thinned,
 };
 
-/// The axis ends at so many times the farthest truth: bounds are cut there, and estimates beyond it are not drawn.
-const HEADROOM: f64 = 1.4;
+/// A bound farther than this many times the farthest truth is cut there.
+const MOST_TIMES: f64 = 8.0;
+/// The axis begins at this share of the nearest bound or truth.
+const BELOW: f64 = 0.8;
 
-/// The figure of neighbour `id`; `None` where it was never found.
-pub(super) fn distance(id: u32, evaluation: &Evaluation<'_>, truth: &[TruthFrame]) -> Option<Figure> {
-    let found: BTreeMap<u64, &Pair<'_>> =
+/// What was found of a neighbour, by frame.
+type Found<'a> = BTreeMap<u64, &'a Pair<'a>>;
+
+/// The figures of neighbour `id`; none where it was never found.
+pub(super) fn figures(id: u32, evaluation: &Evaluation<'_>, truth: &[TruthFrame]) -> Vec<Figure> {
+    let found: Found<'_> =
         evaluation.pairs.iter().filter(|pair| pair.truth.id == id).map(|pair| (pair.frame, pair)).collect();
     let mut there: Vec<(u64, f64, f64)> = truth
         .iter()
@@ -28,43 +33,101 @@ pub(super) fn distance(id: u32, evaluation: &Evaluation<'_>, truth: &[TruthFrame
         .collect();
     there.sort_unstable_by_key(|frame| frame.0);
     if found.is_empty() {
-        return None;
+        return Vec::new();
     }
-    let highest_m = HEADROOM * there.iter().fold(0.0, |most: f64, frame| most.max(frame.2));
+    [Some(distance(id, &there, &found)), error(id, &found)].into_iter().flatten().collect()
+}
+
+/// Distances on a logarithmic axis, so that far bounds are shown and near ones are not flat. Truth lies beneath, wide and pale.
+fn distance(id: u32, there: &[(u64, f64, f64)], found: &Found<'_>) -> Figure {
+    let (nearest_m, farthest_m) =
+        there.iter().fold((f64::INFINITY, 0.0_f64), |(near, far), at| (near.min(at.2), far.max(at.2)));
+    let bounds = || found.values().map(|pair| &pair.found.distance_m);
+    let lowest_m = BELOW * bounds().map(|bounds| bounds.min).filter(|&m| m > 0.0).fold(nearest_m, f64::min);
+    let highest_m = bounds()
+        .filter_map(|bounds| bounds.max)
+        .fold(1.2 * farthest_m, f64::max)
+        .min(MOST_TIMES * farthest_m);
     let of = |value: fn(&Pair<'_>) -> Option<f64>| -> Vec<(f64, f64)> {
         let values = found.values().filter_map(|pair| Some((pair.time_s, value(pair)?)));
-        values.filter(|point| point.1 <= highest_m).collect()
+        values.filter(|point| (lowest_m..=highest_m).contains(&point.1)).collect()
     };
-
     let mut plots: Vec<Plot> = Vec::new();
-    for (number, run) in runs(&there, &found, highest_m).iter().enumerate() {
+    for (number, run) in runs(there, found, [lowest_m, highest_m]).iter().enumerate() {
         let shown = band(run, BOUNDS);
         plots.push(if number == 0 { shown.with_legend("bounds") } else { shown }.into());
     }
-    for (data, colour, marker, legend) in [
-        (of(|pair| pair.found.distance_m.perpendicular), PERPENDICULAR, MarkerShape::TriangleDown, "l_A"),
-        (of(|pair| pair.found.distance_m.inline), INLINE, MarkerShape::Triangle, "l_B"),
-        (of(|pair| pair.found.distance_m.estimate), ESTIMATE, MarkerShape::Circle, "estimate"),
+    let truth = thinned(there.iter().map(|&(_, time_s, distance_m)| (time_s, distance_m)).collect());
+    plots.push(line(truth, PALE).with_stroke_width(7.0).with_legend("truth").into());
+    for (data, colour, marker, legend, size) in [
+        (
+            of(|pair| pair.found.distance_m.perpendicular),
+            PERPENDICULAR,
+            MarkerShape::TriangleDown,
+            "l_A",
+            1.8,
+        ),
+        (of(|pair| pair.found.distance_m.inline), INLINE, MarkerShape::Triangle, "l_B", 1.8),
+        (of(|pair| pair.found.distance_m.estimate), ESTIMATE, MarkerShape::Circle, "estimate", 1.3),
     ] {
         if !data.is_empty() {
-            plots.push(points(data, colour, marker, legend).into());
+            plots.push(points(data, colour, marker, legend).with_size(size).into());
         }
     }
-    let truth = thinned(there.iter().map(|&(_, time_s, distance_m)| (time_s, distance_m)).collect());
-    plots.push(line(truth, TRUTH).with_legend("truth").into());
     let layout = axes(&plots, "time (s)", "distance (m)")
-        .with_title(format!("neighbour {id}"))
         .with_width(900.0)
-        .with_y_axis_min(0.0)
+        .with_log_y()
+        .with_y_tick_format(plain())
+        .with_y_axis_min(lowest_m)
         .with_y_axis_max(highest_m);
-    Some(Figure { name: format!("distance-over-time-{id}"), plots, layout })
+    Figure {
+        name: format!("distance-over-time-{id}"),
+        title: format!("Distance of neighbour {id} over time"),
+        caption: "The strict bounds, which truth never leaves, as a band; truth as the wide line beneath; on it the estimate of each \
+                  frame by itself, and the two estimates of the founding paper, l_A and l_B.",
+        plots,
+        layout,
+    }
 }
+
+/// Estimate minus truth, with what the estimates claim.
+fn error(id: u32, found: &Found<'_>) -> Option<Figure> {
+    let of = |value: fn(&Pair<'_>) -> Option<f64>| -> Vec<(f64, f64)> {
+        found.values().filter_map(|pair| Some((pair.time_s, value(pair)?))).collect()
+    };
+    let errors = of(|pair| Some(pair.found.distance_m.estimate? - pair.truth.distance_m));
+    if errors.is_empty() {
+        return None;
+    }
+    let claimed: Vec<(f64, f64, f64)> = thinned(of(|pair| pair.found.distance_m.sigma))
+        .into_iter()
+        .map(|(time_s, m)| (time_s, -2.0 * m, 2.0 * m))
+        .collect();
+    let mut plots: Vec<Plot> = Vec::new();
+    if claimed.len() > 1 {
+        plots.push(band(&claimed, FAINT).with_legend("two sigmas as claimed").into());
+    }
+    plots.push(points(errors, ESTIMATE, MarkerShape::Circle, "estimate - truth").with_size(1.6).into());
+    let layout = axes(&plots, "time (s)", "error of the distance (m)")
+        .with_width(900.0)
+        .with_reference_line(level(0.0));
+    Some(Figure {
+        name: format!("distance-error-over-time-{id}"),
+        title: format!("Error of the distance of neighbour {id} over time"),
+        caption: "Of right sigmas, 95 of 100 points lie within the band.",
+        plots,
+        layout,
+    })
+}
+
+/// Truth, drawn wide, beneath what is to be seen on it.
+const PALE: &str = "#B8BDC2";
 
 /// Bounds as (time, min, max), in runs of frames in which it was found: a gap shows as a gap.
 fn runs(
     there: &[(u64, f64, f64)],
-    found: &BTreeMap<u64, &Pair<'_>>,
-    highest_m: f64,
+    found: &Found<'_>,
+    [lowest_m, highest_m]: [f64; 2],
 ) -> Vec<Vec<(f64, f64, f64)>> {
     let mut runs = vec![Vec::new()];
     for (frame, time_s, _) in there {
@@ -72,7 +135,7 @@ fn runs(
             (Some(pair), Some(run)) => {
                 let bounds = &pair.found.distance_m;
                 let max = bounds.max.unwrap_or(highest_m).min(highest_m);
-                run.push((*time_s, bounds.min.min(highest_m), max));
+                run.push((*time_s, bounds.min.clamp(lowest_m, highest_m), max));
             }
             (None, Some(run)) if !run.is_empty() => runs.push(Vec::new()),
             _ => {}

@@ -7,6 +7,7 @@
 //! inject: a dataset -> the same with faults
 //! evaluate: results against the truth of a dataset
 //! calibrate: photos of a grid -> a camera whose errors are known
+//! codes: what words must have -> books of words that LEDs blink
 //! demo: all of it on a flight that the program carries along
 //! reproduce: the experiments of the founding paper, each number beside the paper's
 //! ```
@@ -15,6 +16,7 @@ mod aligned;
 mod beforehand;
 mod calibrate;
 mod clock;
+mod codes;
 mod convert;
 mod demo;
 mod detect;
@@ -68,6 +70,7 @@ Examples:
   photinus locate recording --out results.jsonl --overlay seen
   photinus simulate scene.toml --out recording frames with truth, where there is no recording
   photinus evaluate recording results.jsonl    how well that went, where the truth is known
+  photinus codes check book.txt                what tells the blink words of a fleet apart
   photinus reproduce                           every figure of the founding paper, in simulation
 
 Every command explains itself: photinus locate --help
@@ -86,6 +89,7 @@ enum Command {
     Demo(demo::Args),
     Reproduce(reproduce::Args),
     Calibrate(calibrate::Args),
+    Codes(codes::Args),
 }
 
 fn main() -> ExitCode {
@@ -113,6 +117,7 @@ impl Command {
             Self::Evaluate(args) => args.quiet(),
             Self::Reproduce(args) => args.quiet(),
             Self::Calibrate(args) => args.quiet(),
+            Self::Codes(args) => args.quiet(),
             Self::Info(_) | Self::Convert(_) | Self::Demo(_) => false,
         }
     }
@@ -129,6 +134,7 @@ impl Command {
             Self::Demo(args) => demo::run(args, terminal),
             Self::Reproduce(args) => reproduce::run(args, terminal),
             Self::Calibrate(args) => calibrate::run(args, terminal),
+            Self::Codes(args) => codes::run(args, terminal),
         }
     }
 }

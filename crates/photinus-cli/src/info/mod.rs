@@ -10,8 +10,10 @@ mod records;
 use std::path::{Path, PathBuf};
 
 use photinus_io::Result;
+use photinus_io::codes::read_codes;
 
 use crate::aligned::{Aligned, Side};
+use crate::codes;
 use crate::failure::Failure;
 use crate::kind::{Kind, kind_of};
 use crate::terminal::Terminal;
@@ -42,13 +44,13 @@ pub(crate) struct Report {
     /// Tables, below the facts.
     tables: Vec<Aligned>,
     /// What a user should know or do, a sentence each.
-    notes: Vec<String>,
+    pub(crate) notes: Vec<String>,
     /// Whether something is missing or damaged, which a note tells.
     is_broken: bool,
 }
 
 impl Report {
-    fn new(what: impl Into<String>) -> Self {
+    pub(crate) fn new(what: impl Into<String>) -> Self {
         Self {
             what: what.into(),
             facts: Aligned::new(2, &[Side::Left]),
@@ -64,7 +66,7 @@ impl Report {
         self.is_broken = true;
     }
 
-    fn fact(&mut self, name: &str, value: impl Into<String>) {
+    pub(crate) fn fact(&mut self, name: &str, value: impl Into<String>) {
         self.facts.row([name.to_owned(), value.into()]);
     }
 }
@@ -94,7 +96,7 @@ pub(crate) fn run(args: &Args, terminal: &Terminal) -> std::result::Result<(), F
 fn report(path: &Path) -> Result<Report> {
     match kind_of(path)? {
         Kind::Airframe => airframe::report(path),
-        Kind::Blink => records::blink(path),
+        Kind::Blink => read_codes(path).map(|book| codes::report(&book)),
         Kind::Camera => camera::report(path),
         Kind::Dataset => dataset::dataset(path),
         Kind::DatasetTable => dataset::dataset(path.parent().unwrap_or(Path::new("."))),
@@ -105,7 +107,8 @@ fn report(path: &Path) -> Result<Report> {
     }
 }
 
-fn print(path: &Path, report: &Report, terminal: &Terminal) -> std::result::Result<(), Failure> {
+/// Prints what is told about a file.
+pub(crate) fn print(path: &Path, report: &Report, terminal: &Terminal) -> std::result::Result<(), Failure> {
     terminal.result(format_args!("{}: {}", path.display(), report.what))?;
     terminal.result(&report.facts)?;
     for table in &report.tables {
@@ -118,6 +121,6 @@ fn print(path: &Path, report: &Report, terminal: &Terminal) -> std::result::Resu
 }
 
 /// A count with its word.
-fn counted(count: usize, word: &str) -> String {
+pub(crate) fn counted(count: usize, word: &str) -> String {
     if count == 1 { format!("1 {word}") } else { format!("{count} {word}s") }
 }

@@ -85,7 +85,7 @@ mod tests {
         let two = properties(&["0011", "0001"]);
         assert_eq!((two.distance, two.self_distance), (Some((1, [0, 1])), Some((2, 0))));
         assert_eq!((two.longest_dark, two.longest_lit, two.steady_distance), (3, 2, 2));
-        assert_eq!(two.duty, [0.25, 0.5]);
+        assert_eq!((two.duty[0], two.duty[1]), (0.25, 0.5));
         // 0,0 and 1,0 and 0,1 stand in both; of three bits 0,0,1 and 1,0,0 do; four bits are the word
         assert_eq!((two.unique_after, two.in_phase_after), (Some(4), Some(4)));
         let turned = properties(&["0011", "1001"]);

@@ -68,17 +68,18 @@ fn each_word_is_known_at_each_phase_and_so_is_the_phase() {
     for (id, &word) in book().words().iter().enumerate() {
         for phase in 0..10 {
             let mut listener = decoder.listener();
-            hear(&decoder, &mut listener, sent(word, phase, 20), 0.001);
+            // of words of ten bits one in a thousand is the very same: it takes rounds until that is left out
+            hear(&decoder, &mut listener, sent(word, phase, 40), 0.001);
             let identity = decoder.identity(&listener);
             assert_eq!(identity.who, Who::Word(id));
             assert!(identity.probability > 0.999, "{identity:?}");
             // exposures are short: the beginning lies anywhere in the bit
             let found = decoder.phase(&listener, id).unwrap();
-            let off = (found.bits - (phase + 19) as f64 - 0.5).rem_euclid(10.0);
+            let off = (found.bits - (phase + 39) as f64 - 0.5).rem_euclid(10.0);
             assert!(off.min(10.0 - off) < 0.3 && found.sigma_bits < 0.5, "{phase}: {found:?}");
             let next_s = listener.last_s().unwrap() + FRAME_S;
             let lit = decoder.light_at(&listener, next_s, EXPOSURE_S).unwrap();
-            assert!((lit - f64::from(u8::from(word.bit(phase + 20)))).abs() < 0.1, "{lit}");
+            assert!((lit - f64::from(u8::from(word.bit(phase + 40)))).abs() < 0.1, "{lit}");
         }
     }
 }

@@ -149,11 +149,11 @@ impl TryFrom<Given> for SpotRecord {
         if given.probability.is_some_and(|probability| !(0.0..=1.0).contains(&probability)) {
             return Err("probability is not 0 to 1".to_owned());
         }
-        if given.marker_log_odds.is_some_and(|log_odds| !(log_odds.abs() <= SUREST_LOG_ODDS)) {
+        if given.marker_log_odds.is_some_and(|log_odds| log_odds.abs() > SUREST_LOG_ODDS) {
             return Err(format!("marker_log_odds is not -{SUREST_LOG_ODDS} to {SUREST_LOG_ODDS}"));
         }
         let of_probability = |probability: f64| {
-            (probability / (1.0 - probability)).ln().clamp(-SUREST_LOG_ODDS, SUREST_LOG_ODDS)
+            libm::log(probability / (1.0 - probability)).clamp(-SUREST_LOG_ODDS, SUREST_LOG_ODDS)
         };
         let marker_log_odds = given.marker_log_odds.or(given.probability.map(of_probability)).unwrap_or(0.0);
         // The sides are those of an image, checked above.
@@ -171,7 +171,7 @@ impl TryFrom<Given> for SpotRecord {
             middle_px: given.middle_px.unwrap_or([nearest(u_px), nearest(v_px)]),
             extent_px: given.extent_px,
             background: given.background.unwrap_or(0.0),
-            probability: 1.0 / (1.0 + (-marker_log_odds).exp()),
+            probability: 1.0 / (1.0 + libm::exp(-marker_log_odds)),
             marker_log_odds,
             bearing: given.bearing,
             bound_rad: given.bound_rad,

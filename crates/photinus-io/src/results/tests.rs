@@ -88,7 +88,7 @@ fn results_are_one_line_with_the_documented_names() {
     assert_eq!(keys(&value), "frame neighbours rejected source spots time_s");
     assert_eq!(
         keys(&value["spots"][0]),
-        "area_px background bearing bound_rad covariance_px2 extent_px flux middle_px peak range_m saturated_px sigma_px signal u_px v_px"
+        "area_px background bearing bound_rad covariance_px2 extent_px flux marker_log_odds middle_px peak probability range_m saturated_px sigma_px signal u_px v_px"
     );
     assert_eq!(keys(&value["rejected"][0]), "area_px reason u_px v_px");
     assert_eq!(

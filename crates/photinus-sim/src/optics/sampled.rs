@@ -50,6 +50,19 @@ impl SampledSpread {
         self.variance_px2
     }
 
+    /// Centroid of the light as seen from the point, (u, v) in px.
+    pub fn centroid_px(&self) -> [f64; 2] {
+        let middle = (self.side / 2) as f64;
+        let per_px = self.samples_per_px as f64;
+        let mut sums = [0.0; 2];
+        for (index, share) in self.shares.iter().enumerate() {
+            sums[0] += share * ((index % self.side) as f64 - middle);
+            sums[1] += share * ((index / self.side) as f64 - middle);
+        }
+        // The shares of the light sum to 1 over a pixel's samples.
+        sums.map(|sum| sum / (per_px * per_px * per_px))
+    }
+
     /// Share of the light in a pixel whose centre is (x, y) px from the point: cubic between the samples, 0 outside.
     pub fn share(&self, x_px: f64, y_px: f64) -> f64 {
         let middle = (self.side / 2) as f64;
@@ -153,6 +166,38 @@ mod tests {
             }
         }
         assert!((gaussian(0.7).variance_px2() - 0.49 - 1.0 / 12.0).abs() < 1e-3);
+    }
+
+    #[test]
+    fn the_centroid_is_that_of_what_is_drawn() {
+        let rows: Vec<Vec<f64>> = (0..41)
+            .map(|v| {
+                (0..41)
+                    .map(|u| {
+                        libm::exp(
+                            -0.01 * (f64::from(u) - 24.0).powi(2) - 0.02 * (f64::from(v) - 19.0).powi(2),
+                        )
+                    })
+                    .collect()
+            })
+            .collect();
+        let table = SampledSpread::new(4, &rows).unwrap();
+        let mut charge = Charge::new(40, 40);
+        table.draw(
+            &PointLight { u_px: 20.3, v_px: 19.6, electrons: 1e5, ..PointLight::default() },
+            1.0,
+            &mut charge,
+        );
+        let mut sums = [0.0; 2];
+        for (u, v) in (0..40).flat_map(|u| (0..40).map(move |v| (u, v))) {
+            sums[0] += f64::from(charge.at(u, v)) * (u as f64 - 20.3) / 1e5;
+            sums[1] += f64::from(charge.at(u, v)) * (v as f64 - 19.6) / 1e5;
+        }
+        let found = table.centroid_px();
+        assert!(
+            libm::hypot(found[0] - sums[0], found[1] - sums[1]) < 0.01 && found[0] > 0.5,
+            "{found:?} {sums:?}"
+        );
     }
 
     #[test]

@@ -100,6 +100,16 @@ impl PointSpread {
         }
     }
 
+    /// Centroid of the light of a point at (`u_px`, `v_px`) as its table has it, as seen from the point, (u, v) in px: a table need not have
+    /// it in its middle. What aberrations add is [`Aberrations`]' own.
+    pub fn centroid_px(&self, u_px: f64, v_px: f64) -> [f64; 2] {
+        match &self.shape {
+            Shape::Gaussians(_) => [0.0; 2],
+            Shape::Sampled(table) => table.centroid_px(),
+            Shape::Zoned(zones) => zones.at(u_px, v_px).centroid_px(),
+        }
+    }
+
     /// Adds the light of a point to the charge of the pixels around it.
     pub fn draw(&self, light: &PointLight, onto: &mut Charge) {
         let wider = self.aberrations.widening(light.off_axis_rad);

@@ -26,6 +26,8 @@ pub struct Detector {
     splitter: Splitter,
     part_runs: Vec<Run>,
     parts: Vec<Part>,
+    /// Components that were split, whole.
+    split: Vec<Part>,
     neighbourhood: Neighbourhood,
     meter: Meter,
     /// Odds for clutter of each spot, but for those of a reflection.
@@ -56,6 +58,7 @@ impl Detector {
             splitter: Splitter::default(),
             part_runs: Vec::new(),
             parts: Vec::new(),
+            split: Vec::new(),
             neighbourhood: Neighbourhood::default(),
             meter: Meter::new(&settings, optics),
             clutter_odds: Vec::new(),
@@ -97,6 +100,7 @@ impl Detector {
 
     fn outline_parts(&mut self, frame: &FrameView<'_>, mask: Option<&Mask>) {
         self.parts.clear();
+        self.split.clear();
         for component in 0..self.components.len() {
             let runs = self.components.runs(component);
             let level = self.background.level(usize::from(runs[0].start), usize::from(runs[0].v));
@@ -108,9 +112,12 @@ impl Detector {
             for part in split.chunk_by(|a, b| a.0 == b.0) {
                 self.part_runs.clear();
                 self.part_runs.extend(part.iter().map(|&(_, run)| run));
-                self.parts.push(outline(frame, &self.background, &self.part_runs, mask));
+                let part = outline(frame, &self.background, &self.part_runs, mask);
+                self.parts.push(Part { split_from: Some(self.split.len()), ..part });
             }
+            self.split.push(outline(frame, &self.background, runs, mask));
         }
+        self.meter.join_smeared(frame, &mut self.parts, &self.split);
         self.parts.sort_unstable_by_key(|part| part.first);
     }
 
@@ -118,7 +125,7 @@ impl Detector {
         let shape = &self.settings.shape;
         for part in &mut self.parts {
             part.reason = part.outline.reject(shape);
-            if part.outline.is_streak(shape) {
+            if part.outline.is_streak(shape) && !self.meter.is_smeared() {
                 part.clutter_odds += odds::LONG_AND_THIN;
             }
         }

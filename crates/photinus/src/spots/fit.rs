@@ -35,8 +35,8 @@ const LIGHT_STEP: f64 = 3.0;
 /// How far the level of the background is known beforehand, grey levels.
 const LEVEL_KNOWN_DN: f64 = 3.0;
 
-const U: usize = 0;
-const V: usize = 1;
+pub(super) const U: usize = 0;
+pub(super) const V: usize = 1;
 const LIGHT: usize = 2;
 const LEVEL: usize = 3;
 /// The first of the numbers that say how wide the light is.
@@ -57,8 +57,8 @@ pub(super) trait Shape<const N: usize> {
     /// from [`WIDTH`] on.
     fn shares(&self, row: usize, column: usize, widths: &SVector<f64, N>) -> (Lanes, [Lanes; N]);
 
-    /// Places the spread `u`, `v` px from the middle of the window.
-    fn place(&mut self, u: f64, v: f64, reach: usize);
+    /// Places the spread as these numbers say, (u, v) px from the middle of the window.
+    fn place(&mut self, numbers: &SVector<f64, N>, reach: usize);
 
     /// What is believed of the numbers of width: mean and one over the variance, each by itself.
     fn believed(&self, number: usize) -> (f64, f64);
@@ -90,6 +90,16 @@ pub(super) struct Fitted<const N: usize> {
 }
 
 impl<const N: usize> Fitted<N> {
+    /// Whether it leaves no more than noise may, 3 sigmas of chi-square: two points with a dip between them leave more.
+    pub(super) fn leaves_noise(&self) -> bool {
+        self.chi2 < self.freedom + 3.0 * (2.0 * self.freedom).sqrt()
+    }
+
+    /// Whether it leaves about as much as noise.
+    pub(super) fn fits(&self) -> bool {
+        self.chi2 < GOOD_FIT * self.freedom
+    }
+
     pub(super) fn centre_covariance_px2(&self) -> Matrix2<f64> {
         self.covariance.fixed_view::<2, 2>(0, 0).into_owned()
     }
@@ -129,15 +139,14 @@ pub(super) fn fit<const N: usize>(
     noise: PixelNoise,
 ) -> Option<Fitted<N>> {
     let first = fit_from(window, shape, (u, v, light), noise);
-    let fits_well = |fitted: &Fitted<N>| fitted.chi2 < GOOD_FIT * fitted.freedom;
-    if window.full_px < HIDING_PX || first.as_ref().is_some_and(fits_well) {
+    if window.full_px < HIDING_PX || first.as_ref().is_some_and(Fitted::fits) {
         return first;
     }
     let mut found: [Option<Fitted<N>>; BRIGHTER.len() + 1] = [None; BRIGHTER.len() + 1];
     found[BRIGHTER.len()] = first;
     for (found, brighter) in found.iter_mut().zip(BRIGHTER) {
         *found = fit_from(window, shape, (u, v, brighter * light), noise);
-        if found.as_ref().is_some_and(fits_well) {
+        if found.as_ref().is_some_and(Fitted::fits) {
             break;
         }
     }
@@ -163,7 +172,7 @@ fn fit_from<const N: usize>(
     let steps = if window.full_px > 0 { STEPS_OF_FULL } else { STEPS };
     let (mut last, mut previous, mut gain) = (None, SVector::<f64, N>::zeros(), 1.0_f64);
     for step_number in 0..steps {
-        shape.place(numbers[U], numbers[V], window.reach);
+        shape.place(&numbers, window.reach);
         if window.full_px > 0 {
             overflow(window, shape, &numbers);
         }
@@ -310,7 +319,7 @@ pub(super) fn residuals<const N: usize>(
     mut with: impl FnMut(f32, f32),
 ) {
     let numbers = &fitted.numbers;
-    shape.place(numbers[U], numbers[V], window.reach);
+    shape.place(numbers, window.reach);
     let (light, level) = (Lanes::splat(numbers[LIGHT] as f32), Lanes::splat(numbers[LEVEL] as f32));
     let spilling = shape.spill(numbers).numbers;
     for four in &window.fours {
@@ -333,6 +342,7 @@ pub(super) fn residuals<const N: usize>(
 }
 
 /// A point, or a source of some size.
+#[derive(Clone, Copy)]
 pub(super) struct PointSource<'a> {
     spread: &'a PointSpread,
     /// Standard deviation that a source's own variance is believed to have, px^2.
@@ -356,8 +366,8 @@ impl Shape<5> for PointSource<'_> {
         (share, [by_u, by_v, Lanes::ZERO, Lanes::ZERO, by_variance])
     }
 
-    fn place(&mut self, u: f64, v: f64, reach: usize) {
-        self.placed = Some(self.spread.placed(u as f32, v as f32, reach));
+    fn place(&mut self, numbers: &SVector<f64, 5>, reach: usize) {
+        self.placed = Some(self.spread.placed(numbers[U] as f32, numbers[V] as f32, reach));
     }
 
     fn believed(&self, _: usize) -> (f64, f64) {

@@ -12,12 +12,13 @@ use super::centroid::PixelVariance;
 use super::fit::{self, Fitted, PixelNoise, PointSource};
 use super::full_level::FullLevel;
 use super::hot_pixel::{self, LonePixels};
-use super::learning::Belief;
+use super::learning::{Belief, UNKNOWNS};
 use super::lessons::LEARNT_FRAMES;
 use super::neighbourhood::Neighbourhood;
 use super::part::Part;
 use super::patch::{self, Surroundings};
 use super::settings::{Brightness, Noise, Settings};
+use super::smear::{self, Smeared};
 use super::window::{Spill, WIDEST_PX, Window, nearest_pixel};
 use crate::camera::Pixel;
 use crate::frame::FrameView;
@@ -82,6 +83,10 @@ pub(super) struct Fitter {
     pub(super) window: Window,
     pub(super) widths: Vec<f64>,
     models: Vec<Option<Model>>,
+    /// Whether light moved in this frame while the shutter was open.
+    pub(super) is_smeared: bool,
+    /// Components that are one streak though they were split: room to work in.
+    pub(super) joined: Vec<usize>,
 }
 
 impl Fitter {
@@ -97,11 +102,13 @@ impl Fitter {
             window: Window::default(),
             widths: Vec::new(),
             models: Vec::new(),
+            is_smeared: false,
+            joined: Vec::new(),
         }
     }
 
     /// Whether the point spread is known as well as it will be.
-    fn is_sure(&self) -> bool {
+    pub(super) fn is_sure(&self) -> bool {
         self.optics.is_some() || self.frames >= LEARNT_FRAMES || self.belief.is_sure()
     }
 
@@ -125,7 +132,9 @@ impl Fitter {
             return;
         }
         let full_from = self.full_from(frame, parts);
-        self.learn(frame, parts, near, full_from);
+        if !self.is_smeared {
+            self.learn(frame, parts, near, full_from);
+        }
         let is_sure = self.is_sure();
         let passes = if is_sure { &PASSES[..] } else { &PASSES[..1] };
         for &others in passes {
@@ -207,7 +216,7 @@ impl Fitter {
     }
 
     /// What becomes of charge above a full well.
-    fn spill(&self) -> Spill {
+    pub(super) fn spill(&self) -> Spill {
         self.optics.as_ref().map_or_else(|| self.belief.spill(), |optics| measured_spill(&optics.sensor))
     }
 
@@ -219,12 +228,23 @@ impl Fitter {
     fn model(&mut self, part: &Part, around: Surroundings, is_sure: bool) -> Option<Model> {
         let noise = self.pixel_noise(around);
         let guess = self.guess(part);
+        let moved = if self.is_smeared { smear::of_outline(part) } else { None };
         if is_sure {
             let spread = spread(self.optics.as_deref(), &self.belief, part.guess);
-            let spill = self.spill();
-            let fitted =
-                fit::fit(&mut self.window, &mut PointSource::new(spread, SIZE_PX2, spill), guess, noise)?;
-            self.told(&fitted, noise, part)
+            let mut point = PointSource::new(spread, SIZE_PX2, self.spill());
+            let fitted = fit::fit(&mut self.window, &mut point, guess, noise);
+            let still = fitted.as_ref().filter(|fitted| fitted.fits());
+            if let (None, Some(moved)) = (still, moved) {
+                let fitted: Option<Fitted<7>> =
+                    fit::fit(&mut self.window, &mut Smeared::new(point, moved), guess, noise);
+                return self.told(&fitted?, noise, part);
+            }
+            self.told(&fitted?, noise, part)
+        } else if let Some(moved) = moved {
+            let mut streak = Smeared::new(self.belief.free(), moved);
+            let fitted: Option<Fitted<{ UNKNOWNS + 2 }>> =
+                fit::fit(&mut self.window, &mut streak, guess, noise);
+            self.told(&fitted?, noise, part)
         } else {
             let fitted = fit::fit(&mut self.window, &mut self.belief.free(), guess, noise)?;
             self.told(&fitted, noise, part)
@@ -265,7 +285,7 @@ impl Fitter {
 }
 
 /// The point spread at a place.
-fn spread<'a>(optics: Option<&'a Optics>, belief: &'a Belief, place: Pixel) -> &'a PointSpread {
+pub(super) fn spread<'a>(optics: Option<&'a Optics>, belief: &'a Belief, place: Pixel) -> &'a PointSpread {
     optics.map_or_else(|| belief.spread(), |optics| optics.spread.at(place))
 }
 

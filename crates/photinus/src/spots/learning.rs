@@ -7,7 +7,7 @@
 
 use nalgebra::{SMatrix, SVector};
 
-use super::fit::{PixelNoise, Shape, WIDTH};
+use super::fit::{PixelNoise, Shape, U, V, WIDTH};
 use super::noise_bins::NoiseBins;
 use super::settings::Noise;
 use super::window::Spill;
@@ -211,6 +211,7 @@ impl Told {
 }
 
 /// A point whose spread is not known yet: differences of the three numbers from what is believed are free.
+#[derive(Clone, Copy)]
 pub(super) struct FreeSpread<'a> {
     belief: &'a Belief,
     pub(super) weights: [f64; NUMBERS],
@@ -238,7 +239,8 @@ impl Shape<UNKNOWNS> for FreeSpread<'_> {
         (share, columns)
     }
 
-    fn place(&mut self, u: f64, v: f64, reach: usize) {
+    fn place(&mut self, numbers: &SVector<f64, UNKNOWNS>, reach: usize) {
+        let (u, v) = (numbers[U], numbers[V]);
         let [a, b, c] = &self.belief.by_number;
         let spreads = [&self.belief.spread, a, b, c];
         self.placed = Some(spreads.map(|spread| spread.placed(u as f32, v as f32, reach)));

@@ -32,12 +32,14 @@ impl Fitter {
         self.fits && self.optics.is_none() && self.frames < LEARNT_FRAMES
     }
 
-    /// The lowest level that may be that of a full pixel.
+    /// The lowest level that may be that of a full pixel, as far as it is known.
+    pub(super) fn lowest_full(&self) -> u8 {
+        self.optics.as_ref().map_or(self.full_level.lowest(), |optics| optics.sensor.full_from_dn())
+    }
+
+    /// The same with what a frame tells.
     pub(super) fn full_from(&mut self, frame: &FrameView<'_>, parts: &[Part]) -> u8 {
-        if let Some(optics) = &self.optics {
-            return optics.sensor.full_from_dn();
-        }
-        if self.frames < LEARNT_FRAMES {
+        if self.optics.is_none() && self.frames < LEARNT_FRAMES {
             for part in parts.iter().filter(|part| part.reason.is_none() && part.outline.area_px > 2) {
                 self.full_level.add(frame, &part.outline.extent, part.outline.peak);
             }
@@ -49,7 +51,7 @@ impl Fitter {
                 self.frames = 0;
             }
         }
-        self.full_level.lowest()
+        self.lowest_full()
     }
 
     /// Whether light fell on the window: no lens is so sharp that, wherever in a pixel a point's light falls, the eight pixels around the

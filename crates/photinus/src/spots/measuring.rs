@@ -52,6 +52,16 @@ impl Meter {
         self.fitter.learns()
     }
 
+    /// Whether light moved in the frame: then markers are long, too.
+    pub(super) fn is_smeared(&self) -> bool {
+        self.fitter.is_smeared
+    }
+
+    /// Takes components that were split for one part each where that is the light of a point that moved.
+    pub(super) fn join_smeared(&mut self, frame: &FrameView<'_>, parts: &mut Vec<Part>, split: &[Part]) {
+        self.fitter.join_smeared(frame, parts, split);
+    }
+
     /// Fits all parts of a frame, before they are measured one by one.
     pub(super) fn fit(&mut self, frame: &FrameView<'_>, parts: &[Part], near: &Neighbourhood) {
         self.fitter.fit(frame, parts, near);

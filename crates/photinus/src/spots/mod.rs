@@ -12,7 +12,7 @@
 //! rejection      what is no marker by its outline, and why
 //! neighbourhood  how far a part's light is its own                -> room for a window
 //! lessons        what the frame tells of the camera               -> point spread (learning), noise (noise_bins), full_level
-//! fitting        a window on each part, less its background (window, patch), and the camera's point spread in it (fit)
+//! fitting        a window on each part, less its background (window, patch), and the camera's point spread in it (fit), along a segment where it moved (smear)
 //!                -> centre and light of a point, with covariances
 //! measuring      spots of those; what is no point's light by its wings (wings) or a balanced window (centroid)
 //!                -> spots
@@ -45,6 +45,7 @@ mod rejection;
 mod ring;
 mod runs;
 mod settings;
+mod smear;
 mod splitting;
 mod summits;
 mod tiles;

@@ -26,6 +26,8 @@ pub(super) struct Part {
     pub(super) level: u8,
     /// Why it is no marker, once that is known.
     pub(super) reason: Option<Reason>,
+    /// Which of the frame's components that were split it is of, if any.
+    pub(super) split_from: Option<usize>,
     /// Odds for clutter by its outline and what lies beside it, against an even prior.
     pub(super) clutter_odds: f64,
 }
@@ -100,6 +102,7 @@ pub(super) fn outline(
         bright,
         level: background.level(u, v),
         reason: None,
+        split_from: None,
         clutter_odds: 0.0,
     }
 }

@@ -117,12 +117,26 @@ impl Outline {
         across * across + down * down <= reach * reach
     }
 
-    /// Sides of the rectangle with the same second moments, px: a row of n pixels is n by 1.
-    fn axes_px(&self) -> (f64, f64) {
+    /// Unit vector along the longer of its axes, and by how much that is the longer one, px.
+    pub(super) fn direction(&self) -> ((f64, f64), f64) {
+        let [xx, xy, yy] = self.variances_px2();
+        let (long, short) = self.axes_px();
+        let angle = 0.5 * libm::atan2(2.0 * xy, xx - yy);
+        ((libm::cos(angle), libm::sin(angle)), long - short)
+    }
+
+    /// Second moments about the middle along columns, across, along rows, px^2.
+    fn variances_px2(&self) -> [f64; 3] {
         let n = f64::from(self.area_px);
         let [u, v, uu, uv, vv] = self.moments.map(|sum| sum / n);
         let pixel = 1.0 / 12.0;
-        let (xx, xy, yy) = (uu - u * u + pixel, uv - u * v, vv - v * v + pixel);
+        [uu - u * u + pixel, uv - u * v, vv - v * v + pixel]
+    }
+
+    /// Sides of the rectangle with the same second moments, px: a row of n pixels is n by 1.
+    fn axes_px(&self) -> (f64, f64) {
+        let pixel = 1.0 / 12.0;
+        let [xx, xy, yy] = self.variances_px2();
         let middle = (xx + yy) / 2.0;
         let spread = ((xx - yy) * (xx - yy) / 4.0 + xy * xy).sqrt();
         ((12.0 * (middle + spread)).sqrt(), (12.0 * (middle - spread).max(pixel)).sqrt())

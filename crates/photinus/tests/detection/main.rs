@@ -16,4 +16,5 @@ mod large;
 mod mosaic;
 mod properties;
 mod scene;
+mod smeared;
 mod tiny;

@@ -7,6 +7,7 @@ use photinus::identity::design::{Designed, Effort, Requirements, Unmet, design};
 use photinus_io::codes::codes_text;
 
 use super::duty;
+use crate::ending::Content;
 use crate::failure::Failure;
 use crate::targets::{Targets, WriteArgs};
 use crate::terminal::Terminal;
@@ -105,7 +106,7 @@ impl Args {
 
 /// Runs the command.
 pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<(), Failure> {
-    let target = Targets::new(args.write, []).file(&args.out)?;
+    let target = Targets::new(args.write, []).file(&args.out, Content::Codes)?;
     let times = u64::from(args.effort);
     let usual = Effort::default();
     let effort = Effort { seed: args.seed, work: usual.work * times, branches: usual.branches * times };

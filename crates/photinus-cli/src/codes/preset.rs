@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use photinus_io::codes::{PRESETS, Preset};
 
+use crate::ending::Content;
 use crate::failure::Failure;
 use crate::targets::{Targets, WriteArgs};
 use crate::terminal::Terminal;
@@ -40,7 +41,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<(), Failure> {
         let names: Vec<&str> = PRESETS.iter().map(|preset| preset.name).collect();
         return Err(Failure::Input(format!("{name}: no book of this name; there are {}", names.join(", "))));
     };
-    let target = Targets::new(args.write, []).file(&args.out)?;
+    let target = Targets::new(args.write, []).file(&args.out, Content::Codes)?;
     match target.is_standard() {
         true => terminal.result(preset.text.trim_end()),
         false => target.write(preset.text.as_bytes()).map_err(Failure::running),

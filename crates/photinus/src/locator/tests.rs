@@ -9,6 +9,7 @@ use rand_pcg::Pcg64;
 use super::*;
 use crate::airframe::Ring;
 use crate::camera::Bearing;
+use crate::pose;
 use crate::camera::{Ideal, IdealLaw, Model, Pixel};
 use crate::spots::Extent;
 
@@ -112,6 +113,7 @@ fn locate(
         owners.extend(std::iter::repeat_n(owner, spots.len()));
         all.extend(spots);
     }
+    locator.forget();
     let located = locator.locate_spots(&all, gravity, &mut |_| ());
     let whole = |owner: usize| {
         let own: Vec<usize> = (0..owners.len()).filter(|&spot| owners[spot] == owner).collect();
@@ -122,7 +124,9 @@ fn locate(
 }
 
 fn locator(airframe: &Airframe) -> Locator {
-    Locator::new(camera(), airframe, None, Settings::default()).unwrap()
+    // Such spots are as good as the airframe: nothing is off by a hand's work.
+    let pose = pose::Settings { marker_sigma_m: 0.001, scale_sigma: 0.0, unit_sigma: 0.12, ..pose::Settings::default() };
+    Locator::new(camera(), airframe, None, Settings { pose, ..Settings::default() }).unwrap()
 }
 
 #[test]

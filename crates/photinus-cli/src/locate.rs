@@ -79,6 +79,9 @@ pub(crate) struct Args {
     /// Neighbours less likely than this are left out: clutter now and then looks like one
     #[arg(long, value_name = "SHARE", default_value_t = Settings::DEFAULT_MIN_PROBABILITY, value_parser = probability)]
     min_probability: f64,
+    /// Most work on one frame, in looks at a handful of spots, a few microseconds each: bounds the time of frames full of clutter
+    #[arg(long, value_name = "LOOKS", default_value_t = Settings::DEFAULT_BUDGET)]
+    budget: u32,
     #[command(flatten)]
     pose_options: PoseArgs,
     #[command(flatten)]
@@ -124,6 +127,7 @@ impl Args {
             max_tilt_rad: self.max_tilt.to_radians(),
             pose: self.pose_options.settings(airframe),
             min_probability: self.min_probability,
+            budget: self.budget,
         }
     }
 

@@ -14,7 +14,7 @@ const MOST_WEIGHED: usize = 8;
 const POOR_GAIN: f64 = -8.0;
 
 /// Room to look for other handfuls in.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(super) struct Alternatives {
     /// The observation, and the nearest others.
     window: Vec<usize>,
@@ -25,14 +25,24 @@ pub(super) struct Alternatives {
 }
 
 impl Alternatives {
-    /// Looks at the handfuls of an observation; hands on the likeliest, each ascending.
+    /// Room for the handfuls of one observation.
+    pub(super) fn with_room() -> Self {
+        Self {
+            window: Vec::with_capacity(1 + NEAREST),
+            nearest: Vec::with_capacity(512),
+            handful: Vec::with_capacity(1 + NEAREST),
+            looked_at: Vec::with_capacity(1 << NEAREST),
+        }
+    }
+
+    /// Looks at the handfuls of an observation; hands on the likeliest, each ascending. Returns how many it looked at.
     pub(super) fn around(
         &mut self,
         context: &Context<'_>,
         observation: usize,
         matcher: &mut Matcher,
         mut with: impl FnMut(&[usize], &mut Matcher),
-    ) {
+    ) -> u32 {
         self.open_window(context, observation, matcher);
         self.looked_at.clear();
         let most = matcher.most_visible().max(1) as u32;
@@ -53,6 +63,7 @@ impl Alternatives {
             self.gather(self.looked_at[index].1);
             with(&self.handful, matcher);
         }
+        1 << (self.window.len() - 1)
     }
 
     fn open_window(&mut self, context: &Context<'_>, observation: usize, matcher: &Matcher) {

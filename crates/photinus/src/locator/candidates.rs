@@ -4,6 +4,8 @@ use super::neighbour::{Distance, Orientation, Position};
 use crate::camera::Bearing;
 use crate::pose::{Misfit, Mode};
 
+/// Modes that a candidate has at most, or nearly.
+const MODES_EACH: usize = 32;
 /// A candidate is clear that is likelier than clutter by so much, nats, ...
 const CLEAR_GAIN: f64 = 12.0;
 /// ... whose misfit is no more than this, in sigma of any one observation, and no rarer than that as a whole.
@@ -49,9 +51,13 @@ pub(super) struct Candidates {
 }
 
 impl Candidates {
-    /// None yet, with room for those of a crowded frame.
-    pub(super) fn with_room() -> Self {
-        Self { all: Vec::with_capacity(1024), members: Vec::with_capacity(4096), modes: Vec::with_capacity(8192) }
+    /// None yet, with room for so many.
+    pub(super) fn with_room(count: usize) -> Self {
+        Self {
+            all: Vec::with_capacity(count),
+            members: Vec::with_capacity(8 * count),
+            modes: Vec::with_capacity(MODES_EACH * count),
+        }
     }
 
     pub(super) fn clear(&mut self) {

@@ -129,7 +129,7 @@ impl Clutter {
                     libm::log((WORTH_POINTS / LIGHT_RANGE + there) / (WORTH_POINTS + points))
                 });
                 self.log_density[index] = log_per_px2 - libm::log(rad2_per_px) + light
-                    - sighting.spot.marker_log_odds
+                    - sighting.spot.marker_log_odds.min(0.0)
                     - sighting.signal.map_or(0.0, |_| BLINKS_BY_CHANCE);
             }
         }

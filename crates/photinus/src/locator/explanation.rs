@@ -43,17 +43,17 @@ struct Choice {
 }
 
 impl Explanation {
-    /// Nothing yet, with room for the largest part.
-    pub(super) fn with_room() -> Self {
+    /// Nothing yet, with room for so many candidates and the largest part.
+    pub(super) fn with_room(count: usize) -> Self {
         Self {
-            probability: Vec::new(),
+            probability: Vec::with_capacity(count),
             clutter: Vec::new(),
-            gains: Vec::new(),
+            gains: Vec::with_capacity(count),
             best: Vec::new(),
-            left: Vec::new(),
+            left: Vec::with_capacity(count),
             roots: Vec::new(),
             spots: Vec::new(),
-            options: Vec::new(),
+            options: Vec::with_capacity(count),
             sums: Vec::with_capacity(1 << MOST_TOGETHER),
             ways: Vec::with_capacity(1 << MOST_TOGETHER),
             done: Vec::new(),

@@ -20,6 +20,7 @@ mod context;
 mod error;
 mod explanation;
 mod grouping;
+mod inference;
 mod matching;
 mod memory;
 mod neighbour;
@@ -37,31 +38,11 @@ use crate::camera::{Camera, Watched};
 use crate::frame::{FrameView, Mask};
 use crate::ranging::SpotCurve;
 use crate::spots::{Detector, Reason, Rejected, Spot};
-use alternatives::Alternatives;
-use candidates::Candidates;
-use clutter::Clutter;
-use context::Context;
 pub use error::{LocateError, LocatorError};
-use explanation::Explanation;
-use grouping::Groups;
-use matching::Matcher;
-use memory::Memory;
+use inference::Inference;
 pub use neighbour::{Distance, Located, Neighbour, Orientation, Position, RunnerUp};
-use posing::Poser;
 pub use settings::Settings;
 pub use sighting::Sighting;
-use telling::Telling;
-
-/// First looks, each at what the one before leaves as clutter.
-const LOOKS: usize = 4;
-/// An observation that is likelier than this to be clutter may be another neighbour's.
-const DOUBTFUL: f64 = 0.05;
-/// Rounds of looking for other ways to put observations together, each at what the one before left.
-const ROUNDS: usize = 2;
-/// However seldom neighbours were, there are so many per frame.
-const FEWEST_NEIGHBOURS: f64 = 0.2;
-/// Rounds of telling how dense clutter is from what is explained, and what is explained from that.
-const CLUTTER_ROUNDS: usize = 2;
 
 /// A stage of the flow, named when it ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -84,20 +65,7 @@ pub struct Locator {
     curve: Option<SpotCurve>,
     mask: Option<Mask>,
     detector: Detector,
-    matcher: Matcher,
-    poser: Poser,
-    groups: Groups,
-    memory: Memory,
-    /// Clutter after a first look, and with what is explained.
-    first_clutter: Clutter,
-    clutter: Clutter,
-    candidates: Candidates,
-    alternatives: Alternatives,
-    doubtful: Vec<usize>,
-    explanation: Explanation,
-    telling: Telling,
-    use_brightness: bool,
-    min_probability: f64,
+    inference: Inference,
     order: Vec<usize>,
     located: Located,
 }
@@ -120,25 +88,13 @@ impl Locator {
             return Err(LocatorError::Probability(settings.min_probability));
         }
         let detector = Detector::with_optics(settings.spots, camera.optics().cloned())?;
-        let memory = Memory::new(Clutter::counts_of([camera.width(), camera.height()]));
+        let inference = Inference::new(&camera, airframe, &settings)?;
         Ok(Self {
             camera,
             curve,
             mask: None,
             detector,
-            matcher: Matcher::new(airframe, settings.max_tilt_rad, &settings.pose, posing::faintest_light(&settings.spots)),
-            poser: Poser::new(airframe, settings.pose, &settings.spots)?,
-            groups: Groups::default(),
-            memory,
-            first_clutter: Clutter::default(),
-            clutter: Clutter::default(),
-            candidates: Candidates::with_room(),
-            alternatives: Alternatives::default(),
-            doubtful: Vec::new(),
-            explanation: Explanation::with_room(),
-            telling: Telling::default(),
-            use_brightness: settings.pose.use_brightness,
-            min_probability: settings.min_probability,
+            inference,
             order: Vec::new(),
             located: Located::with_room(),
         })
@@ -158,7 +114,7 @@ impl Locator {
 
     /// Forgets what frames told of the power of LEDs and of clutter: for frames that do not follow on those before.
     pub fn forget(&mut self) {
-        self.memory.forget();
+        self.inference.forget();
     }
 
     /// The camera in use.
@@ -241,96 +197,10 @@ impl Locator {
         gravity: Option<&Unit<Vector3<f64>>>,
         finished: &mut dyn FnMut(Stage),
     ) -> &Located {
-        let size = [self.camera.width(), self.camera.height()];
-        let (sightings, with_light) = (&self.located.sightings, self.use_brightness);
         let watched = Watched::new(&self.camera, self.mask.as_ref());
-        let context = Context { sightings, gravity, watched, power: None, clutter: &[], log_neighbours: 0.0 };
-        let of_frame = self.groups.sort_out(&context, &mut self.matcher);
-        self.groups.look(&context, &mut self.matcher);
-        let memory = &self.memory;
-        let looked = |groups: &mut Groups, clutter: &mut Clutter, supposed: f64| {
-            groups.suppose(sightings.len(), supposed);
-            let mut total = 0.0;
-            for _ in 0..LOOKS {
-                clutter.measure(sightings, groups, size, with_light, Some(memory), |spot| groups.clutter(spot));
-                total = groups.weigh_looks(clutter.log_density(), log_neighbours(groups.neighbours(), Some(memory)));
-            }
-            total
-        };
-        // All clutter and no clutter both bear themselves out: what makes the frame likelier is right.
-        let [all, none] = [1.0, 0.0].map(|share| looked(&mut self.groups, &mut self.first_clutter, share));
-        if all > none {
-            looked(&mut self.groups, &mut self.first_clutter, 1.0);
-        }
-        let clear_power = self.groups.clear_log_power(&context, &mut self.matcher);
-        finished(Stage::Grouping);
-        let mut log_density_of_neighbours = log_neighbours(self.groups.neighbours(), Some(&self.memory));
-        self.clutter.measure(sightings, &self.groups, size, with_light, Some(&self.memory), |spot| self.groups.clutter(spot));
-        let context = Context {
-            power: self.memory.power().or(of_frame),
-            clutter: self.first_clutter.log_density(),
-            log_neighbours: log_density_of_neighbours,
-            ..context
-        };
-        self.candidates.clear();
-        for group in 0..self.groups.len() {
-            self.poser.weigh(&context, self.groups.group(group), &mut self.matcher, &mut self.candidates);
-        }
-        self.explanation.explain(&self.candidates, context.clutter, context.log_neighbours);
-        let power = context.power;
-        for round in 0..ROUNDS {
-            let clutter = if round == 0 { self.first_clutter.log_density() } else { self.clutter.log_density() };
-            let context = Context { sightings, gravity, watched, power, clutter, log_neighbours: log_density_of_neighbours };
-            self.doubtful.clear();
-            self.doubtful.extend((0..sightings.len()).filter(|&spot| self.explanation.clutter(spot) > DOUBTFUL));
-            if round == 0 {
-                for group in 0..self.groups.len() {
-                    let members = self.groups.group(group);
-                    if self.candidates.is_doubtful(members, clutter, log_density_of_neighbours) {
-                        self.doubtful.extend_from_slice(members);
-                    }
-                }
-                self.doubtful.sort_unstable();
-                self.doubtful.dedup();
-            }
-            let Self { alternatives, doubtful, matcher, poser, candidates, .. } = self;
-            for &spot in doubtful.iter() {
-                alternatives.around(&context, spot, matcher, |handful, matcher| {
-                    poser.weigh(&context, handful, matcher, candidates);
-                });
-            }
-            let Self { explanation, clutter, groups, candidates, memory, .. } = self;
-            let mut settle = |supposed: Option<f64>| {
-                let first = |spot: usize| supposed.unwrap_or(groups.clutter(spot));
-                clutter.measure(sightings, groups, size, with_light, Some(memory), first);
-                log_density_of_neighbours = log_neighbours(groups.neighbours(), Some(memory));
-                for _ in 0..CLUTTER_ROUNDS {
-                    explanation.explain(candidates, clutter.log_density(), log_density_of_neighbours);
-                    clutter.measure(sightings, groups, size, with_light, Some(memory), |spot| explanation.clutter(spot));
-                    log_density_of_neighbours = log_neighbours(explanation.neighbours(), Some(memory));
-                }
-                explanation.explain(candidates, clutter.log_density(), log_density_of_neighbours);
-                explanation.log_density(clutter.log_density())
-            };
-            // As with first looks, little clutter and much both bear themselves out.
-            let [much, little] = [None, Some(0.0)].map(&mut settle);
-            if much > little {
-                settle(None);
-            }
-        }
-        self.memory.remember(self.clutter.counts(), self.explanation.neighbours(), clear_power);
-        self.telling.tell(&self.candidates, &self.explanation, self.min_probability, &mut self.located);
-        finished(Stage::Posing);
+        self.inference.explain(&mut self.located, gravity, watched, finished);
         &self.located
     }
-}
-
-/// Logarithm of how many neighbours there are per sr, where a frame has so many: as many as that tells without one of them, with those that are
-/// remembered, and one to begin with; in a field of half the sphere.
-fn log_neighbours(in_frame: f64, memory: Option<&Memory>) -> f64 {
-    let (remembered, frames) = memory.map_or((0.0, 0.0), |memory| (memory.neighbours(), memory.frames() as f64));
-    let per_frame = (1.0 + remembered + (in_frame - 1.0).max(0.0)) / (2.0 + frames);
-    libm::log(per_frame.max(FEWEST_NEIGHBOURS) / core::f64::consts::TAU)
 }
 
 /// Gives every spot its bearing; those that have none are rejected.

@@ -81,6 +81,8 @@ pub struct Located {
     pub rejected: Vec<Rejected>,
     /// Who is there, in the order of their first sighting.
     pub neighbours: Vec<Neighbour>,
+    /// Whether the frame was explained within the budget; if not, neighbours may be missing.
+    pub is_complete: bool,
     pub(super) members: Vec<usize>,
     pub(super) modes: Vec<Mode>,
 }
@@ -88,7 +90,7 @@ pub struct Located {
 impl Located {
     /// Nothing yet, with room for the modes of a crowded frame.
     pub(super) fn with_room() -> Self {
-        Self { modes: Vec::with_capacity(4096), ..Self::default() }
+        Self { modes: Vec::with_capacity(4096), is_complete: true, ..Self::default() }
     }
 
     /// Which sightings are this neighbour, ascending.

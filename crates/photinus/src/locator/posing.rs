@@ -63,7 +63,7 @@ impl Poser {
             scale_sigma: settings.scale_sigma,
             visible: Visible { faintest_light: faintest_light(spots), watched: None, others: &[] },
             within: Vec::with_capacity(airframe.markers().len()),
-            others: Vec::new(),
+            others: Vec::with_capacity(512),
         })
     }
 

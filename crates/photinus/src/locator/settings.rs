@@ -16,11 +16,16 @@ pub struct Settings {
     pub pose: pose::Settings,
     /// Neighbours less likely than this are not told, 0 to 1. Default [`Self::DEFAULT_MIN_PROBABILITY`].
     pub min_probability: f64,
+    /// Most work on one frame, in first looks at a handful of spots (a few microseconds each): time is bounded, and the most probable comes first.
+    /// Default [`Self::DEFAULT_BUDGET`].
+    pub budget: u32,
 }
 
 impl Settings {
     /// Neighbours as likely as not are told.
     pub const DEFAULT_MIN_PROBABILITY: f64 = 0.5;
+    /// Enough for dozens of neighbours that overlap.
+    pub const DEFAULT_BUDGET: u32 = 12_000;
 }
 
 impl Default for Settings {
@@ -30,6 +35,7 @@ impl Default for Settings {
             max_tilt_rad: DistanceBounds::DEFAULT_MAX_TILT_RAD,
             pose: pose::Settings::default(),
             min_probability: Self::DEFAULT_MIN_PROBABILITY,
+            budget: Self::DEFAULT_BUDGET,
         }
     }
 }

@@ -18,7 +18,7 @@ const SAME_SIGMAS: f64 = 5.0;
 const NEGLIGIBLE: f64 = 1e-3;
 
 /// Room to tell neighbours in.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(super) struct Telling {
     order: Vec<usize>,
     taken: Vec<bool>,
@@ -27,6 +27,11 @@ pub(super) struct Telling {
 }
 
 impl Telling {
+    /// Room for so many candidates.
+    pub(super) fn with_room(count: usize) -> Self {
+        Self { order: Vec::with_capacity(count), taken: Vec::new(), same: Vec::with_capacity(count) }
+    }
+
     /// Puts the neighbours that are at least so likely into `located`, in the order of their first observation.
     pub(super) fn tell(&mut self, candidates: &Candidates, explanation: &Explanation, least: f64, located: &mut Located) {
         located.neighbours.clear();

@@ -1,0 +1,252 @@
+//! Observations -> neighbours: the frame explained as a whole, within a budget of work.
+//!
+//! ```text
+//! groups        which observations are next to each other          grouping
+//! first looks   how much of that is clutter                        matching, clutter
+//! candidates    each group in full, and other ways to put together  posing; alternatives
+//!               what is doubtful
+//! explanation   how likely each candidate is, all taken together    explanation, clutter
+//! neighbours    the likeliest that share nothing                    telling
+//! ```
+//!
+//! How dense clutter is and how many neighbours there are is told by the frame itself, with what [`Memory`] has of those before. Little clutter
+//! and much both bear themselves out (what is near clutter is clutter): both are tried, and what makes the frame likelier is right.
+
+use nalgebra::{Unit, Vector3};
+
+use super::alternatives::Alternatives;
+use super::candidates::Candidates;
+use super::clutter::Clutter;
+use super::context::Context;
+use super::explanation::Explanation;
+use super::grouping::Groups;
+use super::matching::Matcher;
+use super::memory::Memory;
+use super::neighbour::Located;
+use super::posing::{self, Poser};
+use super::settings::Settings;
+use super::telling::Telling;
+use super::{Sighting, Stage};
+use crate::airframe::Airframe;
+use crate::camera::{Camera, Watched};
+use crate::pose::{self, LogLight};
+
+/// First looks, each at what the one before leaves as clutter.
+const LOOKS: usize = 4;
+/// An observation that is likelier than this to be clutter may be another neighbour's.
+const DOUBTFUL: f64 = 0.05;
+/// Rounds of looking for other ways to put observations together, each at what the one before left.
+const ROUNDS: usize = 2;
+/// However seldom neighbours were, there are so many per frame.
+const FEWEST_NEIGHBOURS: f64 = 0.2;
+/// Rounds of telling how dense clutter is from what is explained, and what is explained from that.
+const CLUTTER_ROUNDS: usize = 2;
+/// Weighing a candidate in full is as much work as so many first looks.
+const LOOKS_PER_WEIGHING: u32 = 16;
+
+/// Explains the frames of one camera. Keeps its room.
+#[derive(Debug)]
+pub(super) struct Inference {
+    size: [usize; 2],
+    with_light: bool,
+    min_probability: f64,
+    budget: u32,
+    matcher: Matcher,
+    poser: Poser,
+    groups: Groups,
+    memory: Memory,
+    /// Clutter after a first look, and with what is explained.
+    first_clutter: Clutter,
+    clutter: Clutter,
+    candidates: Candidates,
+    alternatives: Alternatives,
+    doubtful: Vec<usize>,
+    explanation: Explanation,
+    telling: Telling,
+}
+
+impl Inference {
+    pub(super) fn new(
+        camera: &Camera,
+        airframe: &Airframe,
+        settings: &Settings,
+    ) -> Result<Self, pose::SettingsError> {
+        let size = [camera.width(), camera.height()];
+        // A larger budget finds its room as it goes.
+        let most = (settings.budget.min(Settings::DEFAULT_BUDGET) / LOOKS_PER_WEIGHING) as usize;
+        let faintest_light = posing::faintest_light(&settings.spots);
+        Ok(Self {
+            size,
+            with_light: settings.pose.use_brightness,
+            min_probability: settings.min_probability,
+            budget: settings.budget,
+            poser: Poser::new(airframe, settings.pose, &settings.spots)?,
+            matcher: Matcher::new(airframe, settings.max_tilt_rad, &settings.pose, faintest_light),
+            groups: Groups::default(),
+            memory: Memory::new(Clutter::counts_of(size)),
+            first_clutter: Clutter::default(),
+            clutter: Clutter::default(),
+            candidates: Candidates::with_room(most),
+            alternatives: Alternatives::with_room(),
+            doubtful: Vec::new(),
+            explanation: Explanation::with_room(most),
+            telling: Telling::with_room(most),
+        })
+    }
+
+    /// Forgets what frames told of the power of LEDs and of clutter.
+    pub(super) fn forget(&mut self) {
+        self.memory.forget();
+    }
+
+    /// Tells the neighbours behind the observations of `located`.
+    pub(super) fn explain(
+        &mut self,
+        located: &mut Located,
+        gravity: Option<&Unit<Vector3<f64>>>,
+        watched: Watched<'_>,
+        finished: &mut dyn FnMut(Stage),
+    ) {
+        let sightings = std::mem::take(&mut located.sightings);
+        let context = Context { sightings: &sightings, gravity, watched, power: None, clutter: &[], log_neighbours: 0.0 };
+        let of_frame = self.groups.sort_out(&context, &mut self.matcher);
+        self.look(&context);
+        let clear_power = self.groups.clear_log_power(&context, &mut self.matcher);
+        finished(Stage::Grouping);
+        let context = Context { power: self.memory.power().or(of_frame), ..context };
+        let mut work = Work { left: self.budget };
+        self.weigh_groups(&context, &mut work);
+        for round in 0..ROUNDS {
+            self.doubt(&sightings, round);
+            self.look_for_others(&context, round, &mut work);
+            self.settle(&sightings);
+        }
+        self.memory.remember(self.clutter.counts(), self.explanation.neighbours(), clear_power);
+        located.sightings = sightings;
+        located.is_complete = work.left > 0;
+        self.telling.tell(&self.candidates, &self.explanation, self.min_probability, located);
+        finished(Stage::Posing);
+    }
+
+    /// Takes a first look at each group, and tells from that how dense clutter is.
+    fn look(&mut self, context: &Context<'_>) {
+        self.groups.look(context, &mut self.matcher);
+        let mut supposed = |share: f64| {
+            self.groups.suppose(context.sightings.len(), share);
+            let mut log_density = 0.0;
+            for _ in 0..LOOKS {
+                let (groups, memory) = (&self.groups, Some(&self.memory));
+                let share = |spot: usize| groups.clutter(spot);
+                self.first_clutter.measure(context.sightings, groups, self.size, self.with_light, memory, share);
+                let log_neighbours = log_neighbours(self.groups.neighbours(), &self.memory);
+                log_density = self.groups.weigh_looks(self.first_clutter.log_density(), log_neighbours);
+            }
+            log_density
+        };
+        let [much, little] = [1.0, 0.0].map(&mut supposed);
+        if much > little {
+            supposed(1.0);
+        }
+    }
+
+    fn weigh_groups(&mut self, context: &Context<'_>, work: &mut Work) {
+        let log_neighbours = log_neighbours(self.groups.neighbours(), &self.memory);
+        let context = Context { clutter: self.first_clutter.log_density(), log_neighbours, ..*context };
+        self.candidates.clear();
+        for group in 0..self.groups.len() {
+            if work.weigh() {
+                self.poser.weigh(&context, self.groups.group(group), &mut self.matcher, &mut self.candidates);
+            }
+        }
+        self.explanation.explain(&self.candidates, context.clutter, log_neighbours);
+    }
+
+    /// Finds the observations that may be something else than they seem, the brightest first.
+    fn doubt(&mut self, sightings: &[Sighting], round: usize) {
+        let Self { doubtful, explanation, groups, candidates, memory, first_clutter, .. } = self;
+        doubtful.clear();
+        doubtful.extend((0..sightings.len()).filter(|&spot| explanation.clutter(spot) > DOUBTFUL));
+        if round == 0 {
+            let log_neighbours = log_neighbours(groups.neighbours(), memory);
+            for members in (0..groups.len()).map(|group| groups.group(group)) {
+                if candidates.is_doubtful(members, first_clutter.log_density(), log_neighbours) {
+                    doubtful.extend_from_slice(members);
+                }
+            }
+        }
+        let light = |spot: usize| sightings[spot].log_light.map_or(0.0, |LogLight { value, .. }| value);
+        doubtful.sort_unstable_by(|&a, &b| light(b).total_cmp(&light(a)).then(a.cmp(&b)));
+        doubtful.dedup();
+    }
+
+    /// Weighs other ways to put together what is doubtful.
+    fn look_for_others(&mut self, context: &Context<'_>, round: usize, work: &mut Work) {
+        let (clutter, neighbours) = match round {
+            0 => (&self.first_clutter, self.groups.neighbours()),
+            _ => (&self.clutter, self.explanation.neighbours()),
+        };
+        let log_neighbours = log_neighbours(neighbours, &self.memory);
+        let context = Context { clutter: clutter.log_density(), log_neighbours, ..*context };
+        let Self { alternatives, doubtful, matcher, poser, candidates, .. } = self;
+        for &spot in doubtful.iter() {
+            if work.left == 0 {
+                break;
+            }
+            let looks = alternatives.around(&context, spot, matcher, |handful, matcher| {
+                if candidates.find(handful).is_none() && work.weigh() {
+                    poser.weigh(&context, handful, matcher, candidates);
+                }
+            });
+            work.look(looks);
+        }
+    }
+
+    /// Explains the frame by its candidates, with clutter and neighbours as dense as the explanation itself has them.
+    fn settle(&mut self, sightings: &[Sighting]) {
+        let Self { explanation, clutter, groups, candidates, memory, size, with_light, .. } = self;
+        let mut supposed = |share: Option<f64>| {
+            let first = |spot: usize| share.unwrap_or(groups.clutter(spot));
+            clutter.measure(sightings, groups, *size, *with_light, Some(memory), first);
+            let mut density = log_neighbours(groups.neighbours(), memory);
+            for _ in 0..CLUTTER_ROUNDS {
+                explanation.explain(candidates, clutter.log_density(), density);
+                let share = |spot: usize| explanation.clutter(spot);
+                clutter.measure(sightings, groups, *size, *with_light, Some(memory), share);
+                density = log_neighbours(explanation.neighbours(), memory);
+            }
+            explanation.explain(candidates, clutter.log_density(), density);
+            explanation.log_density(clutter.log_density())
+        };
+        let [much, little] = [None, Some(0.0)].map(&mut supposed);
+        if much > little {
+            supposed(None);
+        }
+    }
+}
+
+/// Work that is left for a frame, in first looks. Counted, not timed: the same frame is given up at the same place everywhere.
+struct Work {
+    left: u32,
+}
+
+impl Work {
+    /// Takes the work of so many first looks.
+    fn look(&mut self, looks: u32) {
+        self.left = self.left.saturating_sub(looks);
+    }
+
+    /// Takes the work of weighing a candidate in full; `false` where that much is not left.
+    fn weigh(&mut self) -> bool {
+        let enough = self.left >= LOOKS_PER_WEIGHING;
+        self.look(LOOKS_PER_WEIGHING);
+        enough
+    }
+}
+
+/// Logarithm of how many neighbours there are per sr, where a frame has so many: as many as that tells without one of them, with those that are
+/// remembered, and one to begin with; in a field of half the sphere.
+fn log_neighbours(in_frame: f64, memory: &Memory) -> f64 {
+    let per_frame =
+        (1.0 + memory.neighbours() + (in_frame - 1.0).max(0.0)) / (2.0 + memory.frames() as f64);
+    libm::log(per_frame.max(FEWEST_NEIGHBOURS) / core::f64::consts::TAU)
+}

@@ -179,6 +179,18 @@ impl<'a> ComparedFrame<'a> {
         self.record.map_or(&[], |record| &record.neighbours)
     }
 
+    /// The neighbour of truth that a reported one is, with the two side by side.
+    pub(crate) fn pair_of(&self, found: usize) -> Option<(usize, Pair<'a>)> {
+        let place = self.neighbours.iter().position(|pair| pair.1 == found)?;
+        self.pairs().nth(place).map(|pair| (self.neighbours[place].0, pair))
+    }
+
+    /// Indices of the neighbours of truth that can be seen: with an LED in the image, or all where truth lists no LED at all.
+    pub(crate) fn visible(&self, has_leds: bool) -> impl Iterator<Item = usize> + use<'a> {
+        let there = self.truth.neighbours.iter().enumerate();
+        there.filter(move |(_, there)| !has_leds || !there.leds.is_empty()).map(|(index, _)| index)
+    }
+
     fn pairs(&self) -> impl Iterator<Item = Pair<'a>> + use<'a, '_> {
         let pair = |&(truth, found): &(usize, usize)| Pair {
             frame: self.truth.frame,

@@ -6,10 +6,12 @@
 
 mod damage;
 mod data;
+mod photos;
 mod python;
 mod skipped;
 
 pub use damage::damage;
 pub use data::real_data;
+pub use photos::natural_photos;
 pub use python::python_with;
 pub use skipped::Skipped;

@@ -54,7 +54,12 @@ struct Tally {
 fn partly_seen(airframe: &Airframe, views: usize, masked: bool) -> [Tally; 7] {
     let camera = camera();
     let mut rng = Pcg64::new(5, 6);
-    let pose = pose::Settings { scale_sigma: 0.0, marker_sigma_m: 0.001, unit_sigma: 0.12, ..pose::Settings::default() };
+    let pose = pose::Settings {
+        scale_sigma: 0.0,
+        marker_sigma_m: 0.001,
+        unit_sigma: 0.12,
+        ..pose::Settings::default()
+    };
     let settings = Settings { pose, min_probability: 0.0, ..Settings::default() };
     let mut locator = Locator::new(camera.clone(), airframe, None, settings).expect("a locator");
     let mask = masked.then(mask);

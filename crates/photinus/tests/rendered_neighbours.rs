@@ -83,10 +83,14 @@ fn truth_never_leaves_the_bounds_of_a_rendered_neighbour() {
     let down: Unit<Vector3<f64>> = Vector3::y_axis();
     for (airframe, reached) in [(hexarotor(), 0.73), (quadrotor(), 0.46)] {
         let mut rng = Pcg64::new(11, 3);
-        let pose = pose::Settings { scale_sigma: 0.0, marker_sigma_m: 0.001, unit_sigma: 0.12, ..pose::Settings::default() };
+        let pose = pose::Settings {
+            scale_sigma: 0.0,
+            marker_sigma_m: 0.001,
+            unit_sigma: 0.12,
+            ..pose::Settings::default()
+        };
         let settings = Settings { pose, ..Settings::default() };
-        let mut locator =
-            Locator::new(camera.clone(), &airframe, None, settings).expect("a locator");
+        let mut locator = Locator::new(camera.clone(), &airframe, None, settings).expect("a locator");
         let (mut frames, mut alone, mut normalised) = (0, 0, 0.0);
         for round in 0..120 {
             let distance_m = libm::exp(uniform(&mut rng, libm::log(1.2), libm::log(12.0)));

@@ -93,7 +93,8 @@ fn neighbours_are_the_same_bit_for_bit_on_every_machine() {
     let mut total = Hash::new();
     let (mut neighbours, mut modes, mut posed) = (0, 0, 0);
     for (airframe, seed) in [(hexarotor(), 1), (quadrotor(), 2)] {
-        let mut locator = Locator::new(camera.clone(), &airframe, None, Settings::default()).expect("a locator");
+        let mut locator =
+            Locator::new(camera.clone(), &airframe, None, Settings::default()).expect("a locator");
         let mut dice = Dice(seed);
         for frame in 0..8 {
             let mut light = vec![6.0; WIDTH * HEIGHT];

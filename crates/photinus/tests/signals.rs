@@ -98,7 +98,12 @@ impl View {
 
 /// What is true of these neighbours.
 fn settings() -> Settings {
-    let pose = pose::Settings { scale_sigma: 0.0, marker_sigma_m: 0.001, unit_sigma: 0.12, ..pose::Settings::default() };
+    let pose = pose::Settings {
+        scale_sigma: 0.0,
+        marker_sigma_m: 0.001,
+        unit_sigma: 0.12,
+        ..pose::Settings::default()
+    };
     Settings { pose, min_probability: 0.0, ..Settings::default() }
 }
 
@@ -171,8 +176,7 @@ fn signals_that_tell_no_turn_leave_the_pose_as_it_is() {
     let camera = camera();
     let mut rng = Pcg64::new(6, 9);
     for (airframe, turns) in [(hexarotor(|_| 4), 6.0), (hexarotor(|led| led % 2), 3.0)] {
-        let mut locator =
-            Locator::new(camera.clone(), &airframe, None, settings()).expect("a locator");
+        let mut locator = Locator::new(camera.clone(), &airframe, None, settings()).expect("a locator");
         for _ in 0..30 {
             let view = View::draw(&mut rng);
             let mut spots = view.spots(&airframe, &camera, &mut rng);

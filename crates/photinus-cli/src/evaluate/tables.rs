@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use photinus_evaluate::{Bounds, ByRange, IdentityScore, Scores, Spread, TrackScore};
+use photinus_evaluate::{Bounds, ByRange, IdentityScore, ProbabilityScore, Scores, Spread, TrackScore};
 
 use crate::aligned::{Aligned, Side};
 
@@ -26,6 +26,7 @@ impl fmt::Display for Tables<'_> {
         }
         writeln!(f)?;
         neighbours(f, scores)?;
+        probability(f, scores.probability.as_ref())?;
         spots(f, scores)?;
         errors(f, scores)?;
         bounds(f, &scores.bounds)?;
@@ -76,6 +77,34 @@ fn neighbours(f: &mut fmt::Formatter<'_>, scores: &Scores) -> fmt::Result {
     })?;
     let (merged, split) = (scores.neighbours.merged, scores.neighbours.split);
     writeln!(f, "  {merged} taken together with another, {split} taken apart")
+}
+
+/// Reliability by decile, then what each least probability keeps.
+fn probability(f: &mut fmt::Formatter<'_>, score: Option<&ProbabilityScore>) -> fmt::Result {
+    let Some(score) = score else { return Ok(()) };
+    let mut reliability = Aligned::new(2, &[Side::Right; 5]);
+    reliability.row(["claimed %", "count", "mean claim %", "right %", "far off"]);
+    for decile in &score.deciles {
+        let right = decile.right as f64 / decile.count as f64;
+        reliability.row([
+            format!("{:.0}-{:.0}", 100.0 * decile.from, 100.0 * decile.to),
+            decile.count.to_string(),
+            percent(Some(decile.claimed)),
+            percent(Some(right)),
+            decile.far_off.to_string(),
+        ]);
+    }
+    let [error, brier] = [score.expected_calibration_error, score.brier].map(|value| number(Some(value), 4));
+    write!(f, "\nprobability\n{reliability}\n  expected calibration error {error}, Brier score {brier}\n")?;
+    let mut kept = Aligned::new(2, &[Side::Right; 5]);
+    kept.row(["min probability", "found", "false", "recall %", "precision %"]);
+    for row in &score.kept {
+        let counts = [row.found, row.false_neighbours].map(|n| n.to_string());
+        let shares = [percent(row.recall), percent(row.precision)];
+        kept.row(std::iter::once(row.min_probability.to_string()).chain(counts).chain(shares));
+    }
+    let area = number(score.average_precision, 4);
+    write!(f, "\nprecision and recall by least probability\n{kept}\n  average precision {area}\n")
 }
 
 fn spots(f: &mut fmt::Formatter<'_>, scores: &Scores) -> fmt::Result {

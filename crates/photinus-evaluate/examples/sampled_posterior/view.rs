@@ -94,5 +94,6 @@ pub(crate) fn locator(airframe: &Airframe) -> Locator {
         missed: crate::model::MISSED,
         use_brightness: true,
     };
-    Locator::new(camera(), airframe, None, Settings { pose, min_probability: 0.0, ..Settings::default() }).expect("a locator")
+    Locator::new(camera(), airframe, None, Settings { pose, min_probability: 0.0, ..Settings::default() })
+        .expect("a locator")
 }

@@ -1,19 +1,12 @@
 //! Tables -> their places in docs/world.md, which are marked by comments.
 
-use crate::table::Table;
-
 const FILE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/world.md");
 
-/// Puts the tables of `what` where the document has them, and notes under them.
+/// Puts what was measured of `what` where the document has it, under the command that measures it again.
 ///
 /// # Errors
 /// Why the document cannot be read or written, or that it has no place for them.
-pub(crate) fn update(
-    what: &str,
-    frames: u64,
-    [neighbours, spots]: &[Table; 2],
-    notes: &str,
-) -> Result<(), String> {
+pub(crate) fn update(what: &str, frames: u64, measured: &str) -> Result<(), String> {
     let failed = |error: std::io::Error| format!("{FILE}: {error}");
     let text = std::fs::read_to_string(FILE).map_err(failed)?;
     let (begin, end) = (format!("<!-- {what}: as generated -->\n"), format!("<!-- {what}: end -->\n"));
@@ -24,6 +17,6 @@ pub(crate) fn update(
     let (before, after) = parts.ok_or_else(|| format!("{FILE}: there is no place marked {what}"))?;
     let command =
         format!("    cargo run --release -p photinus-evaluate --example world -- {what} {frames} --update\n");
-    let tables = format!("\n{command}\n{}\nSpots:\n\n{}\n{notes}", neighbours.markdown(), spots.markdown());
-    std::fs::write(FILE, [before, &begin, &tables, &end, after].concat()).map_err(failed)
+    let section = format!("\n{command}\n{measured}\n");
+    std::fs::write(FILE, [before, &begin, &section, &end, after].concat()).map_err(failed)
 }

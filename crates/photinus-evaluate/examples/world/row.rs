@@ -22,7 +22,7 @@ use crate::priors::{Build, Drawing, known_gravity, world_from_camera};
 
 /// The first of the frames that optics are learned from.
 const OTHER_FRAMES: u64 = 1 << 32;
-/// Frames that share the places of hot pixels and lamps, and the side to which gravity is wrong.
+/// Frames that share the places of hot pixels and lamps, and the side to which gravity is wrong, unless a row says otherwise.
 const SPELL: u64 = 20;
 
 /// What frames are taken with.
@@ -45,6 +45,10 @@ pub(crate) struct Row {
     pub(crate) build: Build,
     pub(crate) smear_px: f64,
     pub(crate) faults: Vec<Fault>,
+    /// Frames that share the places of hot pixels and lamps, and the side to which gravity is wrong.
+    pub(crate) spell: u64,
+    /// Neighbours less likely than this are not told.
+    pub(crate) min_probability: f64,
     /// Frames, none of those located, that the camera's optics are learned from; 0 for none.
     pub(crate) optics_frames: u64,
 }
@@ -55,6 +59,8 @@ pub(crate) struct Outcome {
     pub(crate) airframe: String,
     pub(crate) frames: u64,
     pub(crate) vehicles: usize,
+    /// Whether truth is as the model has it: nothing wrong, or clutter that is anywhere in each frame.
+    pub(crate) is_as_believed: bool,
     pub(crate) scores: Scores,
     pub(crate) lights: Lights,
 }
@@ -83,11 +89,13 @@ impl Row {
             build: Build::default(),
             smear_px: 0.0,
             faults: Vec::new(),
+            spell: SPELL,
+            min_probability: Settings::DEFAULT_MIN_PROBABILITY,
             optics_frames: 0,
         }
     }
 
-    /// Renders, injects, locates with default options, and scores.
+    /// Renders, injects, locates with default options but for the least probability, and scores.
     pub(crate) fn run(&self, frames: u64) -> Outcome {
         let mut studio = Studio::new(self);
         let wrong = |seed| Faults { list: self.faults.clone(), seed };
@@ -98,10 +106,11 @@ impl Row {
             Some(optics) => camera.with_optics(optics),
             None => camera,
         };
-        let mut locator = Locator::new(camera, &told, None, Settings::default()).expect("default settings");
+        let settings = Settings { min_probability: self.min_probability, ..Settings::default() };
+        let mut locator = Locator::new(camera, &told, None, settings).expect("default settings");
         let (mut truth, mut records, mut lights) = (Vec::new(), Vec::new(), Lights::default());
-        for first in (0..frames).step_by(SPELL as usize) {
-            let numbers = first..frames.min(first + SPELL);
+        for first in (0..frames).step_by(self.spell as usize) {
+            let numbers = first..frames.min(first + self.spell);
             let (shots, fallen): (Vec<_>, Vec<_>) = numbers.map(|number| studio.shoot(number)).unzip();
             let shots = wrong(first).inject(shots.into_iter().map(Ok));
             for (shot, fallen) in shots.zip(fallen) {
@@ -121,6 +130,7 @@ impl Row {
             airframe: self.airframe.name().to_owned(),
             frames,
             vehicles: self.vehicles,
+            is_as_believed: self.faults.is_empty() || self.spell == 1,
             scores: evaluation.expect("frames of one world").scores,
             lights,
         }

@@ -10,11 +10,11 @@ pub(crate) struct Table {
     lines: Vec<Vec<String>>,
 }
 
-fn number(value: Option<f64>, digits: usize) -> String {
+pub(crate) fn number(value: Option<f64>, digits: usize) -> String {
     value.map_or("-".to_owned(), |value| format!("{value:.digits$}"))
 }
 
-fn percent(share: Option<f64>) -> String {
+pub(crate) fn percent(share: Option<f64>) -> String {
     number(share.map(|share| 100.0 * share), 1)
 }
 
@@ -24,6 +24,11 @@ fn ratio(value: Option<f64>) -> String {
 }
 
 impl Table {
+    /// Lines of as many cells as there are heads.
+    pub(crate) fn new(heads: Vec<String>, lines: Vec<Vec<String>>) -> Self {
+        Self { heads, lines }
+    }
+
     /// Neighbours: how many, how far off, and whether what they claim holds.
     pub(crate) fn of_neighbours(outcomes: &[Outcome]) -> Self {
         let heads = [
@@ -33,6 +38,7 @@ impl Table {
             "recall %",
             "of all %",
             "precision %",
+            "claimed %",
             "sure phantoms / frame",
             "distance: median m",
             "rms m",
@@ -55,6 +61,7 @@ impl Table {
                 percent(neighbours.recall),
                 percent(Some(neighbours.found as f64 / there)),
                 percent(neighbours.precision),
+                percent(scores.probability.as_ref().map(|score| score.claimed)),
                 number(Some(neighbours.sure_false as f64 / frames), 3),
                 number(distance.error_m.median, 4),
                 number(distance.error_m.rms, 3),

@@ -5,6 +5,7 @@ pub(crate) mod classes;
 pub(crate) mod distance;
 pub(crate) mod neighbours;
 pub(crate) mod position;
+pub(crate) mod probability;
 pub(crate) mod range;
 pub(crate) mod spots;
 pub(crate) mod spread;
@@ -14,7 +15,7 @@ use serde::Serialize;
 
 use crate::frames::Compared;
 use crate::{Bounds, ByRange, DistanceScore, IdentityScore, Neighbours, PaperScore, PositionScore};
-use crate::{Settings, Spots, Spread, TrackScore};
+use crate::{ProbabilityScore, Settings, Spots, Spread, TrackScore};
 
 /// Every number of an evaluation. `None` (`null`) is what nothing tells.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -25,6 +26,8 @@ pub struct Scores {
     pub spots: Option<Spots>,
     /// Neighbours against those of truth.
     pub neighbours: Neighbours,
+    /// The probability of neighbours against how many are right; `None` where none claims one.
+    pub probability: Option<ProbabilityScore>,
     /// Angle between the reported bearing and truth, rad, never negative.
     pub bearing_error_rad: ByRange<Spread>,
     /// Estimated distances.
@@ -73,6 +76,7 @@ pub(crate) fn score(compared: &Compared<'_>, settings: &Settings) -> Scores {
         },
         spots: compared.has_leds.then(|| Spots::new(&compared.frames, bins)),
         neighbours: Neighbours::new(compared, bins),
+        probability: ProbabilityScore::new(compared),
         bearing_error_rad: ByRange::new(
             bins,
             pairs,

@@ -19,8 +19,11 @@ pub struct Neighbours {
     pub split: usize,
 }
 
-/// A reported neighbour whose sigma is below this share of its distance is sure of itself: something steers by it.
+/// A reported neighbour whose sigma is below this share of its distance is sure of itself, if it is likely: something
+/// steers by it.
 pub const SURE: f64 = 0.2;
+/// A reported neighbour that is likelier than this, or tells no probability, is likely.
+pub const LIKELY: f64 = 0.5;
 
 /// How many neighbours were found. Counts are over frames: the same one in ten frames counts ten times.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -36,7 +39,7 @@ pub struct NeighbourScore {
     /// Reported where none is.
     #[serde(rename = "false")]
     pub false_neighbours: usize,
-    /// Those of them that are sure of themselves: a sigma below [`SURE`] of the distance.
+    /// Those of them that are sure of themselves: a sigma below [`SURE`] of the distance, a probability above [`LIKELY`].
     pub sure_false: usize,
     /// found / visible.
     pub recall: Option<f64>,
@@ -70,7 +73,7 @@ fn counts(frame: &ComparedFrame<'_>, has_leds: bool) -> Vec<(Option<f64>, Count)
     let mut counts = Vec::new();
     for (truth, there) in frame.truth.neighbours.iter().enumerate() {
         let is_found = frame.neighbours.iter().any(|pair| pair.0 == truth);
-        let is_visible = !has_leds || !there.leds.is_empty();
+        let is_visible = frame.visible(has_leds).any(|visible| visible == truth);
         let count = match (is_visible, is_found) {
             (true, true) => Count::Found,
             (true, false) => Count::Missed,
@@ -91,7 +94,8 @@ fn counts(frame: &ComparedFrame<'_>, has_leds: bool) -> Vec<(Option<f64>, Count)
 fn is_sure(reported: &NeighbourRecord) -> bool {
     let sigma_share =
         reported.distance_m.estimate.zip(reported.distance_m.sigma).map(|(mean, sigma)| sigma / mean);
-    sigma_share.is_some_and(|share| share < SURE)
+    let is_likely = reported.probability.is_none_or(|probability| probability > LIKELY);
+    is_likely && sigma_share.is_some_and(|share| share < SURE)
 }
 
 /// The neighbours of truth that a reported one's spots are of.
@@ -167,17 +171,20 @@ mod tests {
     }
 
     #[test]
-    fn a_false_neighbour_with_a_small_sigma_is_a_sure_one() {
+    fn a_likely_false_neighbour_with_a_small_sigma_is_a_sure_one() {
         let truth = [truth(0, vec![shining(1, LEFT, &[[10.0, 10.0]])])];
         let with = |sigma| {
             let there = found_at([0.0, -3.0, 4.0]);
             NeighbourRecord { distance_m: Distance { sigma, ..there.distance_m }, ..there }
         };
-        // of 5 m: 18 %, 22 %, none
-        let results = [record(0, vec![], vec![found_at(LEFT), with(Some(0.9)), with(Some(1.1)), with(None)])];
+        let doubtful = |probability| NeighbourRecord { probability: Some(probability), ..with(Some(0.9)) };
+        // of 5 m: 18 %, 22 %, none; then 18 % as likely as not and a little likelier
+        let reported =
+            vec![found_at(LEFT), with(Some(0.9)), with(Some(1.1)), with(None), doubtful(0.5), doubtful(0.51)];
+        let results = [record(0, vec![], reported)];
         let all =
             evaluate(&truth, &results, &Settings::default()).unwrap().scores.neighbours.by_range.overall;
-        assert_eq!((all.found, all.false_neighbours, all.sure_false), (1, 3, 1));
+        assert_eq!((all.found, all.false_neighbours, all.sure_false), (1, 5, 2));
     }
 
     #[test]

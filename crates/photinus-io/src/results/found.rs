@@ -9,7 +9,7 @@ use photinus::pose::Mode;
 use photinus::spots::{Extent, Rejected, Spot};
 
 use super::record::Mode as ModeRecord;
-use super::{Distance, FrameRecord, Misfit, NeighbourRecord, RunnerUp, RejectedRecord, SpotRecord};
+use super::{Distance, FrameRecord, Misfit, NeighbourRecord, RejectedRecord, RunnerUp, SpotRecord};
 
 impl FrameRecord {
     /// Puts what was located in the place of the spots and neighbours that the record holds; what was rejected joins what

@@ -4,6 +4,8 @@ use std::time::Instant;
 
 const ROUNDS: usize = 100;
 const CALLS_PER_ROUND: usize = 32;
+/// What takes long is timed over fewer rounds of a single call each.
+const LONG_ROUNDS: usize = 3;
 
 /// What is timed; called with the number of the round.
 pub(crate) type Contender<'a> = Box<dyn FnMut(usize) + 'a>;
@@ -18,19 +20,25 @@ pub(crate) struct Time {
 
 /// The time of each contender over `ROUNDS` rounds, in each of which all of them run `calls` times.
 pub(crate) fn times(contenders: &mut [Contender<'_>], calls: usize) -> Vec<Time> {
-    let mut times = vec![Vec::with_capacity(ROUNDS); contenders.len()];
-    for round in 0..ROUNDS + ROUNDS / 10 {
+    times_over(ROUNDS, contenders, calls)
+}
+
+/// The same over so many rounds, after a tenth of them to warm up, or one.
+fn times_over(rounds: usize, contenders: &mut [Contender<'_>], calls: usize) -> Vec<Time> {
+    let warm_up = (rounds / 10).max(1);
+    let mut times = vec![Vec::with_capacity(rounds); contenders.len()];
+    for round in 0..rounds + warm_up {
         for (call, times) in contenders.iter_mut().zip(&mut times) {
             let start = Instant::now();
             (0..calls).for_each(|_| call(round));
-            if round >= ROUNDS / 10 {
+            if round >= warm_up {
                 times.push(start.elapsed().as_secs_f64() * 1e6 / calls as f64);
             }
         }
     }
     let rank = |mut times: Vec<f64>| {
         times.sort_by(f64::total_cmp);
-        Time { median_us: times[ROUNDS / 2], tenth_us: times[ROUNDS / 10] }
+        Time { median_us: times[rounds / 2], tenth_us: times[rounds / 10] }
     };
     times.into_iter().map(rank).collect()
 }
@@ -60,11 +68,30 @@ impl<'a> Contest<'a> {
 
     pub(crate) fn run(mut self) {
         let times = times(&mut self.contenders, CALLS_PER_ROUND);
-        let floor = format!("x {}", self.floor);
-        println!("\n{:<34}{:>11}{:>11}{floor:>26}", self.title, "median us", "10 % us");
+        self.print_head();
         for (name, time) in self.names.iter().zip(&times) {
-            let ratio = time.median_us / times[0].median_us;
-            println!("{name:<34}{:>11.2}{:>11.2}{ratio:>26.2}", time.median_us, time.tenth_us);
+            print_row(name, *time, times[0]);
         }
     }
+
+    /// For what takes milliseconds to minutes: one after the other, each told as it is done.
+    pub(crate) fn run_long(mut self) {
+        self.print_head();
+        let mut floor = None;
+        for (name, contender) in self.names.iter().zip(&mut self.contenders) {
+            let (rounds, calls) = if floor.is_none() { (ROUNDS, CALLS_PER_ROUND) } else { (LONG_ROUNDS, 1) };
+            let time = times_over(rounds, std::slice::from_mut(contender), calls)[0];
+            print_row(name, time, *floor.get_or_insert(time));
+        }
+    }
+
+    fn print_head(&self) {
+        let floor = format!("x {}", self.floor);
+        println!("\n{:<34}{:>11}{:>11}{floor:>26}", self.title, "median us", "10 % us");
+    }
+}
+
+fn print_row(name: &str, time: Time, floor: Time) {
+    let ratio = time.median_us / floor.median_us;
+    println!("{name:<34}{:>11.2}{:>11.2}{ratio:>26.2}", time.median_us, time.tenth_us);
 }

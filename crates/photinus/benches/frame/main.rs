@@ -2,10 +2,11 @@
 //!
 //! Times differ from machine to machine and from run to run; the ratios to the floors, above all to a pass that only takes
 //! the maximum of the frame, are what to compare. Every contender runs in turn within each round, medians are over the
-//! rounds. Run only some tables with `cargo bench -p photinus -- detection` (or `decoding`, `locating`, `posing`).
+//! rounds. Run only some tables with `cargo bench -p photinus -- detection` (or `decoding`, `locating`, `posing`, `clutter`).
 
 #![expect(clippy::print_stdout, reason = "a benchmark prints its table")]
 
+mod clutter;
 mod contest;
 mod decoding;
 mod detection;
@@ -23,12 +24,14 @@ use photinus::locator::{self, Locator};
 
 fn main() {
     let asked = std::env::args().skip(1).find(|argument| !argument.starts_with('-'));
-    for (name, run) in [
+    let tables = [
         ("detection", detection::run as fn()),
         ("decoding", decoding::run),
         ("locating", locating),
         ("posing", posing),
-    ] {
+        ("clutter", clutter::run),
+    ];
+    for (name, run) in tables {
         if asked.as_ref().is_none_or(|asked| asked == name) {
             run();
         }

@@ -71,12 +71,14 @@ impl Alternatives {
         let reach_rad = matcher.widest_rad(own);
         let Self { window, nearest, .. } = self;
         nearest.clear();
-        nearest.extend(context.sightings.iter().enumerate().filter(|(index, _)| *index != observation).filter_map(
-            |(index, other)| {
-                let gap = (other.bearing.vector() - own.bearing.vector()).norm();
-                (gap < reach_rad).then_some((gap, index))
-            },
-        ));
+        nearest.extend(
+            context.sightings.iter().enumerate().filter(|(index, _)| *index != observation).filter_map(
+                |(index, other)| {
+                    let gap = (other.bearing.vector() - own.bearing.vector()).norm();
+                    (gap < reach_rad).then_some((gap, index))
+                },
+            ),
+        );
         nearest.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         window.clear();
         window.push(observation);
@@ -85,7 +87,9 @@ impl Alternatives {
 
     fn gather(&mut self, mask: usize) {
         self.handful.clear();
-        self.handful.extend(self.window.iter().enumerate().filter(|(bit, _)| mask >> bit & 1 == 1).map(|(_, &spot)| spot));
+        self.handful.extend(
+            self.window.iter().enumerate().filter(|(bit, _)| mask >> bit & 1 == 1).map(|(_, &spot)| spot),
+        );
         self.handful.sort_unstable();
     }
 }

@@ -92,7 +92,12 @@ impl Candidates {
     }
 
     /// Whether these observations may be something else than one neighbour, for all that is known.
-    pub(super) fn is_doubtful(&self, group: &[usize], clutter_log_density: &[f64], log_neighbours: f64) -> bool {
+    pub(super) fn is_doubtful(
+        &self,
+        group: &[usize],
+        clutter_log_density: &[f64],
+        log_neighbours: f64,
+    ) -> bool {
         let Some(index) = self.find(group) else { return true };
         let Candidate { log_density, misfit, worst_sigma, .. } = &self.all[index];
         let clutter: f64 = group.iter().map(|&spot| clutter_log_density[spot]).sum();

@@ -112,8 +112,9 @@ impl Clutter {
                     in_area: (around.clone().map(|cell| self.counts[cell]).sum::<f64>() - own).max(0.0)
                         + around.map(remembered).sum::<f64>(),
                 };
-                let log_per_px2 = (0..members.len()).map(|before| near.log_per_px2(before as f64 * each)).sum::<f64>()
-                    / members.len() as f64;
+                let log_per_px2 =
+                    (0..members.len()).map(|before| near.log_per_px2(before as f64 * each)).sum::<f64>()
+                        / members.len() as f64;
                 let rad2_per_px = (sighting.rad_per_px * sighting.rad_per_px).max(1e-12);
                 let light = sighting.log_light.filter(|_| with_light).map_or(0.0, |light| {
                     let step = light_step(light.value);
@@ -175,7 +176,8 @@ struct Surroundings {
 impl Surroundings {
     /// Logarithm of the density per px^2, with so many more points at the same place.
     fn log_per_px2(&self, more: f64) -> f64 {
-        let mean = (BEFOREHAND * WORTH_FRAMES + self.in_frame + more) / (self.frame_px * (self.frames + WORTH_FRAMES));
+        let mean = (BEFOREHAND * WORTH_FRAMES + self.in_frame + more)
+            / (self.frame_px * (self.frames + WORTH_FRAMES));
         let here = mean * self.area_px * WORTH_SURROUNDINGS + self.in_area + more;
         libm::log(here / (self.area_px * (self.frames + WORTH_SURROUNDINGS)))
     }

@@ -84,7 +84,12 @@ impl Explanation {
     }
 
     /// Explains a frame of which each observation has the logarithm of its density as clutter, and neighbours have one per sr.
-    pub(super) fn explain(&mut self, candidates: &Candidates, clutter_log_density: &[f64], log_neighbours: f64) {
+    pub(super) fn explain(
+        &mut self,
+        candidates: &Candidates,
+        clutter_log_density: &[f64],
+        log_neighbours: f64,
+    ) {
         let count = clutter_log_density.len();
         self.probability.clear();
         self.probability.resize(candidates.len(), 0.0);
@@ -154,11 +159,11 @@ impl Explanation {
         }
         self.options.clear();
         let Self { options, spots, left, gains, roots, .. } = self;
-        options.extend(left.iter().filter(|&&index| roots[candidates.members(index)[0]] == first).map(|&candidate| Choice {
-            candidate,
-            mask: 0,
-            odds: libm::exp(gains[candidate]),
-        }));
+        options.extend(
+            left.iter()
+                .filter(|&&index| roots[candidates.members(index)[0]] == first)
+                .map(|&candidate| Choice { candidate, mask: 0, odds: libm::exp(gains[candidate]) }),
+        );
         if spots.len() > MOST_TOGETHER {
             self.take_the_best(candidates);
             return;
@@ -179,7 +184,8 @@ impl Explanation {
         for mask in 1..=all {
             let first = mask & mask.wrapping_neg();
             let fits = |choice: &&Choice| choice.mask & first != 0 && choice.mask & !mask == 0;
-            let taken: f64 = options.iter().filter(fits).map(|choice| choice.odds * sums[mask & !choice.mask]).sum();
+            let taken: f64 =
+                options.iter().filter(fits).map(|choice| choice.odds * sums[mask & !choice.mask]).sum();
             sums.push(sums[mask & !first] + taken);
         }
         ways.clear();
@@ -199,7 +205,8 @@ impl Explanation {
             let here = ways[mask];
             ways[mask & !first] += here;
             clutter[spots[first.trailing_zeros() as usize]] += here * sums[mask & !first] / total;
-            for choice in options.iter().filter(|choice| choice.mask & first != 0 && choice.mask & !mask == 0) {
+            for choice in options.iter().filter(|choice| choice.mask & first != 0 && choice.mask & !mask == 0)
+            {
                 let rest = mask & !choice.mask;
                 ways[rest] += here * choice.odds;
                 probability[choice.candidate] += here * choice.odds * (sums[rest] / total);

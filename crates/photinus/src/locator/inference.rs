@@ -108,7 +108,14 @@ impl Inference {
         finished: &mut dyn FnMut(Stage),
     ) {
         let sightings = std::mem::take(&mut located.sightings);
-        let context = Context { sightings: &sightings, gravity, watched, power: None, clutter: &[], log_neighbours: 0.0 };
+        let context = Context {
+            sightings: &sightings,
+            gravity,
+            watched,
+            power: None,
+            clutter: &[],
+            log_neighbours: 0.0,
+        };
         let of_frame = self.groups.sort_out(&context, &mut self.matcher);
         self.look(&context);
         let clear_power = self.groups.clear_log_power(&context, &mut self.matcher);
@@ -137,7 +144,14 @@ impl Inference {
             for _ in 0..LOOKS {
                 let (groups, memory) = (&self.groups, Some(&self.memory));
                 let share = |spot: usize| groups.clutter(spot);
-                self.first_clutter.measure(context.sightings, groups, self.size, self.with_light, memory, share);
+                self.first_clutter.measure(
+                    context.sightings,
+                    groups,
+                    self.size,
+                    self.with_light,
+                    memory,
+                    share,
+                );
                 let log_neighbours = log_neighbours(self.groups.neighbours(), &self.memory);
                 log_density = self.groups.weigh_looks(self.first_clutter.log_density(), log_neighbours);
             }
@@ -246,7 +260,6 @@ impl Work {
 /// Logarithm of how many neighbours there are per sr, where a frame has so many: as many as that tells without one of them, with those that are
 /// remembered, and one to begin with; in a field of half the sphere.
 fn log_neighbours(in_frame: f64, memory: &Memory) -> f64 {
-    let per_frame =
-        (1.0 + memory.neighbours() + (in_frame - 1.0).max(0.0)) / (2.0 + memory.frames() as f64);
+    let per_frame = (1.0 + memory.neighbours() + (in_frame - 1.0).max(0.0)) / (2.0 + memory.frames() as f64);
     libm::log(per_frame.max(FEWEST_NEIGHBOURS) / core::f64::consts::TAU)
 }

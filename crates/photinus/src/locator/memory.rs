@@ -119,7 +119,12 @@ mod tests {
                 let (clutter, log_power) = frame(number);
                 memory.remember(&clutter, number as f64 % 3.0, log_power);
             }
-            (memory.frames(), [0, 1].map(|cell| memory.clutter(cell).to_bits()), memory.neighbours(), memory.power())
+            (
+                memory.frames(),
+                [0, 1].map(|cell| memory.clutter(cell).to_bits()),
+                memory.neighbours(),
+                memory.power(),
+            )
         };
         assert_eq!(after(0), after(200 - Memory::FRAMES));
         assert_ne!(after(0), after(200 - Memory::FRAMES / 2));

@@ -17,7 +17,8 @@ use super::pairs::Pairs;
 use crate::airframe::Airframe;
 use crate::camera::Bearing;
 use crate::pose::{
-    self, Estimator, Hypotheses, Known, LogDistance, Observation, POWER_RANGE, Pose, Posterior, SettingsError, Summary, Visible,
+    self, Estimator, Hypotheses, Known, LogDistance, Observation, POWER_RANGE, Pose, Posterior,
+    SettingsError, Summary, Visible,
 };
 use crate::ranging::Interval;
 use crate::spots::{self, Brightness};
@@ -84,7 +85,9 @@ impl Poser {
         if markers.contains(&None) {
             let mut within = std::mem::take(&mut self.within);
             within.clear();
-            within.extend(group.iter().zip(markers).filter(|(_, marker)| marker.is_some()).map(|(&spot, _)| spot));
+            within.extend(
+                group.iter().zip(markers).filter(|(_, marker)| marker.is_some()).map(|(&spot, _)| spot),
+            );
             self.weigh(context, &within, matcher, candidates);
             self.within = within;
             return;
@@ -93,11 +96,17 @@ impl Poser {
     }
 
     /// Estimates the posterior of a group and returns its strict bounds; `None` where it cannot be one neighbour.
-    fn estimate(&mut self, context: &Context<'_>, group: &[usize], matcher: &mut Matcher) -> Option<Interval> {
+    fn estimate(
+        &mut self,
+        context: &Context<'_>,
+        group: &[usize],
+        matcher: &mut Matcher,
+    ) -> Option<Interval> {
         let sightings = context.sightings;
         let bounds = matcher.bounds(context, group)?;
         self.observations.clear();
-        self.observations.extend(group.iter().map(|&index| observe(&sightings[index], context.clutter[index])));
+        self.observations
+            .extend(group.iter().map(|&index| observe(&sightings[index], context.clutter[index])));
         let up = context.gravity.map(|down| -*down);
         let mut size = None;
         if let [only] = group {
@@ -125,7 +134,11 @@ impl Poser {
         let is_near = |sighting: &Sighting| (sighting.bearing.vector() - middle).norm() < reach_rad;
         self.others.clear();
         self.others.extend(
-            sightings.iter().enumerate().filter(|(index, seen)| is_near(seen) && !group.contains(index)).map(|(_, seen)| seen.bearing),
+            sightings
+                .iter()
+                .enumerate()
+                .filter(|(index, seen)| is_near(seen) && !group.contains(index))
+                .map(|(_, seen)| seen.bearing),
         );
     }
 
@@ -153,10 +166,17 @@ impl Poser {
     }
 
     /// Adds the candidate whose posterior was estimated last.
-    fn describe(&self, context: &Context<'_>, group: &[usize], bounds: Interval, candidates: &mut Candidates) {
+    fn describe(
+        &self,
+        context: &Context<'_>,
+        group: &[usize],
+        bounds: Interval,
+        candidates: &mut Candidates,
+    ) {
         let Posterior { summary, modes, markers, log_evidence, misfit, worst_sigma, log_power } =
             self.estimator.posterior();
-        let Some(Summary { pose, mut position_covariance_m2, orientation_covariance_rad2, mut distance }) = *summary
+        let Some(Summary { pose, mut position_covariance_m2, orientation_covariance_rad2, mut distance }) =
+            *summary
         else {
             return;
         };
@@ -195,7 +215,9 @@ fn log_range(spots: usize) -> f64 {
 
 /// What it is worth that the light of a group that tells the power of its own LEDs is that of the frame's others, as a logarithm.
 fn power_agreement(context: &Context<'_>, group: &[usize], log_power: Option<f64>) -> f64 {
-    let (Some(known), Some(own)) = (context.power.filter(|_| group.len() >= CLEAR_SPOTS), log_power) else { return 0.0 };
+    let (Some(known), Some(own)) = (context.power.filter(|_| group.len() >= CLEAR_SPOTS), log_power) else {
+        return 0.0;
+    };
     let off = (own - known.value) / known.sigma;
     let log_density = -0.5 * off * off - 0.5 * libm::log(TAU * known.sigma * known.sigma);
     log_density.max(-MOST_POWER_NATS) + libm::log(POWER_RANGE)

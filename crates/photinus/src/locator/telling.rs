@@ -33,7 +33,13 @@ impl Telling {
     }
 
     /// Puts the neighbours that are at least so likely into `located`, in the order of their first observation.
-    pub(super) fn tell(&mut self, candidates: &Candidates, explanation: &Explanation, least: f64, located: &mut Located) {
+    pub(super) fn tell(
+        &mut self,
+        candidates: &Candidates,
+        explanation: &Explanation,
+        least: f64,
+        located: &mut Located,
+    ) {
         located.neighbours.clear();
         located.members.clear();
         located.modes.clear();
@@ -41,7 +47,8 @@ impl Telling {
         self.taken.resize(located.sightings.len(), false);
         self.order.clear();
         let negligible = NEGLIGIBLE.min(least);
-        self.order.extend((0..candidates.len()).filter(|&index| explanation.probability(index) >= negligible));
+        self.order
+            .extend((0..candidates.len()).filter(|&index| explanation.probability(index) >= negligible));
         self.order.sort_unstable_by(|&a, &b| {
             explanation.probability(b).total_cmp(&explanation.probability(a)).then(a.cmp(&b))
         });
@@ -91,7 +98,14 @@ impl Telling {
     }
 
     /// Adds a neighbour: the mixture of the candidates that it is.
-    fn put(&self, candidates: &Candidates, own: usize, probability: f64, runner_up: RunnerUp, located: &mut Located) {
+    fn put(
+        &self,
+        candidates: &Candidates,
+        own: usize,
+        probability: f64,
+        runner_up: RunnerUp,
+        located: &mut Located,
+    ) {
         let candidate = candidates.get(own);
         let first_mode = located.modes.len();
         for &(index, share) in &self.same {
@@ -134,17 +148,21 @@ impl Telling {
         let mut bounds: Option<Interval> = None;
         for &(index, share) in &self.same {
             let candidate = candidates.get(index);
-            let (Some(position), Some(estimate)) = (candidate.position, candidate.distance.estimate) else { continue };
+            let (Some(position), Some(estimate)) = (candidate.position, candidate.distance.estimate) else {
+                continue;
+            };
             let weight = share / total;
             mean_m += position.mean_m * weight;
             square_m2 += (position.covariance_m2 + position.mean_m * position.mean_m.transpose()) * weight;
             distance_m += estimate.distance_m * weight;
-            distance2_m2 += (estimate.sigma_m * estimate.sigma_m + estimate.distance_m * estimate.distance_m) * weight;
+            distance2_m2 +=
+                (estimate.sigma_m * estimate.sigma_m + estimate.distance_m * estimate.distance_m) * weight;
             let own = candidate.distance.bounds;
             bounds = Some(bounds.map_or(own, |all| all.hull(&own)));
         }
         // The mean of places all around is nearer than any of them.
-        let (length_m, within) = (mean_m.norm(), bounds.unwrap_or(candidates.get(self.same[0].0).distance.bounds));
+        let (length_m, within) =
+            (mean_m.norm(), bounds.unwrap_or(candidates.get(self.same[0].0).distance.bounds));
         let within_m = length_m.clamp(within.min_m(), within.max_m());
         let position = Position { mean_m, covariance_m2: square_m2 - mean_m * mean_m.transpose() };
         let position = Position { mean_m: position.mean_m * (within_m / length_m), ..position };
@@ -158,7 +176,9 @@ fn is_same(candidates: &Candidates, a: usize, b: usize) -> bool {
     if a == b {
         return true;
     }
-    let (Some(first), Some(second)) = (candidates.get(a).position, candidates.get(b).position) else { return false };
+    let (Some(first), Some(second)) = (candidates.get(a).position, candidates.get(b).position) else {
+        return false;
+    };
     let off_m = first.mean_m - second.mean_m;
     let covariance_m2 = first.covariance_m2 + second.covariance_m2 + Matrix3::identity() * 1e-9;
     let squared = covariance_m2.cholesky().map(|factor| off_m.dot(&factor.solve(&off_m)));

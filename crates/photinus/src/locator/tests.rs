@@ -9,8 +9,8 @@ use rand_pcg::Pcg64;
 use super::*;
 use crate::airframe::Ring;
 use crate::camera::Bearing;
-use crate::pose;
 use crate::camera::{Ideal, IdealLaw, Model, Pixel};
+use crate::pose;
 use crate::spots::Extent;
 
 const SIGMA_PX: f64 = 0.1;
@@ -129,7 +129,12 @@ fn locate(
 
 fn locator(airframe: &Airframe) -> Locator {
     // Such spots are as good as the airframe: nothing is off by a hand's work.
-    let pose = pose::Settings { marker_sigma_m: 0.001, scale_sigma: 0.0, unit_sigma: 0.12, ..pose::Settings::default() };
+    let pose = pose::Settings {
+        marker_sigma_m: 0.001,
+        scale_sigma: 0.0,
+        unit_sigma: 0.12,
+        ..pose::Settings::default()
+    };
     Locator::new(camera(), airframe, None, Settings { pose, ..Settings::default() }).unwrap()
 }
 

@@ -179,7 +179,14 @@ impl Views {
         (!arrangements.all.is_empty()).then_some(arrangements)
     }
 
-    fn add(&mut self, seen: &[Seen], symmetry: &Symmetry, towards: [f64; 2], log_prior: f64, unseen_nats: f64) {
+    fn add(
+        &mut self,
+        seen: &[Seen],
+        symmetry: &Symmetry,
+        towards: [f64; 2],
+        log_prior: f64,
+        unseen_nats: f64,
+    ) {
         let cost_of_unseen = |seen: &Seen| unseen_nats * (seen.intensity / BRIGHT).min(1.0);
         self.most_visible = self.most_visible.max(seen.len());
         let all_unseen_nats: f64 = seen.iter().map(cost_of_unseen).sum();
@@ -193,7 +200,8 @@ impl Views {
             }
             each_order(seen.len(), spots, &mut |order| {
                 if arrangements.len() <= MOST_ARRANGEMENTS {
-                    let unseen_nats = all_unseen_nats - order.iter().map(|&index| cost_of_unseen(&seen[index])).sum::<f64>();
+                    let unseen_nats = all_unseen_nats
+                        - order.iter().map(|&index| cost_of_unseen(&seen[index])).sum::<f64>();
                     arrangements.push(arrange(seen, order, symmetry, unseen_nats, towards, log_prior));
                 }
             });

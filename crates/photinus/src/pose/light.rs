@@ -95,7 +95,8 @@ impl Light {
     /// Adds what is left when the power of the LEDs is solved for.
     pub(super) fn add_to(&self, normal: &mut Normal) {
         let Some(power) = self.log_power() else { return };
-        normal.nats += 0.5 * (self.second - self.first * power) + self.log_sigmas + 0.5 * libm::log(self.weight / TAU);
+        normal.nats +=
+            0.5 * (self.second - self.first * power) + self.log_sigmas + 0.5 * libm::log(self.weight / TAU);
         normal.gradient += self.normal.gradient - self.slope * power;
         for column in 0..6 {
             for line in 0..=column {

@@ -49,7 +49,8 @@ impl Problem<'_> {
         }
         if let Some(up) = &self.known.up {
             let up = pose.camera_from_body.inverse() * up.into_inner();
-            chi_square += up.xy().norm_squared() / (self.settings.tilt_sigma_rad * self.settings.tilt_sigma_rad);
+            chi_square +=
+                up.xy().norm_squared() / (self.settings.tilt_sigma_rad * self.settings.tilt_sigma_rad);
             residuals += 2;
         }
         Misfit { chi_square, degrees: residuals.saturating_sub(6) as u32 }
@@ -64,8 +65,14 @@ mod tests {
     #[test]
     fn p_values_are_those_of_tables() {
         for (degrees, chi_square, p) in [
-            (1, 3.841459, 0.05), (2, 5.991465, 0.05), (3, 7.814728, 0.05), (4, 9.487729, 0.05), (5, 15.08627, 0.01),
-            (8, 2.732637, 0.95), (9, 27.87716, 0.001), (20, 10.85081, 0.95),
+            (1, 3.841459, 0.05),
+            (2, 5.991465, 0.05),
+            (3, 7.814728, 0.05),
+            (4, 9.487729, 0.05),
+            (5, 15.08627, 0.01),
+            (8, 2.732637, 0.95),
+            (9, 27.87716, 0.001),
+            (20, 10.85081, 0.95),
         ] {
             let told = Misfit { chi_square, degrees }.p_value();
             assert!((told / p - 1.0).abs() < 1e-5, "{degrees}: {told} for {p}");

@@ -43,8 +43,8 @@ mod visibility;
 
 pub use estimator::{Estimator, Posterior};
 pub use hypotheses::Hypotheses;
-pub(crate) use light::POWER_RANGE;
 pub use known::{Known, LogDistance, Visible};
+pub(crate) use light::POWER_RANGE;
 pub use misfit::Misfit;
 pub use mixture::{Mode, Summary};
 pub use observation::{LogLight, Observation};

@@ -94,8 +94,14 @@ mod tests {
         let [across, along] = tangent_basis(bearing.vector());
         let jacobian = nalgebra::Matrix3x2::from_columns(&[across + 0.5 * along, 0.3 * along]) * 1e-3;
         let covariance_rad2 = jacobian * jacobian.transpose();
-        let observation =
-            Observation { bearing, covariance_rad2, log_light: None, resolution_rad: 0.0, signal: None, clutter_log_density: 0.0 };
+        let observation = Observation {
+            bearing,
+            covariance_rad2,
+            log_light: None,
+            resolution_rad: 0.0,
+            signal: None,
+            clutter_log_density: 0.0,
+        };
         let whitened = Whitened::of(&observation, 0.0);
         let white = whitened.map * covariance_rad2 * whitened.map.transpose();
         assert!((white - nalgebra::Matrix2::identity()).norm() < 1e-4, "{white}");

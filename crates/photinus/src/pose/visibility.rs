@@ -74,13 +74,15 @@ impl Problem<'_> {
     /// How likely a marker is part of a spot that is not this neighbour's.
     fn merged_with_others(&self, pose: &Pose, marker: usize) -> f64 {
         let others = self.known.visible.others;
-        let Some(resolution_rad) = self.observations.first().map(|seen| seen.resolution_rad).filter(|_| !others.is_empty())
+        let Some(resolution_rad) =
+            self.observations.first().map(|seen| seen.resolution_rad).filter(|_| !others.is_empty())
         else {
             return 0.0;
         };
         let place_m = pose.camera_from_body * self.airframe.markers()[marker].position_m + pose.position_m;
         let direction = place_m.normalize();
-        let gap2 = |other: &Bearing| (other.vector() - direction).norm_squared() / (resolution_rad * resolution_rad);
+        let gap2 =
+            |other: &Bearing| (other.vector() - direction).norm_squared() / (resolution_rad * resolution_rad);
         others.iter().map(|other| one_spot(gap2(other))).fold(0.0, f64::max)
     }
 

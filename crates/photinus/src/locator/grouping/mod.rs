@@ -95,11 +95,7 @@ impl GroupList {
 
 impl Groups {
     /// Finds the groups of a frame's observations, and what the clear ones tell of the light of its LEDs.
-    pub(super) fn sort_out(
-        &mut self,
-        context: &Context<'_>,
-        matcher: &mut Matcher,
-    ) -> Option<LogLight> {
+    pub(super) fn sort_out(&mut self, context: &Context<'_>, matcher: &mut Matcher) -> Option<LogLight> {
         self.list.clear();
         if context.sightings.is_empty() {
             return None;
@@ -186,22 +182,14 @@ impl Groups {
         self.list.group(group)
     }
 
-    fn cut_tree(
-        &mut self,
-        context: &Context<'_>,
-        matcher: &mut Matcher,
-    ) {
+    fn cut_tree(&mut self, context: &Context<'_>, matcher: &mut Matcher) {
         self.list.clear();
         self.tree.cost(|group| matcher.nats(context, group));
         self.tree.cut(|group, nats| self.list.push(group.iter().copied(), nats));
     }
 
     /// What the clear neighbours of the frame tell of its LEDs' light: the median of their logarithms.
-    fn log_power(
-        &mut self,
-        context: &Context<'_>,
-        matcher: &mut Matcher,
-    ) -> Option<f64> {
+    fn log_power(&mut self, context: &Context<'_>, matcher: &mut Matcher) -> Option<f64> {
         self.powers.clear();
         for group in 0..self.list.len() {
             if self.list.group(group).len() >= CLEAR_SPOTS && !self.is_doubtful(group) {
@@ -217,11 +205,7 @@ impl Groups {
     }
 
     /// Takes groups that overlap in the image apart and puts them together anew, at the least cost.
-    fn part_overlapping(
-        &mut self,
-        context: &Context<'_>,
-        matcher: &mut Matcher,
-    ) {
+    fn part_overlapping(&mut self, context: &Context<'_>, matcher: &mut Matcher) {
         if matcher.most_visible() > LARGEST_ORDERED {
             return;
         }

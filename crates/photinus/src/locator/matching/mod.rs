@@ -20,7 +20,7 @@ use super::posing::LOG_RANGE;
 use super::views::{Arrangement, ELEVATION_STEP_RAD, Spread, Views};
 use crate::airframe::Airframe;
 use crate::lanes::{self, LANES, Lanes};
-use crate::pose::{self, POWER_RANGE, Hypotheses, LogDistance, LogLight, Pose, Symmetry};
+use crate::pose::{self, Hypotheses, LogDistance, LogLight, POWER_RANGE, Pose, Symmetry};
 use crate::ranging::{BoundedBearing, DistanceBounds, Interval};
 use image::Image;
 use ordered::Ordered;
@@ -61,7 +61,12 @@ pub(super) struct Matcher {
 }
 
 impl Matcher {
-    pub(super) fn new(airframe: &Airframe, max_tilt_rad: f64, believed: &pose::Settings, faintest_light: f64) -> Self {
+    pub(super) fn new(
+        airframe: &Airframe,
+        max_tilt_rad: f64,
+        believed: &pose::Settings,
+        faintest_light: f64,
+    ) -> Self {
         let unseen_nats = -libm::log(believed.missed);
         let grid_rad = ELEVATION_STEP_RAD / 2.0;
         let symmetry = Symmetry::of(airframe);
@@ -96,11 +101,7 @@ impl Matcher {
     }
 
     /// The distances that angles and sizes of these spots allow, strictly; `None` when they cannot be one neighbour.
-    pub(super) fn bounds(
-        &mut self,
-        context: &Context<'_>,
-        group: &[usize],
-    ) -> Option<Interval> {
+    pub(super) fn bounds(&mut self, context: &Context<'_>, group: &[usize]) -> Option<Interval> {
         let Context { sightings, gravity, .. } = *context;
         self.bearings.clear();
         let bounded = |&index: &usize| {
@@ -128,11 +129,7 @@ impl Matcher {
     }
 
     /// The light that an LED of a group would have straight ahead at 1 m if it is the neighbour it looks like, as a logarithm.
-    pub(super) fn log_power(
-        &mut self,
-        context: &Context<'_>,
-        group: &[usize],
-    ) -> Option<f64> {
+    pub(super) fn log_power(&mut self, context: &Context<'_>, group: &[usize]) -> Option<f64> {
         let sightings = context.sightings;
         let image = Image::of(context, group, &mut self.places)?;
         let arrangements = self.views.arrangements(group.len())?;
@@ -142,11 +139,7 @@ impl Matcher {
     }
 
     /// What the claim costs that these spots, at least one, are one neighbour, nats.
-    pub(super) fn nats(
-        &mut self,
-        context: &Context<'_>,
-        group: &[usize],
-    ) -> f64 {
+    pub(super) fn nats(&mut self, context: &Context<'_>, group: &[usize]) -> f64 {
         if group.len() == 1 {
             return NEIGHBOUR_NATS + self.views.lone_nats;
         }
@@ -209,8 +202,18 @@ impl Matcher {
             - 2.0 * libm::log(image.size)
             - 0.5 * libm::log(TAU * turn_sigma_rad * turn_sigma_rad);
         let lit = group.iter().filter(|&&spot| sightings[spot].log_light.is_some()).count();
-        let light = if lit == 0 { 0.0 } else { -(lit as f64 - 1.0) * seen.log_light_width() - libm::log(POWER_RANGE) };
-        Some(places + light - views - power_nats(context, group, &likeness) - size_nats(sightings, group, likeness.distance_m) - libm::log(LOG_RANGE))
+        let light = if lit == 0 {
+            0.0
+        } else {
+            -(lit as f64 - 1.0) * seen.log_light_width() - libm::log(POWER_RANGE)
+        };
+        Some(
+            places + light
+                - views
+                - power_nats(context, group, &likeness)
+                - size_nats(sightings, group, likeness.distance_m)
+                - libm::log(LOG_RANGE),
+        )
     }
 
     /// What it costs that a spot's other markers are not seen, nats: nothing where it is hardly seen itself, all where it is e times as bright.
@@ -220,11 +223,7 @@ impl Matcher {
     }
 
     /// What it costs that a group is some of the markers of a view, nats, and the distance at which it fits best, m.
-    fn partly_seen_nats(
-        &self,
-        context: &Context<'_>,
-        group: &[usize],
-    ) -> Option<(f64, f64)> {
+    fn partly_seen_nats(&self, context: &Context<'_>, group: &[usize]) -> Option<(f64, f64)> {
         if !self.may_be_a_part(group) {
             return None;
         }
@@ -244,19 +243,17 @@ impl Matcher {
     }
 
     /// Which markers the spots of a group of at least two may be.
-    pub(super) fn hypotheses(
-        &mut self,
-        context: &Context<'_>,
-        group: &[usize],
-        hypotheses: &mut Hypotheses,
-    ) {
+    pub(super) fn hypotheses(&mut self, context: &Context<'_>, group: &[usize], hypotheses: &mut Hypotheses) {
         let Context { sightings, gravity, .. } = *context;
         hypotheses.begin(group.len());
         let Some(image) = Image::of(context, group, &mut self.places) else { return };
         let Some(arrangements) = self.views.arrangements(group.len()) else {
             let spread = Spread::of(image.places.iter().copied());
             for outline in &self.views.outlines {
-                let Some(fit) = overlay(&spread, outline, &image, self.tilt_sigma_rad, self.unseen_nats) else { continue };
+                let Some(fit) = overlay(&spread, outline, &image, self.tilt_sigma_rad, self.unseen_nats)
+                else {
+                    continue;
+                };
                 let half = image.attitude_nats(outline.elevation_rad, -1.0, self.tilt_sigma_rad)
                     - image.attitude_nats(outline.elevation_rad, 1.0, self.tilt_sigma_rad);
                 for (turn, nats) in [(fit.turn, 0.0), (-fit.turn, half)] {
@@ -317,10 +314,19 @@ impl Likeness {
 }
 
 /// What the outline of all spots costs, nats, and the distance at which it fits best, m.
-fn outlined_nats(views: &Views, image: &Image<'_>, tilt_sigma_rad: f64, unseen_nats: f64) -> Option<(f64, f64)> {
+fn outlined_nats(
+    views: &Views,
+    image: &Image<'_>,
+    tilt_sigma_rad: f64,
+    unseen_nats: f64,
+) -> Option<(f64, f64)> {
     let spread = Spread::of(image.places.iter().copied());
-    let fits =
-        || views.outlines.iter().filter_map(|outline| overlay(&spread, outline, image, tilt_sigma_rad, unseen_nats));
+    let fits = || {
+        views
+            .outlines
+            .iter()
+            .filter_map(|outline| overlay(&spread, outline, image, tilt_sigma_rad, unseen_nats))
+    };
     let best = fits().min_by(|a, b| a.nats.total_cmp(&b.nats))?;
     let weight: f64 = fits().map(|fit| libm::exp(best.nats - fit.nats)).sum();
     Some((best.nats - libm::log(weight), best.place_m.norm()))

@@ -21,7 +21,12 @@ pub(super) struct Ordered {
 }
 
 impl Ordered {
-    pub(super) fn of(image: &Image<'_>, sightings: &[Sighting], group: &[usize], log_flux_sigma: f64) -> Self {
+    pub(super) fn of(
+        image: &Image<'_>,
+        sightings: &[Sighting],
+        group: &[usize],
+        log_flux_sigma: f64,
+    ) -> Self {
         let mut ordered = Self {
             count: group.len(),
             shape: [Vector2::zeros(); MOST_ORDERED],

@@ -111,7 +111,7 @@ mod tests {
     fn frames_older_than_the_last_are_forgotten() {
         let frame = |number: usize| {
             let clutter = [0.1 * (number % 7) as f64, 1.0 / (1 + number % 5) as f64];
-            (clutter, (number % 3 != 0).then(|| 9.0 + 0.01 * (number % 11) as f64))
+            (clutter, (!number.is_multiple_of(3)).then_some(9.0 + 0.01 * (number % 11) as f64))
         };
         let after = |first: usize| {
             let mut memory = Memory::new(2);

@@ -77,7 +77,7 @@ mod tests {
             let told = Misfit { chi_square, degrees }.p_value();
             assert!((told / p - 1.0).abs() < 1e-5, "{degrees}: {told} for {p}");
         }
-        assert_eq!(Misfit { chi_square: 3.0, degrees: 0 }.p_value(), 1.0);
-        assert_eq!(Misfit { chi_square: 0.0, degrees: 7 }.p_value(), 1.0);
+        assert!(Misfit { chi_square: 3.0, degrees: 0 }.p_value() > 1.0 - 1e-12);
+        assert!(Misfit { chi_square: 0.0, degrees: 7 }.p_value() > 1.0 - 1e-12);
     }
 }

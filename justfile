@@ -38,6 +38,10 @@ fuzz-check:
 world table:
     cargo run --release -p photinus-evaluate --example world -- {{table}} --update
 
+# Tables of docs/codes.md (`most`, `books`) or docs/identity.md (`decoding`) anew.
+identity table:
+    cargo run --release -p photinus-io --example identity -- {{table}} --update
+
 # A minute of fuzzing for one target, e.g. `just fuzz spots`; needs cargo-fuzz and a nightly toolchain.
 fuzz target:
     cargo +nightly fuzz run {{target}} -- -max_total_time=60

@@ -19,6 +19,8 @@ pub(crate) enum Content {
     OcamText,
     /// An airframe as LED layout text.
     Layout,
+    /// A book of blink words.
+    Codes,
     /// A video.
     Y4m,
     /// A folder of files.
@@ -52,7 +54,7 @@ impl Content {
             Self::Csv => &["csv", "txt"],
             Self::Json => &["json", "txt"],
             Self::Toml => &["toml"],
-            Self::OcamText | Self::Layout => &["txt"],
+            Self::OcamText | Self::Layout | Self::Codes => &["txt"],
             Self::Y4m => &["y4m"],
             Self::Folder => &[],
         }
@@ -66,6 +68,7 @@ impl Content {
             Self::Toml => "a TOML file",
             Self::OcamText => "OCamCalib text",
             Self::Layout => "an LED layout",
+            Self::Codes => "a book of blink words",
             Self::Y4m => "a Y4M video",
             Self::Folder => "a folder",
         }

@@ -7,6 +7,7 @@
 //! inject: a dataset -> the same with faults
 //! evaluate: results against the truth of a dataset
 //! calibrate: photos of a grid -> a camera whose errors are known
+//! codes: what words must have -> books of words that LEDs blink
 //! demo: all of it on a flight that the program carries along
 //! reproduce: the experiments of the founding paper, each number beside the paper's
 //! completions, man: the command line itself, for shells and manuals
@@ -17,6 +18,7 @@ mod arguments;
 mod beforehand;
 mod calibrate;
 mod clock;
+mod codes;
 mod convert;
 mod demo;
 mod detect;
@@ -79,6 +81,8 @@ Examples:
   photinus evaluate recording results.jsonl
   # every figure of the founding paper, in simulation
   photinus reproduce
+  # what tells the blink words of a fleet apart
+  photinus codes check book.txt
 
 Every command explains itself: photinus locate --help
 
@@ -100,6 +104,7 @@ enum Command {
     Calibrate(calibrate::Args),
     Completions(shell::CompletionsArgs),
     Man(shell::ManArgs),
+    Codes(codes::Args),
 }
 
 fn main() -> ExitCode {
@@ -133,6 +138,7 @@ impl Command {
             | Self::Demo(_)
             | Self::Completions(_)
             | Self::Man(_) => false,
+            Self::Codes(args) => args.quiet(),
         }
     }
 
@@ -151,6 +157,7 @@ impl Command {
             Self::Calibrate(args) => calibrate::run(args, terminal),
             Self::Completions(args) => shell::completions(args, Program::command(), terminal),
             Self::Man(args) => shell::man(args, Program::command(), terminal),
+            Self::Codes(args) => codes::run(args, terminal),
         }
     }
 }

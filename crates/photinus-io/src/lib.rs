@@ -5,16 +5,17 @@
 //!
 //! ```text
 //! image, video, dataset -> frames -> (photinus) -> results
-//! camera, airframe, mask, blink, spot_curve: what the method is told beforehand
+//! camera, airframe, mask, codes, spot_curve: what the method is told beforehand
 //! calibration: tables that calibrations are made from
 //! kind: which of these a file is, by its content
 //! whole: files that are read and written whole or not at all
 //! ```
 
 pub mod airframe;
-pub mod blink;
+
 pub mod calibration;
 pub mod camera;
+pub mod codes;
 pub mod corners;
 pub mod dataset;
 mod error;

@@ -1,8 +1,8 @@
 //! The examples of docs/file-formats.md are read as they stand there.
 
 use photinus_io::airframe::parse_airframe;
-use photinus_io::blink::BlinkCodes;
 use photinus_io::camera::parse_camera_toml;
+use photinus_io::codes::parse_codes;
 use photinus_io::dataset::{
     DatasetInfo, DatasetToml, parse_frames_csv, parse_imu, parse_odometry, parse_truth, parse_vehicles,
 };
@@ -67,7 +67,7 @@ fn spot_curves() {
 
 #[test]
 fn blink_sequences() {
-    assert_eq!(BlinkCodes::parse(&example("0,0,1,0"), "example").unwrap().words().len(), 2);
+    assert_eq!(parse_codes(&example("0,0,1,0"), "example").unwrap().words().len(), 2);
 }
 
 #[test]

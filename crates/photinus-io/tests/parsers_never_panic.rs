@@ -7,11 +7,11 @@ use std::path::Path;
 
 use photinus::ranging::{Envelope, SpotCurve};
 use photinus_io::airframe::{Tolerances, layout_text, parse_airframe, toml_text};
-use photinus_io::blink::BlinkCodes;
 use photinus_io::calibration::{
     mounting_text, parse_known_sightings, parse_led_sightings, parse_mounting, parse_spot_sizes,
 };
 use photinus_io::camera::{parse_camera, write_camera_toml};
+use photinus_io::codes::{codes_text, parse_codes};
 use photinus_io::corners::parse_corners;
 use photinus_io::dataset::{
     DatasetInfo, DatasetToml, ImuRow, OdometryRow, parse_frames_csv, parse_imu, parse_odometry, parse_truth,
@@ -116,8 +116,8 @@ fn parse_all(bytes: &[u8]) {
             .expect("what was written is read");
         assert_eq!(again.airframe, file.airframe);
     }
-    if let Ok(codes) = BlinkCodes::parse(&text, "t") {
-        assert_eq!(BlinkCodes::parse(&codes.to_string(), "t").expect("what was written is read"), codes);
+    if let Ok(codes) = parse_codes(&text, "t") {
+        assert_eq!(parse_codes(&codes_text(&codes), "t").expect("what was written is read"), codes);
     }
     if let Ok(file) = parse_spot_curve(&text, "t") {
         assert_eq!(parse_spot_curve(&spot_curve::text(&file), "t").expect("what was written is read"), file);
@@ -178,8 +178,9 @@ proptest! {
     })) {
         let bit = |&on: &bool| if on { "1" } else { "0" };
         let line = |word: &Vec<bool>| word.iter().map(bit).collect::<Vec<_>>().join(" , ") + "\r\n";
-        let codes = BlinkCodes::parse(&words.iter().map(line).collect::<String>(), "t").expect("valid words");
-        prop_assert_eq!(codes.words(), words);
+        let codes = parse_codes(&words.iter().map(line).collect::<String>(), "t").expect("valid words");
+        let read: Vec<Vec<bool>> = codes.words().iter().map(|word| word.bits().collect()).collect();
+        prop_assert_eq!(read, words);
     }
 
     #[test]
@@ -241,7 +242,7 @@ fn the_files_to_damage_are_valid() {
     for text in [AIRFRAME, RING, LAYOUT] {
         parse_airframe(text, "t").unwrap();
     }
-    BlinkCodes::parse(BLINK, "t").unwrap();
+    parse_codes(BLINK, "t").unwrap();
     parse_spot_curve(SPOT_CURVE, "t").unwrap();
     parse_spot_sizes(SPOT_SIZES, "t").unwrap();
     parse_known_sightings(KNOWN, "t").unwrap();

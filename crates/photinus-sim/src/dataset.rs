@@ -9,6 +9,7 @@ use nalgebra::{Isometry3, Matrix3};
 use photinus_io::airframe::{Tolerances, toml_text};
 use photinus_io::calibration::{MountingFile, mounting_text};
 use photinus_io::camera::write_camera_toml;
+use photinus_io::codes::codes_text;
 use photinus_io::dataset::{
     DatasetInfo, DatasetWriter, ImuRow, RigCamera, RigInfo, VehicleInfo, vehicles_text,
 };
@@ -138,7 +139,7 @@ impl<'a> NamedTargets<'a> {
             write(folder, file, toml_text(&target.airframe, &Tolerances::default()).as_bytes())?;
         }
         if let Some(blink) = self.book.and_then(|target| target.blink.as_ref()) {
-            write(folder, CODES_FILE, blink.codes.to_string().as_bytes())?;
+            write(folder, CODES_FILE, codes_text(&blink.codes).as_bytes())?;
         }
         if self.vehicles_file().is_none() {
             return Ok(());

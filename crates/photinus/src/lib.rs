@@ -12,6 +12,7 @@
 pub mod airframe;
 pub mod camera;
 pub mod frame;
+pub mod identity;
 mod lanes;
 pub mod locator;
 pub mod optics;

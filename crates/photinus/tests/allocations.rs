@@ -9,6 +9,8 @@ use nalgebra::Vector3;
 use photinus::airframe::{Airframe, Ring};
 use photinus::camera::{Camera, Ideal, IdealLaw, Model, Pixel};
 use photinus::frame::{FrameView, Mask};
+use photinus::identity::decoder::{self, Decoder};
+use photinus::identity::{CodeBook, Evidence, Word};
 use photinus::locator::{self, Locator};
 use photinus::pose::{p3p, pnp};
 use photinus::spots::{Brightness, Detector, Settings};
@@ -153,4 +155,25 @@ fn a_warm_locator_allocates_nothing() {
     warm_up.iter().for_each(|pixels| locate(pixels));
     assert_eq!(requests_during(|| frames.iter().for_each(|pixels| locate(pixels))), 0);
     assert!(neighbours > 300, "{neighbours}");
+}
+
+#[test]
+fn a_warm_decoder_allocates_nothing() {
+    let bits = |text: &str| text.chars().map(|bit| bit == '1').collect::<Vec<_>>();
+    let words = ["0010110111", "0010101111", "0001110101"].map(|text| Word::new(&bits(text)).unwrap());
+    let book = CodeBook::new(words.to_vec()).unwrap();
+    let decoder = Decoder::new(&book, decoder::Settings::default()).unwrap();
+    let mut listener = decoder.listener();
+    let requests = requests_during(|| {
+        for frame in 0..300 {
+            let time_s = frame as f64 / 60.0;
+            // the track takes on another light
+            let evidence = Evidence::of_bit(words[usize::from(frame > 150)].bit(frame), 0.01);
+            decoder.hear(&mut listener, time_s, 1e-3, &evidence).unwrap();
+            decoder.light_at(&listener, time_s + 0.01, 1e-3).unwrap();
+            decoder.identity(&listener);
+        }
+        decoder.restart(&mut listener);
+    });
+    assert_eq!(requests, 0);
 }

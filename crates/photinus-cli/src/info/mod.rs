@@ -11,10 +11,12 @@ mod tables;
 
 use std::path::{Path, PathBuf};
 
+use photinus_io::codes::read_codes;
 use photinus_io::kind::Kind;
 use photinus_io::{Error, Result};
 
 use crate::aligned::{Aligned, Side};
+use crate::codes;
 use crate::failure::Failure;
 use crate::terminal::Terminal;
 
@@ -47,13 +49,13 @@ pub(crate) struct Report {
     /// Tables, below the facts.
     tables: Vec<Aligned>,
     /// What a user should know or do, a sentence each.
-    notes: Vec<String>,
+    pub(crate) notes: Vec<String>,
     /// Whether something is missing or damaged, which a note tells.
     is_broken: bool,
 }
 
 impl Report {
-    fn new(what: impl Into<String>) -> Self {
+    pub(crate) fn new(what: impl Into<String>) -> Self {
         Self {
             what: what.into(),
             facts: Aligned::new(2, &[Side::Left]),
@@ -69,7 +71,7 @@ impl Report {
         self.is_broken = true;
     }
 
-    fn fact(&mut self, name: &str, value: impl Into<String>) {
+    pub(crate) fn fact(&mut self, name: &str, value: impl Into<String>) {
         self.facts.row([name.to_owned(), value.into()]);
     }
 }
@@ -99,7 +101,7 @@ pub(crate) fn run(args: &Args, terminal: &Terminal) -> std::result::Result<(), F
 fn report(path: &Path) -> Result<Report> {
     match Kind::of(path)? {
         Kind::Airframe => airframe::report(path),
-        Kind::Blink => records::blink(path),
+        Kind::Blink => read_codes(path).map(|book| codes::report(&book)),
         Kind::Camera(_) => camera::report(path),
         Kind::Dataset => dataset::dataset(path),
         Kind::DatasetTable => dataset::dataset(path.parent().unwrap_or(Path::new("."))),
@@ -132,7 +134,8 @@ fn report(path: &Path) -> Result<Report> {
 
 const KNOWN: &str = "name a camera, an airframe, a mask, frames, or a file that Photinus wrote; docs/file-formats.md shows each";
 
-fn print(path: &Path, report: &Report, terminal: &Terminal) -> std::result::Result<(), Failure> {
+/// Prints what is told about a file.
+pub(crate) fn print(path: &Path, report: &Report, terminal: &Terminal) -> std::result::Result<(), Failure> {
     terminal.result(format_args!("{}: {}", path.display(), report.what))?;
     terminal.result(&report.facts)?;
     for table in &report.tables {
@@ -145,6 +148,6 @@ fn print(path: &Path, report: &Report, terminal: &Terminal) -> std::result::Resu
 }
 
 /// A count with its word.
-fn counted(count: usize, word: &str) -> String {
+pub(crate) fn counted(count: usize, word: &str) -> String {
     if count == 1 { format!("1 {word}") } else { format!("{count} {word}s") }
 }

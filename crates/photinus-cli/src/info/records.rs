@@ -1,14 +1,13 @@
-//! Results, blink sequences and spot curves.
+//! Results and spot curves.
 
 use std::path::Path;
 
 use photinus_io::Result;
-use photinus_io::blink::read_blink_codes;
 use photinus_io::dataset::read_truth;
 use photinus_io::results::read_results;
 use photinus_io::spot_curve::{SpotCurveFile, read_spot_curve};
 
-use super::{Report, counted};
+use super::Report;
 use crate::aligned::{Aligned, Side};
 use crate::summary::Summary;
 
@@ -63,49 +62,6 @@ pub(super) fn truth(path: &Path) -> Result<Report> {
     Ok(report)
 }
 
-pub(super) fn blink(path: &Path) -> Result<Report> {
-    let codes = read_blink_codes(path)?;
-    let words = codes.words();
-    let mut report = Report::new("blink sequences");
-    report.fact("words", format!("{} of {}", words.len(), counted(codes.length(), "bit")));
-    let range = |of: fn(&[bool]) -> usize| {
-        let values = words.iter().map(|word| of(word));
-        (values.clone().min().unwrap_or(0), values.max().unwrap_or(0))
-    };
-    let told =
-        |(low, high): (usize, usize)| if low == high { low.to_string() } else { format!("{low} to {high}") };
-    report.fact("bits on", told(range(|word| word.iter().filter(|&&on| on).count())));
-    report.fact("longest dark run", format!("{} frames", told(range(|word| longest_run(word, false)))));
-    report.fact("longest lit run", format!("{} frames", told(range(|word| longest_run(word, true)))));
-    if range(|word| word.iter().filter(|&&on| on).count()).0 == 0 {
-        report.notes.push("a word that is never on shows no marker".to_owned());
-    }
-    if let Some((a, b)) = same_when_turned(words) {
-        report.notes.push(format!(
-            "words {a} and {b} are the same but for their beginning: they cannot be told apart"
-        ));
-    }
-    Ok(report)
-}
-
-/// The longest run of a value in a word that repeats.
-fn longest_run(word: &[bool], value: bool) -> usize {
-    let (mut longest, mut run) = (0, 0);
-    for &bit in word.iter().chain(word) {
-        run = if bit == value { run + 1 } else { 0 };
-        longest = longest.max(run);
-    }
-    longest.min(word.len())
-}
-
-/// Two words that are each other, begun at another bit.
-fn same_when_turned(words: &[Vec<bool>]) -> Option<(usize, usize)> {
-    let turned =
-        |word: &[bool], by: usize| word[by..].iter().chain(&word[..by]).copied().collect::<Vec<bool>>();
-    let same = |a: usize, b: usize| (0..words[b].len()).any(|by| turned(&words[b], by) == words[a]);
-    (0..words.len()).flat_map(|b| (0..b).map(move |a| (a, b))).find(|&(a, b)| same(a, b))
-}
-
 pub(super) fn spot_curve(path: &Path) -> Result<Report> {
     let SpotCurveFile { curve, exposure_us, threshold } = read_spot_curve(path)?;
     let mut report = Report::new("a curve of spot sizes");
@@ -120,19 +76,4 @@ pub(super) fn spot_curve(path: &Path) -> Result<Report> {
     }
     report.tables.push(table);
     Ok(report)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn runs_go_on_over_the_end_and_turned_words_are_found() {
-        let word = |text: &str| text.chars().map(|bit| bit == '1').collect::<Vec<bool>>();
-        assert_eq!(longest_run(&word("0110"), false), 2);
-        assert_eq!(longest_run(&word("000"), false), 3);
-        assert_eq!(longest_run(&word("000"), true), 0);
-        assert_eq!(same_when_turned(&[word("0011"), word("0101"), word("1001")]), Some((0, 2)));
-        assert_eq!(same_when_turned(&[word("0011"), word("0101")]), None);
-    }
 }

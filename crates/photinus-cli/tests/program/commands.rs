@@ -15,9 +15,15 @@ fn records(stage: &Stage, name: &str) -> Vec<FrameRecord> {
 #[test]
 fn every_command_explains_itself_with_examples() {
     let stage = Stage::new("help");
-    for words in
-        ["--help", "locate --help", "detect --help", "info --help", "convert --help", "simulate --help"]
-    {
+    for words in [
+        "--help",
+        "locate --help",
+        "detect --help",
+        "info --help",
+        "convert --help",
+        "simulate --help",
+        "codes design --help",
+    ] {
         let done = stage.run(words);
         assert_eq!(done.code, 0);
         let (_, examples) = done.out.split_once("Examples:\n").unwrap();

@@ -13,6 +13,7 @@ mod calibrate_airframe_light;
 mod calibrate_mounting;
 mod calibrate_report;
 mod calibrate_spot_size;
+mod codes;
 mod commands;
 mod demo;
 mod doctor;

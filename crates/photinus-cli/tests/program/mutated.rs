@@ -11,7 +11,7 @@ const MOST_KIB: u32 = 3_000_000;
 const LONGEST_S: u32 = 60;
 
 /// A command and the file that is damaged before it runs.
-const CASES: [(&str, &str); 26] = [
+const CASES: [(&str, &str); 27] = [
     ("detect frame.png --overlay out", "frame.png"),
     ("detect colour.ppm", "colour.ppm"),
     ("detect v.y4m --out out", "v.y4m"),
@@ -31,6 +31,7 @@ const CASES: [(&str, &str); 26] = [
     ("evaluate rec done.jsonl", "rec/truth.jsonl"),
     ("info rec frame.png camera.toml hexa.toml v.y4m done.jsonl codes.txt", "codes.txt"),
     ("info ocam.txt", "ocam.txt"),
+    ("codes check codes.txt", "codes.txt"),
     ("convert camera.toml out.txt", "camera.toml"),
     ("convert layout.txt out.toml", "layout.txt"),
     ("convert done.jsonl out.csv", "done.jsonl"),

@@ -25,7 +25,9 @@ mod writer;
 
 use std::path::{Path, PathBuf};
 
-use crate::blink::{BlinkCodes, read_blink_codes};
+use photinus::identity::CodeBook;
+
+use crate::codes::read_codes;
 use crate::{Error, Result, airframe, whole};
 pub use cameras::DatasetCamera;
 pub use frames_csv::{FrameRow, parse_frames_csv};
@@ -53,7 +55,7 @@ pub struct Dataset {
     folder: PathBuf,
     info: DatasetInfo,
     cameras: Vec<DatasetCamera>,
-    codes: Option<BlinkCodes>,
+    codes: Option<CodeBook>,
     vehicles: Vec<Vehicle>,
 }
 
@@ -74,7 +76,7 @@ impl Dataset {
                 (rig.first(), cameras)
             }
         };
-        let codes = info.codes.as_ref().map(|named| read_blink_codes(folder.join(named))).transpose()?;
+        let codes = info.codes.as_ref().map(|named| read_codes(folder.join(named))).transpose()?;
         let vehicles = match &info.vehicles {
             Some(named) => read_vehicles(&folder, named, codes.as_ref())?,
             None => Vec::new(),
@@ -103,7 +105,7 @@ impl Dataset {
     }
 
     /// The book of code words, where one is named.
-    pub fn codes(&self) -> Option<&BlinkCodes> {
+    pub fn codes(&self) -> Option<&CodeBook> {
         self.codes.as_ref()
     }
 
@@ -169,7 +171,7 @@ fn in_folder(folder: &Path, name: &Path) -> Result<(String, PathBuf)> {
     }
 }
 
-fn read_vehicles(folder: &Path, named: &Path, codes: Option<&BlinkCodes>) -> Result<Vec<Vehicle>> {
+fn read_vehicles(folder: &Path, named: &Path, codes: Option<&CodeBook>) -> Result<Vec<Vehicle>> {
     let (text, path) = in_folder(folder, named)?;
     let vehicles = parse_vehicles(&text, &path)?.into_iter().enumerate();
     vehicles

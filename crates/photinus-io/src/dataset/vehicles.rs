@@ -3,9 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use photinus::airframe::Airframe;
+use photinus::identity::CodeBook;
 use serde::{Deserialize, Serialize};
 
-use crate::blink::BlinkCodes;
 use crate::{Error, Place, Result, physics, table};
 
 /// A `[[vehicle]]` of vehicles.toml.
@@ -108,7 +108,7 @@ impl VehicleInfo {
     pub(super) fn with(
         self,
         airframe: Airframe,
-        codes: Option<&BlinkCodes>,
+        codes: Option<&CodeBook>,
         (index, path): (usize, &Path),
     ) -> Result<Vehicle> {
         let refuse = |reason: String, advice: &str| {

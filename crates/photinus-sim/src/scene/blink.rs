@@ -1,7 +1,7 @@
 //! What targets blink, and by which clock.
 
 use photinus::airframe::Airframe;
-use photinus_io::blink::read_blink_codes;
+use photinus_io::codes::read_codes;
 use photinus_io::{Result, physics};
 
 use super::read::Reader;
@@ -36,7 +36,7 @@ impl Reader<'_> {
     pub(super) fn blink(&self, key: &str, table: BlinkTable, airframe: &Airframe) -> Result<BlinkPlan> {
         let check = &self.check;
         let key = |name: &str| format!("{key}.{name}");
-        let codes = read_blink_codes(self.named(&key("codes"), &table.codes)?)?;
+        let codes = read_codes(self.named(&key("codes"), &table.codes)?)?;
         let last = airframe.leds().iter().filter_map(|led| led.signal).max().unwrap_or(0) as usize;
         let (name, words) = match (table.words, table.first_word) {
             (Some(_), Some(_)) => {

@@ -22,7 +22,7 @@ pub use files::files_of;
 use nalgebra::{Isometry3, Vector3};
 use photinus::airframe::Airframe;
 use photinus::camera::Camera;
-use photinus_io::blink::BlinkCodes;
+use photinus::identity::CodeBook;
 
 use crate::background::{Daylight, Water};
 use crate::clock::Clock;
@@ -123,7 +123,7 @@ pub struct SceneLamp {
 #[derive(Clone, Debug, PartialEq)]
 pub struct BlinkPlan {
     /// The book of words.
-    pub codes: BlinkCodes,
+    pub codes: CodeBook,
     /// The word of each signal of the airframe; an LED without a signal sends that of signal 0.
     pub words: Vec<usize>,
     /// Bits per second on the target's clock.

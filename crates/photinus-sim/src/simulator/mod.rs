@@ -145,7 +145,7 @@ fn blinks(target: &Target, seed: u64) -> Vec<Option<Blink>> {
     let of = |led: &Led| {
         let plan = target.blink.as_ref()?;
         let word = *plan.words.get(led.signal.unwrap_or(0) as usize)?;
-        let blink = Blink::new(plan.codes.words().get(word)?.clone(), plan.rate_hz, plan.clock)?;
+        let blink = Blink::new(plan.codes.words().get(word)?.bits().collect(), plan.rate_hz, plan.clock)?;
         Some(blink.with_jitter(plan.jitter_s, hash(seed ^ hash(u64::from(target.id)))))
     };
     target.airframe.leds().iter().map(of).collect()

@@ -2,11 +2,12 @@
 //!
 //! Times differ from machine to machine and from run to run; the ratios to the floors, above all to a pass that only takes
 //! the maximum of the frame, are what to compare. Every contender runs in turn within each round, medians are over the
-//! rounds. Run only some tables with `cargo bench -p photinus -- detection` (or `locating`, `posing`).
+//! rounds. Run only some tables with `cargo bench -p photinus -- detection` (or `decoding`, `locating`, `posing`).
 
 #![expect(clippy::print_stdout, reason = "a benchmark prints its table")]
 
 mod contest;
+mod decoding;
 mod detection;
 mod frames;
 
@@ -22,7 +23,12 @@ use photinus::locator::{self, Locator};
 
 fn main() {
     let asked = std::env::args().skip(1).find(|argument| !argument.starts_with('-'));
-    for (name, run) in [("detection", detection::run as fn()), ("locating", locating), ("posing", posing)] {
+    for (name, run) in [
+        ("detection", detection::run as fn()),
+        ("decoding", decoding::run),
+        ("locating", locating),
+        ("posing", posing),
+    ] {
         if asked.as_ref().is_none_or(|asked| asked == name) {
             run();
         }

@@ -1,0 +1,72 @@
+//! Decoding the markers of a frame: who blinks, of 41 words of 18 bits.
+
+use std::hint::black_box;
+
+use photinus::identity::decoder::{Decoder, Listener, Settings};
+use photinus::identity::{CodeBook, Evidence, Word};
+
+use crate::contest::Contest;
+use crate::frames::{self, PAPER, Scene};
+
+const BOOK: &str = include_str!("../../../../scenes/codes/l18-d3-r2.txt");
+
+/// Frames after which markers that are not yet known begin anew.
+const UNKNOWN_FOR: usize = 18;
+
+struct Markers {
+    decoder: Decoder,
+    words: Vec<Word>,
+    listeners: Vec<Listener>,
+    frame: usize,
+}
+
+impl Markers {
+    fn new(count: usize) -> Self {
+        let word = |line: &str| Word::new(&line.split(',').map(|bit| bit == "1").collect::<Vec<_>>());
+        let words: Vec<Word> =
+            BOOK.lines().filter_map(|line| word(line).filter(|_| !line.starts_with('#'))).collect();
+        let book = CodeBook::new(words.clone()).expect("a book");
+        let decoder = Decoder::new(&book, Settings::default()).expect("a decoder");
+        let listeners = vec![decoder.listener(); count];
+        Self { decoder, words, listeners, frame: 0 }
+    }
+
+    fn hear(&mut self) {
+        self.frame += 1;
+        let time_s = self.frame as f64 / 60.0;
+        for (marker, listener) in self.listeners.iter_mut().enumerate() {
+            let bit = self.words[marker % self.words.len()].bit(self.frame + marker);
+            let heard = self.decoder.hear(listener, time_s, 1e-3, &Evidence::of_bit(bit, 0.01));
+            heard.expect("time passes");
+            black_box(self.decoder.identity(listener));
+        }
+    }
+
+    /// One in so many begins anew each time, so that each frame costs the same.
+    fn begin_some_anew(&mut self) {
+        let due = self.frame % UNKNOWN_FOR;
+        for listener in self.listeners.iter_mut().skip(due).step_by(UNKNOWN_FOR) {
+            self.decoder.restart(listener);
+        }
+    }
+}
+
+pub(crate) fn run() {
+    let mut contest = Contest::new("Decoding the markers of a frame", "maximum of the frame");
+    let empty = frames::markers(&Scene { size: PAPER, markers: 0, sun: false });
+    contest.add("maximum of the frame", move |i| {
+        let frame = &empty[i % empty.len()];
+        black_box(frame.iter().fold(0, |high: u8, &pixel| high.max(pixel)));
+    });
+    for count in [20, 120] {
+        let mut known = Markers::new(count);
+        (0..200).for_each(|_| known.hear());
+        contest.add(&format!("{count} markers, known"), move |_| known.hear());
+        let mut unknown = Markers::new(count);
+        contest.add(&format!("{count} markers, not yet known"), move |_| {
+            unknown.begin_some_anew();
+            unknown.hear();
+        });
+    }
+    contest.run();
+}

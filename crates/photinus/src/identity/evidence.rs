@@ -1,0 +1,98 @@
+//! What one frame says of one LED: how likely the light that was measured is for each share of the exposure that the LED shone.
+//!
+//! The exposure may hold an edge of the signal, so that the LED shone for a part of it; a spot that is not there says something, too.
+
+use super::Level;
+
+/// Shares of the exposure at which likelihoods are kept: 0, 1/4, 1/2, 3/4, 1; between them they are drawn straight.
+pub(super) const SHARES: usize = 5;
+
+/// A light that fits nothing still has this likelihood against the best fit, so that no frame rules out anything for ever.
+const LEAST: f64 = 1e-6;
+
+/// How likely what a frame showed is, by the share of the exposure that the LED shone; up to a factor that is the same for all.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Evidence {
+    likelihood: [f32; SHARES],
+}
+
+impl Evidence {
+    /// Nothing is known: the place was out of sight, masked or covered.
+    pub const NONE: Self = Self { likelihood: [1.0; SHARES] };
+
+    /// Of natural logarithms of likelihoods at shares of 0, 1/4, 1/2, 3/4 and 1 of the exposure, up to a constant; minus infinity is
+    /// allowed. `None` when one is NaN or plus infinity, or none is finite.
+    pub fn of_log_likelihoods(logs: [f64; SHARES]) -> Option<Self> {
+        let most = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let legal = most.is_finite() && logs.iter().all(|log| !log.is_nan());
+        legal.then(|| Self::of_likelihoods(logs.map(|log| libm::exp(log - most))))
+    }
+
+    /// Of a bit that is wrong with this probability, from 0 to 1/2; an LED that shone for a part gives either.
+    pub fn of_bit(is_on: bool, error: f64) -> Self {
+        let error = error.clamp(0.0, 0.5);
+        let on = |share: f64| error + (1.0 - 2.0 * error) * share;
+        let of = |share: f64| if is_on { on(share) } else { 1.0 - on(share) };
+        Self::of_likelihoods([0.0, 0.25, 0.5, 0.75, 1.0].map(of))
+    }
+
+    /// Of a spot whose light is `light` with standard deviation `sigma`, where the LED would show `level` if it shone all the time.
+    pub fn of_light(light: f64, sigma: f64, level: &Level) -> Self {
+        let of = |share: f64| {
+            let (off, deviation) = level.standing(light, sigma, share);
+            let stray = level.surprise / (2.0 * level.full);
+            libm::exp(-0.5 * off * off) / (deviation * 2.506_628_274_631_000_7) + stray
+        };
+        Self::of_likelihoods([0.0, 0.25, 0.5, 0.75, 1.0].map(of))
+    }
+
+    /// Of no spot: what was there showed less light than `limit`, which noise of standard deviation `sigma` makes unsharp.
+    pub fn of_absence(limit: f64, sigma: f64, level: &Level) -> Self {
+        let of = |share: f64| {
+            let (off, _) = level.standing(limit, sigma, share);
+            0.5 * libm::erfc(-off / std::f64::consts::SQRT_2) + level.surprise
+        };
+        Self::of_likelihoods([0.0, 0.25, 0.5, 0.75, 1.0].map(of))
+    }
+
+    /// Of likelihoods that are not negative; what is no number says nothing.
+    fn of_likelihoods(likelihood: [f64; SHARES]) -> Self {
+        let most = likelihood.iter().copied().fold(0.0, f64::max);
+        if !(most > 0.0 && most.is_finite()) {
+            return Self::NONE;
+        }
+        Self { likelihood: likelihood.map(|one| (one / most).max(LEAST) as f32) }
+    }
+
+    /// In place of likelihoods the share itself, so that a mean over what may be is the mean share.
+    pub(super) const SHARE: Self = Self { likelihood: [0.0, 0.25, 0.5, 0.75, 1.0] };
+
+    /// The likelihood of no light.
+    pub(super) fn off(&self) -> f32 {
+        self.likelihood[0]
+    }
+
+    /// The likelihood of light all the time.
+    pub(super) fn on(&self) -> f32 {
+        self.likelihood[SHARES - 1]
+    }
+
+    /// The integral of the likelihood over shares from 0 to `share`.
+    pub(super) fn up_to(&self, share: f32) -> f32 {
+        let at = share.clamp(0.0, 1.0) * (SHARES - 1) as f32;
+        let whole = (at as usize).min(SHARES - 2);
+        let mut sum = 0.0;
+        for i in 0..whole {
+            sum += 0.5 * (self.likelihood[i] + self.likelihood[i + 1]);
+        }
+        let (low, high, part) = (self.likelihood[whole], self.likelihood[whole + 1], at - whole as f32);
+        (sum + part * (low + 0.5 * part * (high - low))) / (SHARES - 1) as f32
+    }
+
+    /// The same for an LED that is dark where this one shines.
+    pub(super) fn inverted(&self) -> Self {
+        let mut likelihood = self.likelihood;
+        likelihood.reverse();
+        Self { likelihood }
+    }
+}

@@ -158,9 +158,9 @@ fn projections_through_the_files_own_inverse() {
 fn the_files_beside_them_are_no_cameras() {
     let Some(folder) = real_data("ocamcalib") else { return };
     for (file, what) in [
-        ("../airframes/quadrotor.txt", "an LED layout"),
+        ("../airframes/quadrotor.txt", "an airframe"),
         ("../blink-codes/L8.txt", "blink sequences"),
-        ("../masks/lemmy_25003811.png", "a PNG picture"),
+        ("../masks/lemmy_25003811.png", "an image"),
     ] {
         let refusal = read_camera(&folder.join(file)).unwrap_err().to_string();
         assert!(refusal.contains(what), "{refusal}");

@@ -65,7 +65,9 @@ fn what_renders_imports_nothing_of_what_detects() {
             let after = &code[place + "photinus::".len()..];
             let room: String = after.chars().take_while(|c| c.is_ascii_alphanumeric() || *c == '_').collect();
             let allowed = ["airframe", "camera", "frame"];
-            assert!(allowed.contains(&room.as_str()), "{}: photinus::{room}", path.display());
+            // The words that LEDs blink are not what detects them.
+            let is_word = after.starts_with("identity::CodeBook");
+            assert!(is_word || allowed.contains(&room.as_str()), "{}: photinus::{room}", path.display());
             imports += 1;
         }
     }

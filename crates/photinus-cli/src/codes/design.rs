@@ -15,11 +15,13 @@ use crate::terminal::Terminal;
 const EXAMPLES: &str = "\
 Examples:
   photinus codes design --length 12 --distance 3 --longest-run 3 --out book.txt
-  photinus codes design --length 18 --distance 5 --longest-run 4 --duty 0.4..0.6 --effort 10 --out book.txt
+  photinus codes design --length 18 --distance 5 --longest-run 4 \\
+      --duty 0.4..0.6 --effort 10 --out book.txt
 
-Long runs of dark bits make a marker harder to follow, long words take longer to read; a distance of 3 corrects
-one wrong bit in a round, 5 two. A camera meets words at any bit: every distance holds at any shift.
-How many words there can be at most is said with the book. The same options give the same book everywhere.";
+Long runs of dark bits make a marker harder to follow, long words take longer to
+read; a distance of 3 corrects one wrong bit in a round, 5 two. A camera meets
+words at any bit: every distance holds at any shift. How many words there can be
+at most is said with the book. The same options give the same book everywhere.";
 
 /// Search for a book with as many words as can be found
 #[derive(Debug, clap::Args)]

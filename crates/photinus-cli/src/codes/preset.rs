@@ -11,10 +11,13 @@ use crate::terminal::Terminal;
 
 const EXAMPLES: &str = "\
 Examples:
-  photinus codes preset                              which there are
-  photinus codes preset l18-d3-r2 --out book.txt     one of them as a file
+  # which there are
+  photinus codes preset
+  # one of them as a file
+  photinus codes preset l18-d3-r2 --out book.txt
 
-Their names say bits of a word, distance and longest run; they were designed by `photinus codes design`.";
+Their names say bits of a word, distance and longest run; this program designed
+them.";
 
 /// Write a book that comes with the program, or list them
 #[derive(Debug, clap::Args)]

@@ -26,15 +26,161 @@ const LIGHT_STEP: f64 = 0.5;
 const LIGHT_STEPS: usize = 32;
 
 /// The density of clutter at each observation.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(super) struct Clutter {
+    frame_px: f64,
+    with_light: bool,
     log_density: Vec<f64>,
-    /// By cell of the image, then by step of light.
-    counts: Vec<f64>,
+    counts: Counts,
+    /// Counts of the observations before one.
+    before: Counts,
+}
+
+impl Clutter {
+    /// Nothing measured yet, in images of `size` (width, height) px. Without `with_light` the density is one of directions alone.
+    pub(super) fn new(size: [usize; 2], with_light: bool) -> Self {
+        Self {
+            frame_px: (size[0] * size[1]) as f64,
+            with_light,
+            log_density: Vec::new(),
+            counts: Counts::of(size),
+            before: Counts::of(size),
+        }
+    }
+
+    /// How much clutter is in every cell of the image and step of light, as measured last.
+    pub(super) fn counts(&self) -> &[f64] {
+        &self.counts.list
+    }
+
+    /// Logarithm of the density at each observation.
+    pub(super) fn log_density(&self) -> &[f64] {
+        &self.log_density
+    }
+
+    /// Measures the density, where `share` tells how likely an observation is clutter, after the frames that are remembered.
+    pub(super) fn measure(
+        &mut self,
+        sightings: &[Sighting],
+        groups: &Groups,
+        memory: &Memory,
+        share: impl Fn(usize) -> f64,
+    ) {
+        self.counts.clear();
+        for (index, sighting) in sightings.iter().enumerate() {
+            self.counts.add(sighting, share(index));
+        }
+        self.log_density.clear();
+        self.log_density.resize(sightings.len(), 0.0);
+        for members in (0..groups.len()).map(|group| groups.group(group)) {
+            members.iter().for_each(|&index| self.counts.add(&sightings[index], -share(index)));
+            let each = members.iter().map(|&index| share(index)).sum::<f64>() / members.len() as f64;
+            for &index in members {
+                let sighting = &sightings[index];
+                let log_per_sr = (0..members.len())
+                    .map(|before| self.log_per_sr(&self.counts, memory, sighting, before as f64 * each))
+                    .sum::<f64>()
+                    / members.len() as f64;
+                self.log_density[index] =
+                    log_per_sr + self.log_of_light(&self.counts, memory, sighting) + log_of_look(sighting);
+            }
+            members.iter().for_each(|&index| self.counts.add(&sightings[index], share(index)));
+        }
+    }
+
+    /// How much less likely it is that all observations are clutter, as likely as `share` tells, than the densities measured have it: each of those is
+    /// after all others, but a frame is drawn one after the other (chain rule).
+    pub(super) fn excess(
+        &mut self,
+        sightings: &[Sighting],
+        memory: &Memory,
+        share: impl Fn(usize) -> f64,
+    ) -> f64 {
+        self.before.clear();
+        let mut excess = 0.0;
+        for (index, sighting) in sightings.iter().enumerate() {
+            let share = share(index);
+            let first = self.log_per_sr(&self.before, memory, sighting, 0.0)
+                + self.log_of_light(&self.before, memory, sighting)
+                + log_of_look(sighting);
+            excess += share * (self.log_density[index] - first);
+            self.before.add(sighting, share);
+        }
+        excess
+    }
+
+    /// Logarithm of how dense clutter is in the direction of an observation, with so many more points at the same place.
+    fn log_per_sr(&self, counts: &Counts, memory: &Memory, sighting: &Sighting, more: f64) -> f64 {
+        let frames = 1.0 + memory.frames() as f64;
+        let around = counts.cells.around(counts.cells.of_observation(sighting));
+        let area_px = around.clone().count() as f64 * CELL_PX * CELL_PX;
+        let in_area = around.map(|cell| counts.list[cell] + memory.clutter(cell)).sum::<f64>().max(0.0) + more;
+        let in_frame = counts.total(memory) + more;
+        let mean =
+            (BEFOREHAND * WORTH_FRAMES + in_frame) / (self.frame_px * (frames + WORTH_FRAMES));
+        let here = mean * area_px * WORTH_SURROUNDINGS + in_area;
+        let rad2_per_px = (sighting.rad_per_px * sighting.rad_per_px).max(1e-12);
+        libm::log(here / (area_px * (frames + WORTH_SURROUNDINGS) * rad2_per_px))
+    }
+
+    /// Logarithm of how dense the light of clutter is at that of an observation.
+    fn log_of_light(&self, counts: &Counts, memory: &Memory, sighting: &Sighting) -> f64 {
+        let Some(light) = sighting.log_light.filter(|_| self.with_light) else { return 0.0 };
+        let step = light_step(light.value);
+        let count = |step: usize| {
+            let place = counts.cells.count() + step;
+            counts.list[place] + memory.clutter(place)
+        };
+        let there = 0.25 * count(step.saturating_sub(1))
+            + 0.5 * count(step)
+            + 0.25 * count((step + 1).min(LIGHT_STEPS - 1));
+        let density = WORTH_POINTS / LIGHT_RANGE + there.max(0.0) / LIGHT_STEP;
+        libm::log(density / (WORTH_POINTS + counts.total(memory)))
+    }
+}
+
+/// What the look and the signal of an observation tell against its being clutter, as a logarithm.
+fn log_of_look(sighting: &Sighting) -> f64 {
+    -sighting.spot.marker_log_odds.min(0.0) - sighting.signal.map_or(0.0, |_| BLINKS_BY_CHANCE)
+}
+
+/// Clutter by cell of the image, then by step of light, then in all.
+#[derive(Debug)]
+struct Counts {
+    cells: Cells,
+    list: Vec<f64>,
+}
+
+impl Counts {
+    fn of(size: [usize; 2]) -> Self {
+        let cells = Cells::of(size);
+        Self { cells, list: vec![0.0; cells.count() + LIGHT_STEPS + 1] }
+    }
+
+    fn clear(&mut self) {
+        self.list.fill(0.0);
+    }
+
+    /// All of it, with what is remembered.
+    fn total(&self, memory: &Memory) -> f64 {
+        let place = self.list.len() - 1;
+        (self.list[place] + memory.clutter(place)).max(0.0)
+    }
+
+    /// Counts an observation by so much.
+    fn add(&mut self, sighting: &Sighting, share: f64) {
+        let [column, row] = self.cells.of_observation(sighting);
+        self.list[row * self.cells.columns + column] += share;
+        let total = self.list.len() - 1;
+        self.list[total] += share;
+        if let Some(light) = sighting.log_light {
+            self.list[self.cells.count() + light_step(light.value)] += share;
+        }
+    }
 }
 
 /// An image that is divided into cells.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 struct Cells {
     columns: usize,
     rows: usize,
@@ -46,7 +192,11 @@ impl Cells {
         Self { columns: count(width), rows: count(height) }
     }
 
-    fn of_observation(&self, sighting: &Sighting) -> [usize; 2] {
+    fn count(self) -> usize {
+        self.columns * self.rows
+    }
+
+    fn of_observation(self, sighting: &Sighting) -> [usize; 2] {
         let at = |px: f64, cells: usize| ((px / CELL_PX).max(0.0) as usize).min(cells - 1);
         [at(sighting.spot.centre.u, self.columns), at(sighting.spot.centre.v, self.rows)]
     }
@@ -59,126 +209,7 @@ impl Cells {
     }
 }
 
-impl Clutter {
-    /// How many counts there are of an image of `size` (width, height) px.
-    pub(super) fn counts_of(size: [usize; 2]) -> usize {
-        let Cells { columns, rows } = Cells::of(size);
-        columns * rows + LIGHT_STEPS
-    }
-
-    /// How much clutter is in every cell of the image and step of light, as measured last.
-    pub(super) fn counts(&self) -> &[f64] {
-        &self.counts
-    }
-
-    /// Logarithm of the density at each observation.
-    pub(super) fn log_density(&self) -> &[f64] {
-        &self.log_density
-    }
-
-    /// Measures the density, in an image of `size` (width, height) px, where `share` tells how likely an observation is clutter, after the frames
-    /// that are remembered, if any. Without `with_light` the density is one of directions alone.
-    pub(super) fn measure(
-        &mut self,
-        sightings: &[Sighting],
-        groups: &Groups,
-        size: [usize; 2],
-        with_light: bool,
-        memory: Option<&Memory>,
-        share: impl Fn(usize) -> f64,
-    ) {
-        let cells = Cells::of(size);
-        let in_cells = cells.columns * cells.rows;
-        self.count(sightings, cells, &share);
-        let frames = memory.map_or(0, Memory::frames) as f64;
-        let remembered = |count: usize| memory.map_or(0.0, |memory| memory.clutter(count));
-        let all: f64 = self.counts[..in_cells].iter().sum();
-        let ever: f64 = (0..in_cells).map(remembered).sum();
-        self.log_density.clear();
-        self.log_density.resize(sightings.len(), 0.0);
-        for group in 0..groups.len() {
-            let members = groups.group(group);
-            let own: f64 = members.iter().map(|&index| share(index)).sum();
-            let each = own / members.len() as f64;
-            for &index in members {
-                let sighting = &sightings[index];
-                let around = cells.around(cells.of_observation(sighting));
-                let area_px = around.clone().count() as f64 * CELL_PX * CELL_PX;
-                let near = Surroundings {
-                    frame_px: (size[0] * size[1]) as f64,
-                    frames: 1.0 + frames,
-                    in_frame: (all - own).max(0.0) + ever,
-                    area_px,
-                    in_area: (around.clone().map(|cell| self.counts[cell]).sum::<f64>() - own).max(0.0)
-                        + around.map(remembered).sum::<f64>(),
-                };
-                let log_per_px2 =
-                    (0..members.len()).map(|before| near.log_per_px2(before as f64 * each)).sum::<f64>()
-                        / members.len() as f64;
-                let rad2_per_px = (sighting.rad_per_px * sighting.rad_per_px).max(1e-12);
-                let light = sighting.log_light.filter(|_| with_light).map_or(0.0, |light| {
-                    let step = light_step(light.value);
-                    let count = |step: usize| self.counts[in_cells + step] + remembered(in_cells + step);
-                    let own_there = members.iter().filter_map(|&other| {
-                        let light = sightings[other].log_light?;
-                        Some(share(other) * weight_of(step, light_step(light.value)))
-                    });
-                    let there = [step.saturating_sub(1), step, (step + 1).min(LIGHT_STEPS - 1)];
-                    let there = 0.25 * count(there[0]) + 0.5 * count(there[1]) + 0.25 * count(there[2]);
-                    let there = (there - own_there.sum::<f64>()).max(0.0) / LIGHT_STEP;
-                    let points = (all - own).max(0.0) + ever;
-                    libm::log((WORTH_POINTS / LIGHT_RANGE + there) / (WORTH_POINTS + points))
-                });
-                self.log_density[index] = log_per_px2 - libm::log(rad2_per_px) + light
-                    - sighting.spot.marker_log_odds.min(0.0)
-                    - sighting.signal.map_or(0.0, |_| BLINKS_BY_CHANCE);
-            }
-        }
-    }
-
-    fn count(&mut self, sightings: &[Sighting], cells: Cells, share: &impl Fn(usize) -> f64) {
-        let in_cells = cells.columns * cells.rows;
-        self.counts.clear();
-        self.counts.resize(in_cells + LIGHT_STEPS, 0.0);
-        for (index, sighting) in sightings.iter().enumerate() {
-            let [column, row] = cells.of_observation(sighting);
-            self.counts[row * cells.columns + column] += share(index);
-            if let Some(light) = sighting.log_light {
-                self.counts[in_cells + light_step(light.value)] += share(index);
-            }
-        }
-    }
-}
-
 /// The step that a logarithm of light is in.
 fn light_step(log_light: f64) -> usize {
     ((log_light / LIGHT_STEP).max(0.0) as usize).min(LIGHT_STEPS - 1)
-}
-
-/// What a point in one step of light counts in another.
-fn weight_of(step: usize, other: usize) -> f64 {
-    match step.abs_diff(other) {
-        0 => 0.5,
-        1 => 0.25,
-        _ => 0.0,
-    }
-}
-
-/// Clutter in some frames and around an observation, without what belongs to it.
-struct Surroundings {
-    frames: f64,
-    frame_px: f64,
-    in_frame: f64,
-    area_px: f64,
-    in_area: f64,
-}
-
-impl Surroundings {
-    /// Logarithm of the density per px^2, with so many more points at the same place.
-    fn log_per_px2(&self, more: f64) -> f64 {
-        let mean = (BEFOREHAND * WORTH_FRAMES + self.in_frame + more)
-            / (self.frame_px * (self.frames + WORTH_FRAMES));
-        let here = mean * self.area_px * WORTH_SURROUNDINGS + self.in_area + more;
-        libm::log(here / (self.area_px * (self.frames + WORTH_SURROUNDINGS)))
-    }
 }

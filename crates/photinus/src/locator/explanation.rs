@@ -71,11 +71,9 @@ impl Explanation {
         self.clutter[observation]
     }
 
-    /// Logarithm of the density of all observations, where each has this one as clutter: of neighbours and clutter that are as many as they are
-    /// expected to be.
+    /// Logarithm of the density of all observations, where each has this one as clutter.
     pub(super) fn log_density(&self, clutter_log_density: &[f64]) -> f64 {
-        let clutter: f64 = clutter_log_density.iter().sum();
-        self.log_gain + clutter - self.clutter.iter().sum::<f64>() - self.neighbours()
+        self.log_gain + clutter_log_density.iter().sum::<f64>()
     }
 
     /// How many neighbours the frame has.

@@ -47,8 +47,6 @@ const LOOKS_PER_WEIGHING: u32 = 16;
 /// Explains the frames of one camera. Keeps its room.
 #[derive(Debug)]
 pub(super) struct Inference {
-    size: [usize; 2],
-    with_light: bool,
     min_probability: f64,
     budget: u32,
     matcher: Matcher,
@@ -75,17 +73,17 @@ impl Inference {
         // A larger budget finds its room as it goes.
         let most = (settings.budget.min(Settings::DEFAULT_BUDGET) / LOOKS_PER_WEIGHING) as usize;
         let faintest_light = posing::faintest_light(&settings.spots);
+        let with_light = settings.pose.use_brightness;
+        let clutter = Clutter::new(size, with_light);
         Ok(Self {
-            size,
-            with_light: settings.pose.use_brightness,
             min_probability: settings.min_probability,
             budget: settings.budget,
             poser: Poser::new(airframe, settings.pose, &settings.spots)?,
             matcher: Matcher::new(airframe, settings.max_tilt_rad, &settings.pose, faintest_light),
             groups: Groups::default(),
-            memory: Memory::new(Clutter::counts_of(size)),
-            first_clutter: Clutter::default(),
-            clutter: Clutter::default(),
+            memory: Memory::new(clutter.counts().len()),
+            first_clutter: Clutter::new(size, with_light),
+            clutter,
             candidates: Candidates::with_room(most),
             alternatives: Alternatives::with_room(),
             doubtful: Vec::new(),
@@ -137,25 +135,18 @@ impl Inference {
 
     /// Takes a first look at each group, and tells from that how dense clutter is.
     fn look(&mut self, context: &Context<'_>) {
-        self.groups.look(context, &mut self.matcher);
+        let Self { groups, first_clutter, memory, matcher, .. } = self;
+        groups.look(context, matcher);
         let mut supposed = |share: f64| {
-            self.groups.suppose(context.sightings.len(), share);
-            let mut log_density = 0.0;
+            groups.suppose(context.sightings.len(), share);
+            let mut gain = 0.0;
             for _ in 0..LOOKS {
-                let (groups, memory) = (&self.groups, Some(&self.memory));
-                let share = |spot: usize| groups.clutter(spot);
-                self.first_clutter.measure(
-                    context.sightings,
-                    groups,
-                    self.size,
-                    self.with_light,
-                    memory,
-                    share,
-                );
-                let log_neighbours = log_neighbours(self.groups.neighbours(), &self.memory);
-                log_density = self.groups.weigh_looks(self.first_clutter.log_density(), log_neighbours);
+                first_clutter.measure(context.sightings, groups, memory, |spot| groups.clutter(spot));
+                let log_neighbours = log_neighbours(groups.neighbours(), memory);
+                let as_measured = groups.weigh_looks(first_clutter.log_density(), log_neighbours);
+                gain = as_measured - excess_of_neighbours(groups.neighbours(), log_neighbours, memory);
             }
-            log_density
+            gain - first_clutter.excess(context.sightings, memory, |spot| groups.clutter(spot))
         };
         let [much, little] = [1.0, 0.0].map(&mut supposed);
         if much > little {
@@ -217,19 +208,19 @@ impl Inference {
 
     /// Explains the frame by its candidates, with clutter and neighbours as dense as the explanation itself has them.
     fn settle(&mut self, sightings: &[Sighting]) {
-        let Self { explanation, clutter, groups, candidates, memory, size, with_light, .. } = self;
+        let Self { explanation, clutter, groups, candidates, memory, .. } = self;
         let mut supposed = |share: Option<f64>| {
-            let first = |spot: usize| share.unwrap_or(groups.clutter(spot));
-            clutter.measure(sightings, groups, *size, *with_light, Some(memory), first);
+            clutter.measure(sightings, groups, memory, |spot| share.unwrap_or(groups.clutter(spot)));
             let mut density = log_neighbours(groups.neighbours(), memory);
             for _ in 0..CLUTTER_ROUNDS {
                 explanation.explain(candidates, clutter.log_density(), density);
-                let share = |spot: usize| explanation.clutter(spot);
-                clutter.measure(sightings, groups, *size, *with_light, Some(memory), share);
+                clutter.measure(sightings, groups, memory, |spot| explanation.clutter(spot));
                 density = log_neighbours(explanation.neighbours(), memory);
             }
             explanation.explain(candidates, clutter.log_density(), density);
             explanation.log_density(clutter.log_density())
+                - clutter.excess(sightings, memory, |spot| explanation.clutter(spot))
+                - excess_of_neighbours(explanation.neighbours(), density, memory)
         };
         let [much, little] = [None, Some(0.0)].map(&mut supposed);
         if much > little {
@@ -261,5 +252,18 @@ impl Work {
 /// remembered, and one to begin with; in a field of half the sphere.
 fn log_neighbours(in_frame: f64, memory: &Memory) -> f64 {
     let per_frame = (1.0 + memory.neighbours() + (in_frame - 1.0).max(0.0)) / (2.0 + memory.frames() as f64);
-    libm::log(per_frame.max(FEWEST_NEIGHBOURS) / core::f64::consts::TAU)
+    log_per_sr(per_frame.max(FEWEST_NEIGHBOURS))
+}
+
+fn log_per_sr(per_frame: f64) -> f64 {
+    libm::log(per_frame / core::f64::consts::TAU)
+}
+
+/// How much less likely so many neighbours are than where each has this density: that is as it is after all others, but a frame is drawn one after
+/// the other (chain rule).
+fn excess_of_neighbours(in_frame: f64, log_density: f64, memory: &Memory) -> f64 {
+    let first = 1.0 + memory.neighbours();
+    let frames = 2.0 + memory.frames() as f64;
+    let drawn = libm::lgamma(first + in_frame) - libm::lgamma(first) + in_frame * log_per_sr(1.0 / frames);
+    in_frame * log_density - drawn
 }

@@ -14,6 +14,9 @@ use crate::pose;
 use crate::spots::Extent;
 
 const SIGMA_PX: f64 = 0.1;
+/// Light of an LED straight ahead at 1 m, and the least that the detector finds with its default threshold, grey levels.
+const POWER: f64 = 100_000.0;
+const FAINTEST: f64 = 75.0;
 
 fn camera() -> Camera {
     let lens = Ideal::new(IdealLaw::Equidistant, [1.0 / 3.7673e-3; 2], Pixel::new(375.5, 239.5)).unwrap();
@@ -60,8 +63,7 @@ impl Placed {
             let pixel = camera.pixel(&Bearing::new(marker_m)?)?;
             let distance_m = marker_m.norm();
             let intensity = airframe.intensity(marker, &camera_m);
-            // What is fainter than three grey levels a detector does not find.
-            if spot(pixel, intensity, distance_m).flux < 3.0 {
+            if spot(pixel, intensity, distance_m).flux < FAINTEST {
                 return None;
             }
             let mut noise = || -> f64 { SIGMA_PX * Distribution::<f64>::sample(&StandardNormal, rng) };
@@ -82,7 +84,7 @@ fn spot(centre: Pixel, intensity: f64, distance_m: f64) -> Spot {
         area_px: area_px as u32,
         peak: 200,
         saturated_px: 0,
-        flux: 4000.0 * intensity / (distance_m * distance_m),
+        flux: POWER * intensity / (distance_m * distance_m),
         light: None,
         background: 5.0,
         marker_log_odds: 3.0,
@@ -141,7 +143,7 @@ fn locator(airframe: &Airframe) -> Locator {
 #[test]
 fn one_neighbour_is_one_whatever_its_yaw_and_its_bounds_hold() {
     let mut rng = Pcg64::new(1, 1);
-    for (airframe, reached) in [(hexarotor(), 0.0100), (quadrotor(), 0.0115)] {
+    for (airframe, reached) in [(hexarotor(), 0.0140), (quadrotor(), 0.0110)] {
         let mut locator = locator(&airframe);
         let (yaw, tilt) = (Uniform::new(0.0, TAU).unwrap(), Uniform::new(-0.15, 0.15).unwrap());
         for gravity in [None, Some(level())] {
@@ -211,20 +213,24 @@ fn neighbours_apart_side_by_side_and_behind_each_other() {
 #[test]
 fn a_lone_spot_is_a_neighbour_with_a_bearing_and_the_range_of_its_size() {
     let airframe = hexarotor();
-    let lone = [spot(Pixel::new(300.0, 200.0), 1.0, 2.0)];
-    let mut without = locator(&airframe);
-    let located = without.locate_spots(&lone, None, &mut |_| ());
+    let all = Settings { min_probability: 0.0, ..Settings::default() };
+    let faint = [spot(Pixel::new(300.0, 200.0), 1.0, 34.0)];
+    let mut without = Locator::new(camera(), &airframe, None, all).unwrap();
+    let located = without.locate_spots(&faint, None, &mut |_| ());
     assert_eq!(located.neighbours.len(), 1);
     let (neighbour, sighting) = (&located.neighbours[0], &located.sightings[0]);
+    assert!(neighbour.probability > 0.5, "its other markers are too faint to show: {neighbour:?}");
     let off = (neighbour.position.unwrap().mean_m.normalize() - sighting.bearing.vector()).norm();
     assert!(off < 0.01, "as likely to the left as to the right of its spot: {off}");
     let estimate = neighbour.distance.estimate.unwrap();
     assert!(estimate.sigma_m > 0.4 * estimate.distance_m, "a weak prior is no measurement: {estimate:?}");
     assert!(neighbour.distance.bounds.max_m().is_infinite());
 
-    let curve = SpotCurve::paper_1000_us();
-    let mut with = Locator::new(camera(), &airframe, Some(curve), Settings::default()).unwrap();
-    let distance = with.locate_spots(&lone, None, &mut |_| ()).neighbours[0].distance;
+    let bright = [spot(Pixel::new(300.0, 200.0), 1.0, 2.0)];
+    let mut with = Locator::new(camera(), &airframe, Some(SpotCurve::paper_1000_us()), all).unwrap();
+    let neighbour = &with.locate_spots(&bright, None, &mut |_| ()).neighbours[0];
+    assert!(neighbour.probability < 0.5, "the markers beside it must show: {neighbour:?}");
+    let distance = neighbour.distance;
     assert!(distance.bounds.contains(2.0) && distance.bounds.max_m() < 3.0, "{distance:?}");
     assert!(distance.bounds.contains(distance.estimate.unwrap().distance_m));
 }

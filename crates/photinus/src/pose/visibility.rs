@@ -39,7 +39,8 @@ impl Problem<'_> {
             let shines = intensity(marker).max(1e-4);
             let found = (1.0 - self.settings.missed) * probability(odds(shines / half));
             if self.is_used(marker) {
-                return -libm::log(found.max(1e-9));
+                // How seldom what is too faint is found was never measured: no more seldom than what is bright is missed.
+                return -libm::log(found.max(self.settings.missed.max(1e-9)));
             }
             if !self.is_watched(pose, marker) {
                 return 0.0;

@@ -132,8 +132,8 @@ impl Groups {
         self.clutter.resize(observations, share);
     }
 
-    /// Weighs that look against clutter of this density, where so many neighbours are per sr. Returns the logarithm of the density of all observations:
-    /// of neighbours and clutter that are as many as they are expected to be.
+    /// Weighs that look against clutter of this density, where so many neighbours are per sr. Returns the logarithm of the density of all
+    /// observations.
     pub(super) fn weigh_looks(&mut self, clutter_log_density: &[f64], log_neighbours: f64) -> f64 {
         let mut total = 0.0;
         for (group, look) in self.first_looks.iter().enumerate() {
@@ -144,7 +144,7 @@ impl Groups {
             for &spot in members {
                 self.clutter[spot] = share;
             }
-            total += clutter - libm::log(share) - share * members.len() as f64 - (1.0 - share);
+            total += clutter - libm::log(share);
         }
         total
     }

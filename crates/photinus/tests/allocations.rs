@@ -145,7 +145,8 @@ fn a_warm_locator_allocates_nothing() {
     let camera = Camera::new(Model::Ideal(lens), WIDTH, HEIGHT, None).unwrap();
     let ring = Ring { arms: 6, radius_m: 0.4, leds_per_arm: 1, splay_rad: 0.0 };
     let airframe = Airframe::from_ring("hexarotor", ring).unwrap();
-    let mut locator = Locator::new(camera, &airframe, None, locator::Settings::default()).unwrap();
+    let settings = locator::Settings { min_probability: 0.0, ..locator::Settings::default() };
+    let mut locator = Locator::new(camera, &airframe, None, settings).unwrap();
     let mut neighbours = 0;
     let mut locate = |pixels: &[u8]| {
         let frame = FrameView::packed(pixels, WIDTH, HEIGHT).unwrap();

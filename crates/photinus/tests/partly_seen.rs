@@ -2,7 +2,7 @@
 //!
 //! Single neighbours in pure geometry with a tenth of a pixel, near and across the border of the image or of a mask. Checked:
 //! that the spots in view are taken for one neighbour, that truth is within its bounds, and that its covariance is as honest as
-//! it was measured to be, see [`REACHED`]: not everywhere as it should.
+//! it was measured to be, see [`REACHED`].
 
 mod paper;
 
@@ -151,25 +151,23 @@ fn spot(pixel: Pixel, flux: f64, distance_m: f64, rng: &mut Pcg64) -> Spot {
 /// What was measured: mean NEES, each at most 1000, and the share of truths within the ellipsoid of 95 %, by airframe, whether
 /// a mask hides what is out of sight, and the number of spots in sight. Fewer than 40 views say little and are left out.
 ///
-/// An honest covariance has about 3 and 95 %. Two kinds fall short, both because poses are missing among the modes:
-/// - a lone spot at the border whose marker shines aside while brighter ones are out of the image (87 and 92 %);
-/// - a quadrotor of two spots of unlike light, the third behind the mask: in 2 of 282 views the mode with neighbouring markers
-///   is missing, and they are taken for a pair further apart at two to four times the distance, with 1000 each.
+/// An honest covariance has about 3 and 95 %; less is more modest than it had to be.
 const REACHED: [(&str, bool, usize, f64, f64); 9] = [
-    ("hexarotor", false, 1, 3.61, 0.930),
-    ("hexarotor", true, 1, 1.38, 0.994),
-    ("hexarotor", true, 2, 1.58, 0.992),
-    ("quadrotor", false, 1, 2.17, 0.948),
+    ("hexarotor", false, 1, 2.69, 0.940),
+    ("hexarotor", true, 1, 1.34, 0.994),
+    ("hexarotor", true, 2, 1.31, 0.996),
+    ("quadrotor", false, 1, 2.05, 0.950),
     ("quadrotor", true, 1, 1.02, 0.997),
-    ("quadrotor", true, 2, 9.16, 0.972),
+    ("quadrotor", true, 2, 2.00, 0.982),
     ("lanterns", false, 3, 1.86, 0.987),
     ("lanterns", false, 4, 1.48, 1.0),
-    ("lanterns", true, 3, 3.10, 0.979),
+    ("lanterns", true, 3, 3.38, 0.979),
 ];
 
 #[test]
 fn what_is_out_of_sight_is_held_against_a_pose_as_much_as_measured() {
     let mut reached = 0;
+    let mut complaints = Vec::new();
     for airframe in [hexarotor(), quadrotor(), lanterns()] {
         for masked in [false, true] {
             let tallies = partly_seen(&airframe, 600, masked);
@@ -192,12 +190,17 @@ fn what_is_out_of_sight_is_held_against_a_pose_as_much_as_measured() {
                     continue;
                 };
                 // The scatter of the mean of heavy tails, and of a share.
-                assert!((nees / reached_nees - 1.0).abs() < 0.25, "{what}: NEES {nees}, not {reached_nees}");
+                if (nees / reached_nees - 1.0).abs() > 0.25 {
+                    complaints.push(format!("{what}: NEES {nees:.2}, not {reached_nees}"));
+                }
                 let scatter = 0.01 + 2.0 * (0.05 * 0.95 / tally.whole).sqrt();
-                assert!((inside - reached_inside).abs() < scatter, "{what}: {inside}, not {reached_inside}");
+                if (inside - reached_inside).abs() > scatter {
+                    complaints.push(format!("{what}: {inside:.3} inside, not {reached_inside}"));
+                }
                 reached += 1;
             }
         }
     }
+    assert!(complaints.is_empty(), "{complaints:#?}");
     assert_eq!(reached, REACHED.len());
 }

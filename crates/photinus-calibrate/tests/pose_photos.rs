@@ -26,6 +26,8 @@ use photinus_calibrate::camera::{BoardChoice, Calibration, Choices, calibrate};
 use photinus_calibrate::lens::LensModel;
 use photinus_calibrate::solve::Board;
 
+/// How far LEDs are off the drawing.
+const DRAWN_SIGMA_M: f64 = 1e-3;
 const COLUMNS: usize = 7;
 const ROWS: usize = 5;
 /// How far LEDs are from where a calibration finds them, m, per axis; with it what centres scatter more than by noise.
@@ -68,16 +70,15 @@ struct Search {
 impl Search {
     fn new(camera: &Camera, places_m: &[Vector3<f64>], marker_sigma_m: f64) -> Self {
         let board = airframe(places_m);
-        let pose = pose::Settings { marker_sigma_m, ..pose::Settings::default() };
+        let pose = pose::Settings { marker_sigma_m, scale_sigma: 0.0, ..pose::Settings::default() };
         let settings = Settings { pose, ..Settings::default() };
         let locator = Locator::new(camera.clone(), &board, None, settings).expect("a locator");
         Self { camera: camera.clone(), board, locator }
     }
 
-    /// The board as the drawing has it, built by hand to a millimetre.
+    /// The board as the drawing has it, built to a millimetre.
     fn as_drawn(calibration: &Calibration) -> Self {
-        let marker_sigma_m = pose::Settings::default().marker_sigma_m;
-        Self::new(calibration.camera(), &calibration.grid().nominal_m(), marker_sigma_m)
+        Self::new(calibration.camera(), &calibration.grid().nominal_m(), DRAWN_SIGMA_M)
     }
 
     /// The board as the calibration found it.

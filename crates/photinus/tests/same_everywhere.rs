@@ -65,6 +65,7 @@ fn hash(hash: &mut Hash, located: &Located) {
     for neighbour in &located.neighbours {
         located.members(neighbour).iter().for_each(|&member| hash.word(member as u64));
         hash.numbers(neighbour.bearing.vector().iter());
+        hash.numbers(&[neighbour.probability, neighbour.misfit.chi_square]);
         let distance = &neighbour.distance;
         hash.numbers(&[distance.bounds.min_m(), distance.bounds.max_m()]);
         for length_m in [distance.perpendicular_m, distance.inline_m].into_iter().flatten() {

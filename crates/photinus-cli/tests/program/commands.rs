@@ -68,7 +68,10 @@ fn every_kind_of_input_gives_the_same_neighbour() {
     assert_eq!(stage.run_with(&format!("locate - {known}"), &video(2)).code, 0);
     seen.push(records(&stage, "r.jsonl"));
     assert_eq!(seen.iter().map(Vec::len).collect::<Vec<_>>(), [1, 2, 2, 1, 2]);
-    assert!(seen.iter().flatten().all(|record| record.neighbours == seen[0][0].neighbours));
+    let same = |one: &FrameRecord, other: &FrameRecord| one.neighbours == other.neighbours;
+    assert!(seen.iter().all(|records| same(&records[0], &seen[0][0])));
+    // the second frame knows of the first
+    assert!(seen.iter().filter_map(|records| records.get(1)).all(|record| same(record, &seen[1][1])));
     assert_eq!((seen[0][0].time_s, seen[1][1].time_s, seen[2][1].time_s), (None, Some(0.05), Some(0.05)));
 
     let neighbour = &seen[0][0].neighbours[0];
@@ -117,7 +120,7 @@ fn what_is_believed_of_a_neighbour_shows_in_its_sigma() {
     };
     let usual_m = sigma_m("");
     assert!(
-        (sigma_m("--tilt-sigma 5 --marker-sigma 0.001") - usual_m).abs() < 1e-12,
+        (sigma_m("--tilt-sigma 5 --marker-sigma 0.003 --scale-sigma 0.01") - usual_m).abs() < 1e-12,
         "these are the defaults"
     );
     assert!(sigma_m("--marker-sigma 0.05") > 1.2 * usual_m);

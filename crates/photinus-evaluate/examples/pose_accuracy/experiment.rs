@@ -137,10 +137,11 @@ pub(crate) fn run(
         unit_sigma,
         missed: 1e-5,
         lobe_sigma: 0.002,
+        scale_sigma: 0.0,
         ..pose::Settings::default()
     };
     let spots = spots::Settings { noise: render::noise(&render::PAPER), ..spots::Settings::default() };
-    let settings = Settings { pose, spots, ..Settings::default() };
+    let settings = Settings { pose, spots, min_probability: 0.0, ..Settings::default() };
     let mut locator = Locator::new(camera.clone(), airframe, None, settings).expect("a locator");
     let mut tallies = [Tally::default(); MOST_SPOTS + 1];
     let mut nothing = 0;
@@ -161,6 +162,7 @@ pub(crate) fn run(
                 for (view, frame) in
                     render::batch(&render::PAPER, airframe, distance_m, done as u64, &mut rng)
                 {
+                    locator.forget();
                     let located = locator.locate(&frame.image.view(), Some(&view.gravity), &mut |_| ());
                     let located = located.expect("the camera's size");
                     add(&view, located);
@@ -170,6 +172,7 @@ pub(crate) fn run(
             Source::Geometry { sigma_px } => {
                 let view = View::draw(distance_m, &mut rng);
                 let spots = view.spots(airframe, &camera, sigma_px, &mut rng);
+                locator.forget();
                 add(&view, locator.locate_spots(&spots, Some(&view.gravity), &mut |_| ()));
                 done += 1;
             }

@@ -20,13 +20,9 @@ const LOG_LIGHT_SIGMA: f64 = 0.03;
 const LIGHT_NOISE: f64 = 0.75;
 /// Area of a spot times the square of the distance: 2.6 times as far as the paper's (13) has it, as rendered frames are.
 const AREA_PX_M2: f64 = 31.5 * 2.6 * 2.6;
-/// Light of an LED straight ahead at 1 m in pure geometry, grey levels, ...
-const POWER: f64 = 25_000.0;
-/// ... and that at which a marker is found half of the time, by itself and beside one that outshines it: as rendered frames
-/// have it, see [`is_found`].
-const FAINTEST: f64 = 50.0;
-const CERTAIN: f64 = 140.0;
-const OUTSHONE: f64 = 0.2;
+/// Light of an LED straight ahead at 1 m in pure geometry, grey levels, and that at which a marker is found half of the time.
+const POWER: f64 = 40_000.0;
+const FAINTEST: f64 = 75.0;
 
 /// A spot's marker, and how sure its direction and the logarithm of its light are.
 #[derive(Clone, Copy)]
@@ -56,11 +52,9 @@ fn log_light_sigma(light: f64) -> f64 {
     libm::hypot(LOG_LIGHT_SIGMA, LIGHT_NOISE / light.sqrt())
 }
 
-/// The probability that a marker is found, by its light and by its share of that of the brightest beside it.
-fn is_found(light: f64, share: f64) -> f64 {
-    let probability = |odds: f64| 1.0 - 1.0 / (1.0 + odds);
-    let stands_out = (share / OUTSHONE).powi(7) + (light / CERTAIN).powi(7);
-    probability((light / FAINTEST).powi(7)) * probability(stands_out)
+/// The probability that a marker of this light is found.
+fn is_found(light: f64) -> f64 {
+    1.0 - 1.0 / (1.0 + (light / FAINTEST).powi(7))
 }
 
 impl View {
@@ -91,14 +85,12 @@ impl View {
         rng: &mut Pcg64,
     ) -> Vec<Spot> {
         let camera_m = -(self.camera_from_body.inverse() * self.position_m);
-        let shining = (0..airframe.markers().len()).map(|marker| airframe.intensity(marker, &camera_m));
-        let brightest = shining.fold(0.0, f64::max);
         let mut spots = Vec::new();
         for marker in 0..airframe.markers().len() {
             let arm_m = airframe.markers()[marker].position_m;
             let intensity = airframe.intensity(marker, &camera_m);
             let light = POWER * intensity / (camera_m - arm_m).norm_squared();
-            if uniform(rng, 0.0, 1.0) > is_found(light, intensity / brightest) {
+            if uniform(rng, 0.0, 1.0) > is_found(light) {
                 continue;
             }
             let flux = light * libm::exp(libm::hypot(UNIT_SIGMA, log_light_sigma(light)) * normal(rng));

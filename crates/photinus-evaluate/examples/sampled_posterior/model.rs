@@ -14,9 +14,8 @@ use photinus::ranging::Interval;
 pub(crate) const LOBE_SIGMA: f64 = 0.02;
 const DARK: f64 = 0.01;
 pub(crate) const MISSED: f64 = 0.001;
-/// A marker this much fainter than another is as often as not taken for its reflection, up to so many times the faintest light.
-const OUTSHONE: f64 = 0.198;
-const CERTAIN: f64 = 2.784;
+/// Degrees of freedom of the light's distribution.
+const SPREAD_KNOWN: f64 = 8.0;
 /// Two markers so far apart are one spot half of the time, px; twice as far they never are.
 const RESOLUTION_PX: f64 = 2.5;
 /// The window of a spot, in resolutions.
@@ -165,22 +164,22 @@ impl Model<'_> {
         });
         let [(a, of_a), (b, of_b)] = terms;
         let log_power = (a * of_b + b * of_a) / (of_a + of_b);
-        // With the best power the two share what is between them.
-        (-0.5 * (a - b).powi(2) / (of_a + of_b) - 0.5 * libm::log(of_a * of_b), libm::exp(log_power))
+        // Whatever the power is, their difference is Student's.
+        let misfit = (a - b).powi(2) / (of_a + of_b);
+        let student = -0.5 * (SPREAD_KNOWN + 1.0) * libm::log(1.0 + misfit / SPREAD_KNOWN);
+        (student - 0.5 * libm::log(of_a + of_b), libm::exp(log_power))
     }
 
     /// Of seeing these markers and no others.
     fn visibility(&self, camera_m: &Vector3<f64>, markers: [usize; 2], power: f64) -> f64 {
         let intensity = |marker| self.airframe.intensity(marker, camera_m);
         let half = (self.faintest * camera_m.norm_squared() / power).clamp(LOBE_SIGMA, 1.0);
-        let brightest = intensity(markers[0]).max(intensity(markers[1]));
         let chance = |odds: f64| 1.0 - 1.0 / (1.0 + odds);
         let log_chance = |marker: usize| {
             let shines = intensity(marker).max(1e-4);
-            let stands_out = (shines / (OUTSHONE * brightest)).powi(7) + (shines / (CERTAIN * half)).powi(7);
-            let found = (1.0 - MISSED) * chance((shines / half).powi(7)) * chance(stands_out);
+            let found = (1.0 - MISSED) * chance((shines / half).powi(7));
             if markers.contains(&marker) {
-                return libm::log(found.max(1e-9));
+                return libm::log(found.max(MISSED));
             }
             let into = |spot: usize| {
                 let outshines = chance((intensity(markers[spot]).max(1e-4) / shines).powi(7));

@@ -52,6 +52,7 @@ impl View {
 
     /// What the locator reports: one neighbour of both spots.
     pub(crate) fn locate<'a>(&self, locator: &'a mut Locator) -> &'a Located {
+        locator.forget();
         let located = locator.locate_spots(&self.spots, Some(&self.neighbour.gravity), &mut |_| ());
         assert_eq!(located.neighbours.len(), 1, "both spots are one neighbour");
         located

@@ -188,7 +188,7 @@ fn a_table_has_a_row_per_neighbour() {
     assert_eq!(
         lines[1],
         "17,0.283,images/000017.png,,3,\"hexarotor, 0.4\",1,0,0,1,7.25,0.5,5,,7.5,5,0,0,7.25,\
-         0.25,0,0.125,0.5,0,1,,,,,0,,,,"
+         0.25,0,0.125,0.5,0,1,,,,,0,,,,,,"
     );
     assert_eq!(
         lines[2].matches(",1,0,0,1,,0.5,").count(),
@@ -196,5 +196,5 @@ fn a_table_has_a_row_per_neighbour() {
         "an estimate of NaN is an empty cell: {}",
         lines[2]
     );
-    assert!(lines[2].ends_with(",0,0,0,1,0,,,,"));
+    assert!(lines[2].ends_with(",0,0,0,1,0,,,,,,"));
 }

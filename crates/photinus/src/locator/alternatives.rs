@@ -1,9 +1,11 @@
 //! An observation that is explained poorly -> other ways to put it together with those around it.
 //!
 //! In: an observation that may be clutter, or is of a group that fits poorly. Out: handfuls of it and those next to it, the likeliest by a first
-//! look, each to be weighed in full. What they leave is clutter, or another neighbour's.
+//! look, each to be weighed in full. What they leave is clutter, or another neighbour's. One that stands alone is put to the nearest group too,
+//! whatever that looks like at first: what hardly shows is hardly told from afar.
 
 use super::context::Context;
+use super::grouping::Groups;
 use super::matching::Matcher;
 
 /// So many of the nearest observations are put together with one.
@@ -39,11 +41,12 @@ impl Alternatives {
     pub(super) fn around(
         &mut self,
         context: &Context<'_>,
+        groups: &Groups,
         observation: usize,
         matcher: &mut Matcher,
         mut with: impl FnMut(&[usize], &mut Matcher),
     ) -> u32 {
-        self.open_window(context, observation, matcher);
+        let nearest = self.open_window(context, observation, matcher);
         self.looked_at.clear();
         let most = matcher.most_visible().max(1) as u32;
         for mask in (1usize..1 << self.window.len()).step_by(2) {
@@ -63,26 +66,39 @@ impl Alternatives {
             self.gather(self.looked_at[index].1);
             with(&self.handful, matcher);
         }
+        if let (&[_], Some(nearest)) = (groups.group_of(observation), nearest) {
+            self.handful.clear();
+            self.handful.push(observation);
+            self.handful.extend_from_slice(groups.group_of(nearest));
+            self.handful.sort_unstable();
+            if self.handful.len() <= most as usize {
+                with(&self.handful, matcher);
+            }
+        }
         1 << (self.window.len() - 1)
     }
 
-    fn open_window(&mut self, context: &Context<'_>, observation: usize, matcher: &Matcher) {
+    /// Opens the window around an observation; returns the one nearest to it.
+    fn open_window(
+        &mut self,
+        context: &Context<'_>,
+        observation: usize,
+        matcher: &Matcher,
+    ) -> Option<usize> {
         let own = &context.sightings[observation];
         let reach_rad = matcher.widest_rad(own);
         let Self { window, nearest, .. } = self;
+        let others = context.sightings.iter().enumerate().filter(|(index, _)| *index != observation);
+        let gaps =
+            others.map(|(index, other)| ((other.bearing.vector() - own.bearing.vector()).norm(), index));
+        let first = gaps.clone().min_by(|a, b| a.0.total_cmp(&b.0));
         nearest.clear();
-        nearest.extend(
-            context.sightings.iter().enumerate().filter(|(index, _)| *index != observation).filter_map(
-                |(index, other)| {
-                    let gap = (other.bearing.vector() - own.bearing.vector()).norm();
-                    (gap < reach_rad).then_some((gap, index))
-                },
-            ),
-        );
+        nearest.extend(gaps.filter(|(gap, _)| *gap < reach_rad));
         nearest.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         window.clear();
         window.push(observation);
         window.extend(nearest.iter().take(NEAREST).map(|&(_, index)| index));
+        first.map(|(_, index)| index)
     }
 
     fn gather(&mut self, mask: usize) {

@@ -192,12 +192,12 @@ impl Inference {
         };
         let log_neighbours = log_neighbours(neighbours, &self.memory);
         let context = Context { clutter: clutter.log_density(), log_neighbours, ..*context };
-        let Self { alternatives, doubtful, matcher, poser, candidates, .. } = self;
+        let Self { alternatives, doubtful, groups, matcher, poser, candidates, .. } = self;
         for &spot in doubtful.iter() {
             if work.left == 0 {
                 break;
             }
-            let looks = alternatives.around(&context, spot, matcher, |handful, matcher| {
+            let looks = alternatives.around(&context, groups, spot, matcher, |handful, matcher| {
                 if candidates.find(handful).is_none() && work.weigh() {
                     poser.weigh(&context, handful, matcher, candidates);
                 }

@@ -227,9 +227,9 @@ proptest! {
         let found: Vec<f64> = (0..4).map(|word| decoder.probability(&listener, Who::Word(word))).collect();
         let all: f64 = found.iter().sum();
         for (weight, found) in weights.iter().zip(&found) {
-            // what is less likely than a millionth sleeps
+            // what was less likely than a millionth at some time slept
             let off = (weight / sum * all - found).abs();
-            prop_assert!(off < 0.01 * all + 4e-6, "{weights:?} {found:?}");
+            prop_assert!(off < 0.01 * all + 1e-4, "{weights:?} {found:?}");
         }
         let others = [Who::Unknown, Who::Steady, Who::Dark].map(|who| decoder.probability(&listener, who));
         prop_assert!((all + others.iter().sum::<f64>() - 1.0).abs() < 1e-6);

@@ -43,6 +43,8 @@ pub(super) struct Groups {
     partition: Partition,
     circles: Vec<Circle>,
     near: Vec<usize>,
+    /// The group of each observation.
+    of: Vec<usize>,
     /// Logarithms of the light of clear neighbours.
     powers: Vec<f64>,
     /// Logarithm of the density of each group as one neighbour, by a first look, and how likely each observation is clutter by it.
@@ -182,6 +184,11 @@ impl Groups {
         self.list.group(group)
     }
 
+    /// The group of an observation, ascending.
+    pub(super) fn group_of(&self, observation: usize) -> &[usize] {
+        self.list.group(self.of[observation])
+    }
+
     fn cut_tree(&mut self, context: &Context<'_>, matcher: &mut Matcher) {
         self.list.clear();
         self.tree.cost(|group| matcher.nats(context, group));
@@ -291,5 +298,12 @@ impl Groups {
             self.spare.push(self.list.group(group).iter().copied(), self.list.nats[group]);
         }
         std::mem::swap(&mut self.list, &mut self.spare);
+        self.of.clear();
+        self.of.resize(self.list.members.len(), 0);
+        for group in 0..self.list.len() {
+            for &member in self.list.group(group) {
+                self.of[member] = group;
+            }
+        }
     }
 }

@@ -1,4 +1,4 @@
-//! The tree of nearest neighbours (single linkage), and its cheapest cut.
+//! The tree of nearest neighbours (single linkage), and its cheapest cut. What is unlikely a marker is as far away as it is unlikely: it joins last.
 
 use crate::locator::Sighting;
 use crate::locator::matching::{IMPOSSIBLE, NEIGHBOUR_NATS};
@@ -6,6 +6,8 @@ use crate::locator::matching::{IMPOSSIBLE, NEIGHBOUR_NATS};
 /// A tree over the sightings of a frame: spots are its leaves, every branch joins the two that are nearest.
 #[derive(Debug, Default)]
 pub(super) struct Tree {
+    /// By how much the square of a distance to each spot is longer: one over the probability that it is a marker.
+    doubts: Vec<f64>,
     nearest: Vec<(f64, usize)>,
     links: Vec<(f64, usize, usize)>,
     branches: Vec<Branch>,
@@ -80,8 +82,13 @@ impl Tree {
 
     /// The shortest tree that joins all bearings (Prim), its links from the shortest to the longest.
     fn link_nearest(&mut self, sightings: &[Sighting]) {
+        self.doubts.clear();
+        self.doubts
+            .extend(sightings.iter().map(|sighting| 1.0 + libm::exp(-sighting.spot.marker_log_odds.max(-20.0))));
+        let doubts = &self.doubts;
         let gap = |a: usize, b: usize| {
-            (sightings[a].bearing.vector() - sightings[b].bearing.vector()).norm_squared()
+            let apart = sightings[a].bearing.vector() - sightings[b].bearing.vector();
+            apart.norm_squared() * doubts[a] * doubts[b]
         };
         self.nearest.clear();
         self.nearest.extend((0..sightings.len()).map(|spot| (gap(0, spot), 0)));

@@ -93,7 +93,14 @@ fn every_line_says_its_camera_and_places_in_the_body_frame() {
             .flat_map(|name| (0..3).map(move |n| format!("overlay-{name}-{n:06}.png")))
             .collect::<Vec<_>>()
     );
-    assert!(stage.read("t.csv").lines().next().unwrap().ends_with(",camera,x_body_m,y_body_m,z_body_m,probability,misfit_p"));
+    assert!(
+        stage
+            .read("t.csv")
+            .lines()
+            .next()
+            .unwrap()
+            .ends_with(",camera,x_body_m,y_body_m,z_body_m,probability,misfit_p")
+    );
     assert!(stage.read("t.csv").lines().nth(2).unwrap().contains(",back,-2."));
 }
 

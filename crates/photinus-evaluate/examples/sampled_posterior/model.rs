@@ -14,8 +14,8 @@ use photinus::ranging::Interval;
 pub(crate) const LOBE_SIGMA: f64 = 0.02;
 const DARK: f64 = 0.01;
 pub(crate) const MISSED: f64 = 0.001;
-/// Degrees of freedom of the light's distribution.
-const SPREAD_KNOWN: f64 = 8.0;
+/// Squared misfit of light beyond which it counts by its logarithm.
+const AS_TOLD: f64 = 6.0;
 /// Two markers so far apart are one spot half of the time, px; twice as far they never are.
 const RESOLUTION_PX: f64 = 2.5;
 /// The window of a spot, in resolutions.
@@ -164,10 +164,9 @@ impl Model<'_> {
         });
         let [(a, of_a), (b, of_b)] = terms;
         let log_power = (a * of_b + b * of_a) / (of_a + of_b);
-        // Whatever the power is, their difference is Student's.
         let misfit = (a - b).powi(2) / (of_a + of_b);
-        let student = -0.5 * (SPREAD_KNOWN + 1.0) * libm::log(1.0 + misfit / SPREAD_KNOWN);
-        (student - 0.5 * libm::log(of_a + of_b), libm::exp(log_power))
+        let tail = 1.0 + libm::log((misfit / AS_TOLD).max(1.0));
+        (-0.5 * misfit.min(AS_TOLD) * tail - 0.5 * libm::log(of_a + of_b), libm::exp(log_power))
     }
 
     /// Of seeing these markers and no others.

@@ -79,12 +79,7 @@ impl Alternatives {
     }
 
     /// Opens the window around an observation; returns the one nearest to it.
-    fn open_window(
-        &mut self,
-        context: &Context<'_>,
-        observation: usize,
-        matcher: &Matcher,
-    ) -> Option<usize> {
+    fn open_window(&mut self, context: &Context<'_>, observation: usize, matcher: &Matcher) -> Option<usize> {
         let own = &context.sightings[observation];
         let reach_rad = matcher.widest_rad(own);
         let Self { window, nearest, .. } = self;

@@ -114,10 +114,10 @@ impl Clutter {
         let frames = 1.0 + memory.frames() as f64;
         let around = counts.cells.around(counts.cells.of_observation(sighting));
         let area_px = around.clone().count() as f64 * CELL_PX * CELL_PX;
-        let in_area = around.map(|cell| counts.list[cell] + memory.clutter(cell)).sum::<f64>().max(0.0) + more;
+        let in_area =
+            around.map(|cell| counts.list[cell] + memory.clutter(cell)).sum::<f64>().max(0.0) + more;
         let in_frame = counts.total(memory) + more;
-        let mean =
-            (BEFOREHAND * WORTH_FRAMES + in_frame) / (self.frame_px * (frames + WORTH_FRAMES));
+        let mean = (BEFOREHAND * WORTH_FRAMES + in_frame) / (self.frame_px * (frames + WORTH_FRAMES));
         let here = mean * area_px * WORTH_SURROUNDINGS + in_area;
         let rad2_per_px = (sighting.rad_per_px * sighting.rad_per_px).max(1e-12);
         libm::log(here / (area_px * (frames + WORTH_SURROUNDINGS) * rad2_per_px))

@@ -10,11 +10,9 @@ use super::problem::{Normal, Pose, Problem};
 /// Light tells no more than that of so many spots: lobes that are no cosines and lenses that darken towards their edge err alike
 /// for spots that are near each other.
 const INDEPENDENT: f64 = 4.0;
-/// How surely the spread of light is known, as degrees of freedom of Student's distribution: to a quarter. Lobes and powers that are not as they are told
-/// are off by several times the spread.
-const SPREAD_KNOWN: f64 = 8.0;
-/// Logarithms of the factor between Student's distribution and the normal one in their middle, by the number of lights.
-const LOG_STUDENT: [f64; 5] = [0.0, -0.031_170, 0.0, 0.086_613, 0.223_144];
+/// Squared misfit of all lights of a neighbour together, in units of its variance, beyond which lobes or powers are not as they are told: it counts by
+/// its logarithm from there on.
+const AS_TOLD: f64 = 6.0;
 /// A marker that shines with less than this towards the camera shines away.
 const DARK: f64 = 0.01;
 /// Where nothing tells the power of the LEDs it may be anything over so many units of its logarithm: a factor of 20,000.
@@ -29,8 +27,6 @@ pub(super) struct Light {
     /// Sums of w r a and of w a a', before the power of the LEDs is solved for.
     normal: Normal,
     log_sigmas: f64,
-    /// How many lights tell of each other.
-    count: f64,
 }
 
 impl Light {
@@ -42,7 +38,6 @@ impl Light {
             slope: Vector6::zeros(),
             normal: Normal::zero(),
             log_sigmas: 0.0,
-            count: 0.0,
         };
         light.log_sigmas = match problem.known.power {
             Some(LogLight { value, sigma }) => {
@@ -78,12 +73,7 @@ impl Light {
             let row =
                 Vector6::new(-by_delta.x, -by_delta.y, -by_delta.z, -by_omega.x, -by_omega.y, -by_omega.z);
             light.add(1.0 / variance, seen.value - expected, &row);
-            light.count += 1.0;
         }
-        if problem.known.power.is_none() {
-            light.count -= 1.0;
-        }
-        light.count = light.count.clamp(0.0, INDEPENDENT);
         light
     }
 
@@ -109,11 +99,12 @@ impl Light {
     pub(super) fn add_to(&self, normal: &mut Normal) {
         let Some(power) = self.log_power() else { return };
         let misfit = self.misfit();
-        let half = 0.5 * (SPREAD_KNOWN + self.count);
-        normal.nats += half * libm::log1p(misfit / SPREAD_KNOWN) - LOG_STUDENT[self.count as usize]
-            + self.log_sigmas
-            + 0.5 * libm::log(self.weight / TAU);
-        let share = 2.0 * half / (SPREAD_KNOWN + misfit);
+        let (half, share) = if misfit < AS_TOLD {
+            (0.5 * misfit, 1.0)
+        } else {
+            (0.5 * AS_TOLD * (1.0 + libm::log(misfit / AS_TOLD)), AS_TOLD / misfit)
+        };
+        normal.nats += half + self.log_sigmas + 0.5 * libm::log(self.weight / TAU);
         normal.gradient += (self.normal.gradient - self.slope * power) * share;
         for column in 0..6 {
             for line in 0..=column {

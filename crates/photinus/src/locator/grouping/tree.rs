@@ -83,8 +83,9 @@ impl Tree {
     /// The shortest tree that joins all bearings (Prim), its links from the shortest to the longest.
     fn link_nearest(&mut self, sightings: &[Sighting]) {
         self.doubts.clear();
-        self.doubts
-            .extend(sightings.iter().map(|sighting| 1.0 + libm::exp(-sighting.spot.marker_log_odds.max(-20.0))));
+        self.doubts.extend(
+            sightings.iter().map(|sighting| 1.0 + libm::exp(-sighting.spot.marker_log_odds.max(-20.0))),
+        );
         let doubts = &self.doubts;
         let gap = |a: usize, b: usize| {
             let apart = sightings[a].bearing.vector() - sightings[b].bearing.vector();

@@ -1,11 +1,15 @@
 //! How dense clutter is: bright points that are no neighbour's markers.
 //!
 //! In: how likely each observation of the frame is clutter, and which belong together if they are none. Out: the density of clutter at each
-//! observation, from the others: those of the frame as a whole and those around it, for glints and hot pixels come in crowds. Observations that belong
+//! observation, from the others: those of the frame as a whole, those around it, for glints and hot pixels come in crowds, and those right beside it, for
+//! clutter comes in clumps; and from what stays where it is. Observations that belong
 //! together are clutter together or not at all: the first of them is as dense as what is around, each further one as if those before were clutter
 //! (a Poisson process whose rate is not known), and each gets the mean of the logarithms. A density is per sr and per unit of the logarithm of light.
 
 use super::Sighting;
+use super::cells::Cells;
+use super::companions::Companions;
+use super::fixtures::Fixtures;
 use super::grouping::Groups;
 use super::memory::Memory;
 
@@ -24,6 +28,29 @@ const BLINKS_BY_CHANCE: f64 = 4.6;
 /// The light that clutter has is counted in steps of its logarithm.
 const LIGHT_STEP: f64 = 0.5;
 const LIGHT_STEPS: usize = 32;
+
+/// What the density of clutter at an observation depends on.
+#[derive(Clone, Copy)]
+pub(super) struct Surroundings<'a> {
+    pub(super) sightings: &'a [Sighting],
+    pub(super) companions: &'a Companions,
+    pub(super) fixtures: &'a Fixtures,
+    pub(super) memory: &'a Memory,
+}
+
+impl Surroundings<'_> {
+    /// Logarithm of the density of clutter at an observation, of what comes and goes and of what stays where it is, as it looks.
+    fn with_fixture(&self, log_of_others: f64, observation: usize) -> f64 {
+        let sighting = &self.sightings[observation];
+        let there = self.fixtures.density(sighting, observation) / rad2_per_px2(sighting);
+        libm::log(libm::exp(log_of_others) + there) + log_of_look(sighting)
+    }
+}
+
+/// Solid angle of a pixel.
+fn rad2_per_px2(sighting: &Sighting) -> f64 {
+    (sighting.rad_per_px * sighting.rad_per_px).max(1e-12)
+}
 
 /// The density of clutter at each observation.
 #[derive(Debug)]
@@ -61,11 +88,13 @@ impl Clutter {
     /// Measures the density, where `share` tells how likely an observation is clutter, after the frames that are remembered.
     pub(super) fn measure(
         &mut self,
-        sightings: &[Sighting],
+        frame: &Surroundings<'_>,
         groups: &Groups,
-        memory: &Memory,
         share: impl Fn(usize) -> f64,
     ) {
+        let Surroundings { sightings, companions, fixtures, .. } = *frame;
+        // What stays where it is tells nothing of other places.
+        let share = |index: usize| share(index) * (1.0 - fixtures.share(index));
         self.counts.clear();
         for (index, sighting) in sightings.iter().enumerate() {
             self.counts.add(sighting, share(index));
@@ -75,57 +104,71 @@ impl Clutter {
         for members in (0..groups.len()).map(|group| groups.group(group)) {
             members.iter().for_each(|&index| self.counts.add(&sightings[index], -share(index)));
             let each = members.iter().map(|&index| share(index)).sum::<f64>() / members.len() as f64;
-            for &index in members {
+            let one_after_the_other = |(before, &index): (usize, &usize)| {
                 let sighting = &sightings[index];
-                let log_per_sr = (0..members.len())
-                    .map(|before| self.log_per_sr(&self.counts, memory, sighting, before as f64 * each))
-                    .sum::<f64>()
-                    / members.len() as f64;
-                self.log_density[index] =
-                    log_per_sr + self.log_of_light(&self.counts, memory, sighting) + log_of_look(sighting);
+                let weight = |other: usize| match members[..before].contains(&other) {
+                    true => each,
+                    false if members.contains(&other) => 0.0,
+                    false => share(other),
+                };
+                let beside: f64 =
+                    companions.of(index).iter().map(|near| weight(near.observation) * near.density).sum();
+                self.log_per_sr(&self.counts, frame, sighting, before as f64 * each, beside)
+            };
+            let mean =
+                members.iter().enumerate().map(one_after_the_other).sum::<f64>() / members.len() as f64;
+            for &index in members {
+                self.log_density[index] = frame.with_fixture(mean, index);
+                self.counts.add(&sightings[index], share(index));
             }
-            members.iter().for_each(|&index| self.counts.add(&sightings[index], share(index)));
         }
     }
 
     /// How much less likely it is that all observations are clutter, as likely as `share` tells, than the densities measured have it: each of those is
     /// after all others, but a frame is drawn one after the other (chain rule).
-    pub(super) fn excess(
-        &mut self,
-        sightings: &[Sighting],
-        memory: &Memory,
-        share: impl Fn(usize) -> f64,
-    ) -> f64 {
+    pub(super) fn excess(&mut self, frame: &Surroundings<'_>, share: impl Fn(usize) -> f64) -> f64 {
+        let Surroundings { sightings, companions, fixtures, .. } = *frame;
+        let comes_and_goes = |index: usize| share(index) * (1.0 - fixtures.share(index));
         self.before.clear();
         let mut excess = 0.0;
         for (index, sighting) in sightings.iter().enumerate() {
-            let share = share(index);
-            let first = self.log_per_sr(&self.before, memory, sighting, 0.0)
-                + self.log_of_light(&self.before, memory, sighting)
-                + log_of_look(sighting);
-            excess += share * (self.log_density[index] - first);
-            self.before.add(sighting, share);
+            let earlier = companions.of(index).iter().filter(|near| near.observation < index);
+            let beside: f64 = earlier.map(|near| comes_and_goes(near.observation) * near.density).sum();
+            let first =
+                frame.with_fixture(self.log_per_sr(&self.before, frame, sighting, 0.0, beside), index);
+            excess += share(index) * (self.log_density[index] - first);
+            self.before.add(sighting, comes_and_goes(index));
         }
         excess
     }
 
-    /// Logarithm of how dense clutter is in the direction of an observation, with so many more points at the same place.
-    fn log_per_sr(&self, counts: &Counts, memory: &Memory, sighting: &Sighting, more: f64) -> f64 {
+    /// Logarithm of how dense clutter is at an observation, with so many more points at the same place, and so dense beside others per px^2.
+    fn log_per_sr(
+        &self,
+        counts: &Counts,
+        frame: &Surroundings<'_>,
+        sighting: &Sighting,
+        more: f64,
+        beside: f64,
+    ) -> f64 {
+        let memory = frame.memory;
         let frames = 1.0 + memory.frames() as f64;
-        let around = counts.cells.around(counts.cells.of_observation(sighting));
-        let area_px = around.clone().count() as f64 * CELL_PX * CELL_PX;
+        let cells = counts.cells;
+        let around = cells.around(cells.of_observation(sighting));
+        let area_px = around.clone().count() as f64 * cells.area_px2();
         let in_area =
             around.map(|cell| counts.list[cell] + memory.clutter(cell)).sum::<f64>().max(0.0) + more;
         let in_frame = counts.total(memory) + more;
         let mean = (BEFOREHAND * WORTH_FRAMES + in_frame) / (self.frame_px * (frames + WORTH_FRAMES));
         let here = mean * area_px * WORTH_SURROUNDINGS + in_area;
-        let rad2_per_px = (sighting.rad_per_px * sighting.rad_per_px).max(1e-12);
-        libm::log(here / (area_px * (frames + WORTH_SURROUNDINGS) * rad2_per_px))
+        let by_itself =
+            here / (area_px * (frames + WORTH_SURROUNDINGS)) * self.of_light(counts, memory, sighting);
+        libm::log((by_itself + beside) / rad2_per_px2(sighting))
     }
 
-    /// Logarithm of how dense the light of clutter is at that of an observation.
-    fn log_of_light(&self, counts: &Counts, memory: &Memory, sighting: &Sighting) -> f64 {
-        let Some(light) = sighting.log_light.filter(|_| self.with_light) else { return 0.0 };
+    /// How dense the light of clutter is at that of an observation.
+    fn of_light(&self, counts: &Counts, memory: &Memory, sighting: &Sighting) -> f64 {
+        let Some(light) = sighting.log_light.filter(|_| self.with_light) else { return 1.0 };
         let step = light_step(light.value);
         let count = |step: usize| {
             let place = counts.cells.count() + step;
@@ -135,7 +178,7 @@ impl Clutter {
             + 0.5 * count(step)
             + 0.25 * count((step + 1).min(LIGHT_STEPS - 1));
         let density = WORTH_POINTS / LIGHT_RANGE + there.max(0.0) / LIGHT_STEP;
-        libm::log(density / (WORTH_POINTS + counts.total(memory)))
+        density / (WORTH_POINTS + counts.total(memory))
     }
 }
 
@@ -153,7 +196,7 @@ struct Counts {
 
 impl Counts {
     fn of(size: [usize; 2]) -> Self {
-        let cells = Cells::of(size);
+        let cells = Cells::new(size, CELL_PX);
         Self { cells, list: vec![0.0; cells.count() + LIGHT_STEPS + 1] }
     }
 
@@ -169,43 +212,12 @@ impl Counts {
 
     /// Counts an observation by so much.
     fn add(&mut self, sighting: &Sighting, share: f64) {
-        let [column, row] = self.cells.of_observation(sighting);
-        self.list[row * self.cells.columns + column] += share;
+        self.list[self.cells.index(self.cells.of_observation(sighting))] += share;
         let total = self.list.len() - 1;
         self.list[total] += share;
         if let Some(light) = sighting.log_light {
             self.list[self.cells.count() + light_step(light.value)] += share;
         }
-    }
-}
-
-/// An image that is divided into cells.
-#[derive(Clone, Copy, Debug)]
-struct Cells {
-    columns: usize,
-    rows: usize,
-}
-
-impl Cells {
-    fn of([width, height]: [usize; 2]) -> Self {
-        let count = |side: usize| (side as f64 / CELL_PX).ceil().max(1.0) as usize;
-        Self { columns: count(width), rows: count(height) }
-    }
-
-    fn count(self) -> usize {
-        self.columns * self.rows
-    }
-
-    fn of_observation(self, sighting: &Sighting) -> [usize; 2] {
-        let at = |px: f64, cells: usize| ((px / CELL_PX).max(0.0) as usize).min(cells - 1);
-        [at(sighting.spot.centre.u, self.columns), at(sighting.spot.centre.v, self.rows)]
-    }
-
-    /// The cells around and with one.
-    fn around(self, [column, row]: [usize; 2]) -> impl Iterator<Item = usize> + Clone {
-        let across = column.saturating_sub(1)..(column + 2).min(self.columns);
-        let down = row.saturating_sub(1)..(row + 2).min(self.rows);
-        down.flat_map(move |row| across.clone().map(move |column| row * self.columns + column))
     }
 }
 

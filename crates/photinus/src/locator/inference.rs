@@ -16,9 +16,11 @@ use nalgebra::{Unit, Vector3};
 
 use super::alternatives::Alternatives;
 use super::candidates::Candidates;
-use super::clutter::Clutter;
+use super::clutter::{Clutter, Surroundings};
+use super::companions::Companions;
 use super::context::Context;
 use super::explanation::Explanation;
+use super::fixtures::Fixtures;
 use super::grouping::Groups;
 use super::matching::Matcher;
 use super::memory::Memory;
@@ -53,6 +55,10 @@ pub(super) struct Inference {
     poser: Poser,
     groups: Groups,
     memory: Memory,
+    size: [usize; 2],
+    with_light: bool,
+    companions: Companions,
+    fixtures: Fixtures,
     /// Clutter after a first look, and with what is explained.
     first_clutter: Clutter,
     clutter: Clutter,
@@ -82,6 +88,10 @@ impl Inference {
             matcher: Matcher::new(airframe, settings.max_tilt_rad, &settings.pose, faintest_light),
             groups: Groups::default(),
             memory: Memory::new(clutter.counts().len()),
+            size,
+            with_light,
+            companions: Companions::default(),
+            fixtures: Fixtures::new(),
             first_clutter: Clutter::new(size, with_light),
             clutter,
             candidates: Candidates::with_room(most),
@@ -95,6 +105,7 @@ impl Inference {
     /// Forgets what frames told of the power of LEDs and of clutter.
     pub(super) fn forget(&mut self) {
         self.memory.forget();
+        self.fixtures.forget();
     }
 
     /// Tells the neighbours behind the observations of `located`.
@@ -115,6 +126,8 @@ impl Inference {
             log_neighbours: 0.0,
         };
         let of_frame = self.groups.sort_out(&context, &mut self.matcher);
+        self.companions.find(&sightings, self.size, self.with_light);
+        self.fixtures.find(&sightings);
         self.look(&context);
         let clear_power = self.groups.clear_log_power(&context, &mut self.matcher);
         finished(Stage::Grouping);
@@ -126,6 +139,7 @@ impl Inference {
             self.look_for_others(&context, round, &mut work);
             self.settle(&sightings);
         }
+        self.fixtures.remember(&sightings, |spot| self.explanation.clutter(spot));
         self.memory.remember(self.clutter.counts(), self.explanation.neighbours(), clear_power);
         located.sightings = sightings;
         located.is_complete = work.left > 0;
@@ -135,18 +149,19 @@ impl Inference {
 
     /// Takes a first look at each group, and tells from that how dense clutter is.
     fn look(&mut self, context: &Context<'_>) {
-        let Self { groups, first_clutter, memory, matcher, .. } = self;
+        let Self { groups, first_clutter, companions, fixtures, memory, matcher, .. } = self;
+        let frame = Surroundings { sightings: context.sightings, companions, fixtures, memory };
         groups.look(context, matcher);
         let mut supposed = |share: f64| {
             groups.suppose(context.sightings.len(), share);
             let mut gain = 0.0;
             for _ in 0..LOOKS {
-                first_clutter.measure(context.sightings, groups, memory, |spot| groups.clutter(spot));
+                first_clutter.measure(&frame, groups, |spot| groups.clutter(spot));
                 let log_neighbours = log_neighbours(groups.neighbours(), memory);
                 let as_measured = groups.weigh_looks(first_clutter.log_density(), log_neighbours);
                 gain = as_measured - excess_of_neighbours(groups.neighbours(), log_neighbours, memory);
             }
-            gain - first_clutter.excess(context.sightings, memory, |spot| groups.clutter(spot))
+            gain - first_clutter.excess(&frame, |spot| groups.clutter(spot))
         };
         let [much, little] = [1.0, 0.0].map(&mut supposed);
         if much > little {
@@ -208,18 +223,19 @@ impl Inference {
 
     /// Explains the frame by its candidates, with clutter and neighbours as dense as the explanation itself has them.
     fn settle(&mut self, sightings: &[Sighting]) {
-        let Self { explanation, clutter, groups, candidates, memory, .. } = self;
+        let Self { explanation, clutter, groups, candidates, companions, fixtures, memory, .. } = self;
+        let frame = Surroundings { sightings, companions, fixtures, memory };
         let mut supposed = |share: Option<f64>| {
-            clutter.measure(sightings, groups, memory, |spot| share.unwrap_or(groups.clutter(spot)));
+            clutter.measure(&frame, groups, |spot| share.unwrap_or(groups.clutter(spot)));
             let mut density = log_neighbours(groups.neighbours(), memory);
             for _ in 0..CLUTTER_ROUNDS {
                 explanation.explain(candidates, clutter.log_density(), density);
-                clutter.measure(sightings, groups, memory, |spot| explanation.clutter(spot));
+                clutter.measure(&frame, groups, |spot| explanation.clutter(spot));
                 density = log_neighbours(explanation.neighbours(), memory);
             }
             explanation.explain(candidates, clutter.log_density(), density);
             explanation.log_density(clutter.log_density())
-                - clutter.excess(sightings, memory, |spot| explanation.clutter(spot))
+                - clutter.excess(&frame, |spot| explanation.clutter(spot))
                 - excess_of_neighbours(explanation.neighbours(), density, memory)
         };
         let [much, little] = [None, Some(0.0)].map(&mut supposed);

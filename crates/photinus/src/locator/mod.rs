@@ -15,10 +15,13 @@
 mod alternatives;
 mod brightness;
 mod candidates;
+mod cells;
 mod clutter;
+mod companions;
 mod context;
 mod error;
 mod explanation;
+mod fixtures;
 mod grouping;
 mod inference;
 mod matching;

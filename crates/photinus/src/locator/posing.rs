@@ -120,7 +120,8 @@ impl Poser {
         // Who tells the light of the frame's LEDs is not told by it.
         let power = if group.len() < CLEAR_SPOTS { context.power } else { None };
         let visible = Visible { watched: Some(context.watched), others: &self.others, ..self.visible };
-        let known = Known { up, bounds, size, power, visible };
+        let believed = told_apart(sightings, group, matcher.reach_m(), &bounds);
+        let known = Known { up, bounds: believed, size, power, visible };
         let posterior = self.estimator.estimate(&self.observations, &mut self.hypotheses, &known);
         posterior.summary.is_some().then_some(bounds)
     }
@@ -221,6 +222,15 @@ fn power_agreement(context: &Context<'_>, group: &[usize], log_power: Option<f64
     let off = (own - known.value) / known.sigma;
     let log_density = -0.5 * off * off - 0.5 * libm::log(TAU * known.sigma * known.sigma);
     log_density.max(-MOST_POWER_NATS) + libm::log(POWER_RANGE)
+}
+
+/// The distances within strict bounds from which the two outermost markers of an airframe are further apart than half of what is one spot: beyond, they
+/// would hardly be seen as two.
+fn told_apart(sightings: &[Sighting], group: &[usize], reach_m: f64, bounds: &Interval) -> Interval {
+    let finest = group.iter().map(|&spot| sightings[spot].rad_per_px).fold(f64::INFINITY, f64::min);
+    let farthest_m = 2.0 * reach_m / (0.5 * RESOLUTION_PX * finest);
+    let believed = Interval::new(0.0, farthest_m).filter(|_| group.len() > 1);
+    believed.and_then(|believed| bounds.intersect(&believed)).unwrap_or(*bounds)
 }
 
 /// What the camera's calibration leaves of a neighbour's position, m^2, and the part of it along the line of sight.

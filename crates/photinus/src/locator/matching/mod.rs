@@ -91,6 +91,11 @@ impl Matcher {
         self.views.most_visible
     }
 
+    /// How far the outermost marker is from the airframe's origin, m.
+    pub(super) fn reach_m(&self) -> f64 {
+        self.bounds.near_m()
+    }
+
     /// How far apart spots of one neighbour may be when one of them looks like this, rad: as near as its size suggests.
     pub(super) fn widest_rad(&self, sighting: &Sighting) -> f64 {
         let nearest_m = match sighting.range {

@@ -1,0 +1,45 @@
+//! An image that is divided into cells, to count what is in them and to find what is near.
+
+use super::Sighting;
+
+/// Square cells over an image.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Cells {
+    side_px: f64,
+    columns: usize,
+    rows: usize,
+}
+
+impl Cells {
+    /// Cells of this side over an image of `size` (width, height) px.
+    pub(super) fn new([width, height]: [usize; 2], side_px: f64) -> Self {
+        let count = |side: usize| (side as f64 / side_px).ceil().max(1.0) as usize;
+        Self { side_px, columns: count(width), rows: count(height) }
+    }
+
+    pub(super) fn count(&self) -> usize {
+        self.columns * self.rows
+    }
+
+    /// Area of one, px^2.
+    pub(super) fn area_px2(&self) -> f64 {
+        self.side_px * self.side_px
+    }
+
+    /// Column and row of the cell that an observation is in; of the nearest if it is outside the image.
+    pub(super) fn of_observation(&self, sighting: &Sighting) -> [usize; 2] {
+        let at = |px: f64, cells: usize| ((px / self.side_px).max(0.0) as usize).min(cells - 1);
+        [at(sighting.spot.centre.u, self.columns), at(sighting.spot.centre.v, self.rows)]
+    }
+
+    pub(super) fn index(&self, [column, row]: [usize; 2]) -> usize {
+        row * self.columns + column
+    }
+
+    /// A cell and those around it, row by row.
+    pub(super) fn around(self, [column, row]: [usize; 2]) -> impl Iterator<Item = usize> + Clone {
+        let across = column.saturating_sub(1)..(column + 2).min(self.columns);
+        let down = row.saturating_sub(1)..(row + 2).min(self.rows);
+        down.flat_map(move |row| across.clone().map(move |column| row * self.columns + column))
+    }
+}

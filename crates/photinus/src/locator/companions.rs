@@ -1,0 +1,105 @@
+//! Which observations lie beside each other: clutter comes in clumps (a glint and its neighbour, a window's two edges).
+//!
+//! In: the observations of a frame. Out: of each, those near it, with how dense clutter is at it if the other one is clutter. Clumps have no scale of
+//! their own: a companion is as likely at any logarithm of distance, and about as bright.
+
+use super::Sighting;
+use super::cells::Cells;
+
+/// A point of clutter has so many companions.
+const COMPANIONS: f64 = 0.3;
+/// They are so far away, px: apart from it, and no further than structures of a scene are large.
+const NEAREST_PX: f64 = 2.5;
+const FARTHEST_PX: f64 = 100.0;
+/// Standard deviation of the logarithm of their light over its own.
+const LIGHT_SIGMA: f64 = 0.7;
+/// Where more observations are near each other than this, on average, clutter is dense whether or not it clumps: those further off are left out.
+const MOST_NEAR: f64 = 16.0;
+
+/// The companions of each observation of a frame.
+#[derive(Debug, Default)]
+pub(super) struct Companions {
+    /// Observations by cell, those of a cell together.
+    order: Vec<usize>,
+    starts: Vec<usize>,
+    list: Vec<Companion>,
+    ends: Vec<usize>,
+}
+
+/// An observation beside another.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Companion {
+    pub(super) observation: usize,
+    /// Density of clutter at the one, per px^2 and per unit of the logarithm of light, that the other brings if it is clutter.
+    pub(super) density: f64,
+}
+
+impl Companions {
+    /// Finds them in an image of `size` (width, height) px. Without `with_light` the density is one of places alone.
+    pub(super) fn find(&mut self, sightings: &[Sighting], size: [usize; 2], with_light: bool) {
+        let per_px2 = sightings.len() as f64 / (size[0] * size[1]) as f64;
+        let reach_px = (MOST_NEAR / (core::f64::consts::PI * per_px2)).sqrt().clamp(NEAREST_PX, FARTHEST_PX);
+        let cells = Cells::new(size, reach_px);
+        self.sort_into(&cells, sightings);
+        self.list.clear();
+        self.ends.clear();
+        for (index, own) in sightings.iter().enumerate() {
+            for cell in cells.around(cells.of_observation(own)) {
+                for &other in &self.order[self.starts[cell]..self.starts[cell + 1]] {
+                    let gap_px = apart_px(own, &sightings[other]);
+                    if other != index && gap_px < reach_px {
+                        let density = density(gap_px, own, &sightings[other], with_light);
+                        self.list.push(Companion { observation: other, density });
+                    }
+                }
+            }
+            self.ends.push(self.list.len());
+        }
+    }
+
+    /// Those of an observation.
+    pub(super) fn of(&self, observation: usize) -> &[Companion] {
+        let start = if observation == 0 { 0 } else { self.ends[observation - 1] };
+        &self.list[start..self.ends[observation]]
+    }
+
+    fn sort_into(&mut self, cells: &Cells, sightings: &[Sighting]) {
+        let cell = |sighting: &Sighting| cells.index(cells.of_observation(sighting));
+        self.starts.clear();
+        self.starts.resize(cells.count() + 1, 0);
+        for sighting in sightings {
+            self.starts[cell(sighting)] += 1;
+        }
+        let mut sum = 0;
+        for start in &mut self.starts {
+            sum += *start;
+            *start = sum;
+        }
+        self.order.clear();
+        self.order.resize(sightings.len(), 0);
+        // From the last to the first, so that those of a cell are in their order.
+        for (index, sighting) in sightings.iter().enumerate().rev() {
+            let start = &mut self.starts[cell(sighting)];
+            *start -= 1;
+            self.order[*start] = index;
+        }
+    }
+}
+
+fn apart_px(a: &Sighting, b: &Sighting) -> f64 {
+    libm::hypot(a.spot.centre.u - b.spot.centre.u, a.spot.centre.v - b.spot.centre.v)
+}
+
+/// Even over the logarithm of distance, and log-normal in light.
+fn density(gap_px: f64, own: &Sighting, other: &Sighting, with_light: bool) -> f64 {
+    use core::f64::consts::TAU;
+    let gap_px = gap_px.max(NEAREST_PX);
+    let place = COMPANIONS / (TAU * libm::log(FARTHEST_PX / NEAREST_PX) * gap_px * gap_px);
+    match own.log_light.zip(other.log_light).filter(|_| with_light) {
+        None => place,
+        Some((own, other)) => {
+            let off = (own.value - other.value) / LIGHT_SIGMA;
+            place * libm::exp(-0.5 * off * off) / (LIGHT_SIGMA * TAU.sqrt())
+        }
+    }
+}

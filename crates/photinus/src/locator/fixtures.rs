@@ -1,0 +1,130 @@
+//! What stays where it is, frame after frame: hot pixels, dirt, lamps and the robot's own airframe, as long as the camera does not turn.
+//!
+//! In: of each frame its observations, and how likely each is clutter. Out: how dense clutter is at an observation for having been there before, and how
+//! much of it that explains: the rest is what comes and goes.
+
+use core::f64::consts::TAU;
+
+use super::Sighting;
+use super::memory::Memory;
+
+/// Most places that are remembered: the rarest gives way.
+const MOST: usize = 256;
+/// A place is the same within so many pixels, ...
+const SAME_PX: f64 = 1.5;
+/// ... off by this standard deviation, px, and as bright within this of its logarithm.
+const SIGMA_PX: f64 = 0.5;
+const LIGHT_SIGMA: f64 = 0.5;
+
+/// A place in the image where clutter was.
+#[derive(Clone, Copy, Debug)]
+struct Fixture {
+    u: f64,
+    v: f64,
+    log_light: Option<f64>,
+    /// How often it was there, of the frames that are remembered.
+    times: f64,
+}
+
+/// What stays where it is.
+#[derive(Debug)]
+pub(super) struct Fixtures {
+    list: Vec<Fixture>,
+    /// Frames, those long ago counting less and less.
+    frames: f64,
+    /// By observation of the frame: which fixture is nearest to it.
+    nearest: Vec<Option<usize>>,
+}
+
+impl Fixtures {
+    pub(super) fn new() -> Self {
+        Self { list: Vec::with_capacity(MOST), frames: 0.0, nearest: Vec::new() }
+    }
+
+    pub(super) fn forget(&mut self) {
+        self.list.clear();
+        self.frames = 0.0;
+    }
+
+    /// Finds the fixture of each observation of a frame.
+    pub(super) fn find(&mut self, sightings: &[Sighting]) {
+        let Self { list, nearest, .. } = self;
+        nearest.clear();
+        nearest.extend(sightings.iter().map(|sighting| {
+            let gaps = list.iter().enumerate().map(|(index, fixture)| (fixture.gap_px(sighting), index));
+            let (gap_px, index) = gaps.min_by(|a, b| a.0.total_cmp(&b.0))?;
+            (gap_px < SAME_PX).then_some(index)
+        }));
+    }
+
+    /// How often what is at an observation's place was there before, 0 to 1.
+    pub(super) fn share(&self, observation: usize) -> f64 {
+        self.nearest[observation].map_or(0.0, |index| self.list[index].times / (self.frames + 1.0))
+    }
+
+    /// How dense clutter is at an observation for having been there before, per px^2 and per unit of the logarithm of light.
+    pub(super) fn density(&self, sighting: &Sighting, observation: usize) -> f64 {
+        let Some(index) = self.nearest[observation] else { return 0.0 };
+        let fixture = &self.list[index];
+        let off = fixture.gap_px(sighting) / SIGMA_PX;
+        let place = self.share(observation) * libm::exp(-0.5 * off * off) / (TAU * SIGMA_PX * SIGMA_PX);
+        match fixture.log_light.zip(sighting.log_light) {
+            None => place,
+            Some((before, now)) => {
+                let off = (now.value - before) / LIGHT_SIGMA;
+                place * libm::exp(-0.5 * off * off) / (LIGHT_SIGMA * TAU.sqrt())
+            }
+        }
+    }
+
+    /// Remembers where a frame had clutter.
+    pub(super) fn remember(&mut self, sightings: &[Sighting], clutter: impl Fn(usize) -> f64) {
+        let kept = 1.0 - 1.0 / Memory::FRAMES as f64;
+        self.frames = self.frames * kept + 1.0;
+        self.list.iter_mut().for_each(|fixture| fixture.times *= kept);
+        for (index, sighting) in sightings.iter().enumerate() {
+            let share = clutter(index);
+            match self.nearest[index] {
+                Some(own) => self.list[own].see(sighting, share),
+                None => self.add(sighting, share),
+            }
+        }
+    }
+
+    fn add(&mut self, sighting: &Sighting, times: f64) {
+        let seen = Fixture {
+            u: sighting.spot.centre.u,
+            v: sighting.spot.centre.v,
+            log_light: sighting.log_light.map(|light| light.value),
+            times,
+        };
+        if self.list.len() < MOST {
+            self.list.push(seen);
+            return;
+        }
+        let rarest = self.list.iter_mut().min_by(|a, b| a.times.total_cmp(&b.times));
+        if let Some(rarest) = rarest.filter(|rarest| rarest.times < times) {
+            *rarest = seen;
+        }
+    }
+}
+
+impl Fixture {
+    fn gap_px(&self, sighting: &Sighting) -> f64 {
+        libm::hypot(self.u - sighting.spot.centre.u, self.v - sighting.spot.centre.v)
+    }
+
+    /// Is there once more: its place and light are the means of all times.
+    fn see(&mut self, sighting: &Sighting, share: f64) {
+        self.times += share;
+        if self.times <= 0.0 {
+            return;
+        }
+        let gain = share / self.times;
+        self.u += gain * (sighting.spot.centre.u - self.u);
+        self.v += gain * (sighting.spot.centre.v - self.v);
+        if let (Some(before), Some(now)) = (&mut self.log_light, sighting.log_light) {
+            *before += gain * (now.value - *before);
+        }
+    }
+}

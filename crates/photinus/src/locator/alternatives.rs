@@ -32,7 +32,7 @@ impl Alternatives {
         Self {
             window: Vec::with_capacity(1 + NEAREST),
             nearest: Vec::with_capacity(512),
-            handful: Vec::with_capacity(1 + NEAREST),
+            handful: Vec::with_capacity(64),
             looked_at: Vec::with_capacity(1 << NEAREST),
         }
     }

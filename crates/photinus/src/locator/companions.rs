@@ -7,7 +7,7 @@ use super::Sighting;
 use super::cells::Cells;
 
 /// A point of clutter has so many companions.
-const COMPANIONS: f64 = 0.3;
+const COMPANIONS: f64 = 0.2;
 /// They are so far away, px: apart from it, and no further than structures of a scene are large.
 const NEAREST_PX: f64 = 2.5;
 const FARTHEST_PX: f64 = 100.0;
@@ -17,7 +17,7 @@ const LIGHT_SIGMA: f64 = 0.7;
 const MOST_NEAR: f64 = 16.0;
 
 /// The companions of each observation of a frame.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(super) struct Companions {
     /// Observations by cell, those of a cell together.
     order: Vec<usize>,
@@ -35,6 +35,16 @@ pub(super) struct Companion {
 }
 
 impl Companions {
+    /// None yet, with room for those of a frame of a thousand observations.
+    pub(super) fn new() -> Self {
+        Self {
+            order: Vec::with_capacity(1024),
+            starts: Vec::new(),
+            list: Vec::with_capacity(1024 * MOST_NEAR as usize),
+            ends: Vec::with_capacity(1024),
+        }
+    }
+
     /// Finds them in an image of `size` (width, height) px. Without `with_light` the density is one of places alone.
     pub(super) fn find(&mut self, sightings: &[Sighting], size: [usize; 2], with_light: bool) {
         let per_px2 = sightings.len() as f64 / (size[0] * size[1]) as f64;

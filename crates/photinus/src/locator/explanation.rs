@@ -52,7 +52,7 @@ impl Explanation {
             best: Vec::new(),
             left: Vec::with_capacity(count),
             roots: Vec::new(),
-            spots: Vec::new(),
+            spots: Vec::with_capacity(512),
             options: Vec::with_capacity(count),
             sums: Vec::with_capacity(1 << MOST_TOGETHER),
             ways: Vec::with_capacity(1 << MOST_TOGETHER),

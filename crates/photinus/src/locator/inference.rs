@@ -90,7 +90,7 @@ impl Inference {
             memory: Memory::new(clutter.counts().len()),
             size,
             with_light,
-            companions: Companions::default(),
+            companions: Companions::new(),
             fixtures: Fixtures::new(),
             first_clutter: Clutter::new(size, with_light),
             clutter,

@@ -15,6 +15,22 @@ const MOST_WEIGHED: usize = 8;
 /// A handful that is so much less likely than clutter by a first look, nats, is not weighed: first looks are as good.
 const POOR_GAIN: f64 = -8.0;
 
+/// An observation and those next to it.
+type Window = [Option<usize>; 1 + NEAREST];
+
+/// What the turn of another observation has looked at, as bits of a window: itself, and all that are in both windows.
+#[derive(Clone, Copy, Default)]
+struct Seen {
+    own: usize,
+    common: usize,
+}
+
+impl Seen {
+    fn has(self, handful: usize) -> bool {
+        handful & self.own != 0 && handful & !self.common == 0
+    }
+}
+
 /// Room to look for other handfuls in.
 #[derive(Debug)]
 pub(super) struct Alternatives {
@@ -22,6 +38,8 @@ pub(super) struct Alternatives {
     window: Vec<usize>,
     nearest: Vec<(f64, usize)>,
     handful: Vec<usize>,
+    /// The windows of those whose turn has been in this round.
+    windows: Vec<Option<Window>>,
     /// Gain over clutter by a first look, and which of the window.
     looked_at: Vec<(f64, usize)>,
 }
@@ -33,11 +51,19 @@ impl Alternatives {
             window: Vec::with_capacity(1 + NEAREST),
             nearest: Vec::with_capacity(512),
             handful: Vec::with_capacity(64),
+            windows: Vec::new(),
             looked_at: Vec::with_capacity(1 << NEAREST),
         }
     }
 
-    /// Looks at the handfuls of an observation; hands on the likeliest, each ascending. Returns how many it looked at.
+    /// Begins a round with a frame of so many observations.
+    pub(super) fn begin(&mut self, observations: usize) {
+        self.windows.clear();
+        self.windows.resize(observations, None);
+    }
+
+    /// Looks at the handfuls of an observation, but those that were looked at in the turn of another; hands on the likeliest, each ascending. Returns
+    /// how many it looked at.
     pub(super) fn around(
         &mut self,
         context: &Context<'_>,
@@ -49,10 +75,13 @@ impl Alternatives {
         let nearest = self.open_window(context, observation, matcher);
         self.looked_at.clear();
         let most = matcher.most_visible().max(1) as u32;
+        let seen = self.seen_before();
+        let mut looks = 0;
         for mask in (1usize..1 << self.window.len()).step_by(2) {
-            if mask.count_ones() > most {
+            if mask.count_ones() > most || seen.iter().any(|before| before.has(mask)) {
                 continue;
             }
+            looks += 1;
             self.gather(mask);
             let Some(log_density) = matcher.log_density(context, &self.handful) else { continue };
             let clutter: f64 = self.handful.iter().map(|&spot| context.clutter[spot]).sum();
@@ -75,7 +104,7 @@ impl Alternatives {
                 with(&self.handful, matcher);
             }
         }
-        1 << (self.window.len() - 1)
+        looks
     }
 
     /// Opens the window around an observation; returns the one nearest to it.
@@ -93,7 +122,20 @@ impl Alternatives {
         window.clear();
         window.push(observation);
         window.extend(nearest.iter().take(NEAREST).map(|&(_, index)| index));
+        self.windows[observation] = Some(core::array::from_fn(|place| window.get(place).copied()));
         first.map(|(_, index)| index)
+    }
+
+    /// What the turns of others in the window have looked at.
+    fn seen_before(&self) -> [Seen; 1 + NEAREST] {
+        let mut seen = [Seen::default(); 1 + NEAREST];
+        for (bit, &other) in self.window.iter().enumerate().skip(1) {
+            let Some(theirs) = &self.windows[other] else { continue };
+            let is_theirs = |spot: &usize| theirs.contains(&Some(*spot));
+            let common = self.window.iter().enumerate().filter(|(_, spot)| is_theirs(spot));
+            seen[bit] = Seen { own: 1 << bit, common: common.map(|(bit, _)| 1 << bit).sum() };
+        }
+        seen
     }
 
     fn gather(&mut self, mask: usize) {

@@ -136,6 +136,7 @@ impl Inference {
         self.weigh_groups(&context, &mut work);
         for round in 0..ROUNDS {
             self.doubt(&sightings, round);
+            self.alternatives.begin(sightings.len());
             self.look_for_others(&context, round, &mut work);
             self.settle(&sightings);
         }

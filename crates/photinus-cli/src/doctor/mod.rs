@@ -78,6 +78,7 @@ pub(crate) fn run(args: &Args, terminal: &Terminal) -> Result<(), Failure> {
         }
     }
     terminal.result(match doubts {
+        0 if failed > 0 => "Nothing is doubtful of what could be read.".to_owned(),
         0 => "Nothing is doubtful.".to_owned(),
         1 => "One thing is doubtful.".to_owned(),
         doubts => format!("{doubts} things are doubtful."),

@@ -6,21 +6,27 @@ use super::association::Association;
 use super::hearing::Listeners;
 use super::near::Directions;
 use super::told::MarkerTrack;
-use super::track::{Candidate, Expected, Track};
+use super::track::{Candidate, Expected, Track, looks};
 use super::turn::OwnTurn;
 use super::{Settings, SettingsError};
 use crate::camera::{Bearing, Camera, Watched};
 use crate::identity::decoder::{Decoder, TimeStands};
 use crate::locator::Sighting;
 
-/// Sightings so far from a track, in squared standard deviations, are not its own: one of 3000 is, all the same.
-const GATE: f64 = 16.0;
+/// Sightings so far from a track, in squared standard deviations, are not its own: one of 300,000 is, all the same.
+const GATE: f64 = 25.0;
 /// Tracks at most: beyond, no new ones begin.
 const MOST_TRACKS: usize = 512;
 /// Sightings that no track explains are counted over so long, s.
 const COUNTED_S: f64 = 1.0;
-/// A new track is not worth beginning below this probability.
-const LEAST_NEW: f64 = 0.02;
+/// There are never fewer of them than this in a frame.
+const LEAST_UNEXPLAINED: f64 = 0.1;
+/// A sighting that some track explains better than this begins none.
+const WORTH_BEGINNING: f64 = 0.2;
+/// A first sighting is never more probably a marker.
+const MOST_NEW: f64 = 0.5;
+/// For how long at least a frame is looked at for what is new: the first has none before it, s.
+const SHORTEST_S: f64 = 1.0 / 60.0;
 /// However near two tracks are, they are told apart at times.
 const MOST_MELTED: f64 = 0.9;
 
@@ -261,18 +267,19 @@ impl Follower {
 
     /// Sightings that no track explains may be new markers.
     fn begin_tracks(&mut self, frame: &Frame<'_>, passed_s: f64) {
+        let new = self.settings.new_per_s * passed_s.max(SHORTEST_S);
+        let share = (new / self.unexplained.max(LEAST_UNEXPLAINED)).min(MOST_NEW);
         let mut unexplained = 0.0;
         for (index, sighting) in frame.sightings.iter().enumerate() {
             let own = self.association.is_unexplained(index);
             unexplained += own;
-            let odds = libm::exp(sighting.spot.marker_log_odds.clamp(-3.0, 3.0)) * self.settings.born;
-            let probability = own * odds / (odds + 1.0 - self.settings.born);
-            if probability > LEAST_NEW && self.tracks.len() < MOST_TRACKS {
-                self.tracks.push(Track::new(index, sighting, probability, &self.settings));
+            if own > WORTH_BEGINNING && self.tracks.len() < MOST_TRACKS {
+                let odds = own * looks(sighting) * share / (1.0 - share);
+                self.tracks.push(Track::new(index, sighting, odds / (1.0 + odds), &self.settings));
             }
         }
-        let share = (passed_s / COUNTED_S).min(1.0);
-        self.unexplained += share * (unexplained - self.unexplained);
+        let weight = (passed_s / COUNTED_S).min(1.0);
+        self.unexplained += weight * (unexplained - self.unexplained);
     }
 
     /// Tracks that are gone end.
@@ -296,7 +303,7 @@ impl Follower {
 
     /// Density of sightings that no track explains, 1/sr.
     fn others_per_sr(&self) -> f64 {
-        self.unexplained.max(0.1) / self.field_sr
+        self.unexplained.max(LEAST_UNEXPLAINED) / self.field_sr
     }
 }
 

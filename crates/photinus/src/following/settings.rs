@@ -11,8 +11,8 @@ pub struct Settings {
     pub turn_rad_s: f64,
     /// By how much that changes in a second, as a standard deviation, rad/s^2: a multirotor that is flown briskly.
     pub turn_change_rad_s2: f64,
-    /// Of sightings that no track explains this share are markers; the rest is clutter.
-    pub born: f64,
+    /// How many markers come into view in a second; the other sightings that no track explains are clutter.
+    pub new_per_s: f64,
     /// Probability that a marker which shines bright enough is not found all the same.
     pub missed: f64,
     /// Two markers so far apart are told apart half of the time, px.
@@ -32,7 +32,7 @@ impl Default for Settings {
             acceleration_rad2_s3: 0.15,
             turn_rad_s: 1.0,
             turn_change_rad_s2: 10.0,
-            born: 0.1,
+            new_per_s: 2.0,
             missed: 0.01,
             resolution_px: 2.5,
             hides_per_s: 0.2,
@@ -55,7 +55,7 @@ impl Settings {
             ("acceleration_rad2_s3", self.acceleration_rad2_s3, f64::INFINITY),
             ("turn_rad_s", self.turn_rad_s, f64::INFINITY),
             ("turn_change_rad_s2", self.turn_change_rad_s2, f64::INFINITY),
-            ("born", self.born, 1.0),
+            ("new_per_s", self.new_per_s, f64::INFINITY),
             ("missed", self.missed, 1.0),
             ("resolution_px", self.resolution_px, f64::INFINITY),
             ("hides_per_s", self.hides_per_s, f64::INFINITY),

@@ -27,7 +27,7 @@ pub struct MarkerTrack {
     pub sighting: Option<usize>,
     /// The probability of the most probable sighting.
     pub sighting_probability: f64,
-    /// The probability that it shone during the exposure.
+    /// The probability that it shone during the whole exposure.
     pub lit: f64,
     /// The probability that it exists.
     pub existence: f64,

@@ -13,14 +13,19 @@ const FAINTEST_SPREAD: f64 = 0.23;
 const LIGHT_RANGE: f64 = 6.0;
 /// How much more likely a spot without light is of an LED that shines than of clutter, by the share of the exposure.
 const WITHOUT_LIGHT: [f64; SHARES] = [0.01, 0.26, 0.51, 0.76, 1.0];
+/// How likely the exposure holds an edge of the signal, for each of the shares between: short exposures hold one in 30 frames.
+const PARTLY: f64 = 0.01;
+/// How likely it does not.
+const WHOLE: f64 = 1.0 - PARTLY * (SHARES - 2) as f64;
 /// Looks of a spot count by no more than this factor, as a logarithm: they are told by the frame alone.
 const MOST_LOOKS: f64 = 3.0;
 /// A track is a marker from this probability on.
-const CONFIRMED: f64 = 0.95;
+const CONFIRMED: f64 = 0.99;
 /// It gets a listener from this probability on.
 const LISTENS: f64 = 0.7;
-/// It ends below this probability.
+/// It ends below this probability, or this share of that with which it began.
 const LEAST: f64 = 0.02;
+const LEAST_OF_FIRST: f64 = 0.2;
 /// It ends when its bearing is less sure than this, rad.
 const LOST_RAD: f64 = 0.15;
 
@@ -37,6 +42,8 @@ pub(super) struct Track {
     pub(super) level: Option<Level>,
     pub(super) hearing: Hearing,
     pub(super) rad_per_px: f64,
+    /// It ends when its existence is less probable.
+    least: f64,
     pub(super) frame: Expected,
     pub(super) told: Told,
 }
@@ -83,6 +90,7 @@ impl Track {
             level: light(sighting).and_then(|(light, _)| Level::of_first(light)),
             hearing: Hearing::default(),
             rad_per_px: sighting.rad_per_px,
+            least: LEAST.min(LEAST_OF_FIRST * probability),
             frame: Expected { lit, absence: [1.0; SHARES], melted: (0.0, 0.0) },
             told: Told { sighting: Some((index, probability)), lit },
         }
@@ -103,7 +111,7 @@ impl Track {
     /// Whether it is most probably gone, or could be anywhere.
     pub(super) fn is_over(&self) -> bool {
         let place = self.motion.covariance().bearing;
-        !(self.presence.exists() > LEAST && place.trace() < 2.0 * LOST_RAD * LOST_RAD)
+        !(self.presence.exists() > self.least && place.trace() < 2.0 * LOST_RAD * LOST_RAD)
     }
 
     /// How likely no spot is, by the share of the exposure, where a frame shows spots from this light on.
@@ -126,9 +134,8 @@ impl Track {
         offset: Offset,
     ) -> Candidate {
         let (melted, _) = self.frame.melted;
-        let looks = libm::exp(sighting.spot.marker_log_odds.clamp(-MOST_LOOKS, MOST_LOOKS));
         let covariance = self.motion.covariance().bearing + offset.noise;
-        let place = looks * super::turn::density(&offset.value, &covariance) / others_per_sr;
+        let place = looks(sighting) * super::turn::density(&offset.value, &covariance) / others_per_sr;
         let by_light = match (light(sighting), &self.level) {
             (Some((light, sigma)), Some(level)) => {
                 density_of_light(light, sigma, level).map(|density| density * light * LIGHT_RANGE)
@@ -181,8 +188,7 @@ impl Track {
         let (melted, _) = self.frame.melted;
         let mean = by_share.iter().sum::<f64>() / SHARES as f64;
         let evidence = by_share.map(|one| shows * (one + melted * (mean - one)) + 1.0 - shows);
-        let on = lit * evidence[SHARES - 1];
-        self.told.lit = on / (on + (1.0 - lit) * evidence[0]);
+        self.told.lit = WHOLE * lit * evidence[SHARES - 1] / over_light(lit, &evidence);
         self.see_light(sightings, melted);
         Evidence::of_likelihoods(evidence)
     }
@@ -202,9 +208,15 @@ impl Track {
     }
 }
 
-/// The mean over shining all the time, with probability `lit`, and not at all.
+/// The mean over shining not at all, all the time, with probability `lit` unless it is for a part, and for a part.
 fn over_light(lit: f64, by_share: &[f64; SHARES]) -> f64 {
-    lit * by_share[SHARES - 1] + (1.0 - lit) * by_share[0]
+    let [off, partly @ .., on] = by_share;
+    WHOLE * (lit * on + (1.0 - lit) * off) + PARTLY * partly.iter().sum::<f64>()
+}
+
+/// How much more likely a sighting looks as it does if it is a marker than if it is clutter.
+pub(super) fn looks(sighting: &Sighting) -> f64 {
+    libm::exp(sighting.spot.marker_log_odds.clamp(-MOST_LOOKS, MOST_LOOKS))
 }
 
 /// The light of a sighting with its standard deviation.

@@ -11,6 +11,7 @@ use photinus::camera::Watched;
 use photinus::following::{Follower, Frame, MarkerTrack, Settings, Turn};
 use photinus::identity::CodeBook;
 use photinus::identity::decoder::{self, Decoder, Who};
+use nalgebra::{Rotation3, Vector3};
 use score::Score;
 use world::{EXPOSURE_S, FAINTEST, Swing, World, camera, words};
 
@@ -57,7 +58,7 @@ fn all_are_known(world: &World, follower: &Follower, score: &Score) {
         let gap = |track: &&MarkerTrack| (track.bearing.vector() - ahead).norm();
         let track = follower.tracks().iter().min_by(|a, b| gap(a).total_cmp(&gap(b))).unwrap();
         let identity = track.identity.unwrap();
-        if Some(identity.who)!= marker.word.map(Who::Word) {println!( "{index}{identity:?}");}
+        if Some(identity.who)!= marker.word.map(Who::Word) {println!( "{index}{identity:?} {:?} {:?}", track.number, score.closest[index]);}
     }
 }
 
@@ -104,5 +105,57 @@ fn drops_and_clutter() {
         let mut follower = follower(world.acceleration);
         let score = follow(&mut world, &mut follower, Some(0.3 * DEGREE), 360);
         all_are_known(&world, &follower, &score);
+    }
+}
+
+/// Two markers on great circles that cross, at any angle and speed, as near as they come to each other; the camera is still.
+fn crossing(seed: u64, steady: bool) -> World {
+    let mut world = World::new(seed, 0);
+    world.acceleration = 1e-3;
+    let speed = world.between(0.15, 0.5);
+    let angle = world.between(0.3, std::f64::consts::PI);
+    for (number, course) in [0.0, angle].into_iter().enumerate() {
+        let speed = speed * world.between(0.7, 1.3);
+        let side = Vector3::new(course.cos(), course.sin(), 0.0);
+        // both are straight ahead 2 s after the beginning, give or take a pixel
+        let miss = Vector3::from_fn(|row, _| if row < 2 { 0.002 * world.normal() } else { 0.0 });
+        let mut marker = world.marker(Vector3::z());
+        let turn = Rotation3::new(Vector3::z().cross(&side) * (-2.0 * speed));
+        marker.ahead = turn * (Vector3::z() + miss).normalize();
+        marker.rate_rad_s = turn * side * speed;
+        marker.word = (!steady).then_some(number);
+        world.markers.push(marker);
+    }
+    world
+}
+
+#[test]
+fn crossings() {
+    for steady in [false, true] {
+        let (mut swaps, mut more) = (0, 0);
+        for seed in 100..200 {
+            let mut world = crossing(seed, steady);
+            let mut follower = follower(0.02);
+            let mut own = [None; 2];
+            for frame in 0..240 {
+                let tracks = next(&mut world, &mut follower, Some(0.3 * DEGREE)).to_vec();
+                if frame == 90 || frame == 239 {
+                    let now = [0, 1].map(|index| {
+                        let (ahead, _) = world.truth(index);
+                        let gap = |track: &&MarkerTrack| (track.bearing.vector() - ahead).norm();
+                        let near = tracks.iter().filter(|track| gap(track) < 0.015);
+                        near.min_by(|a, b| gap(a).total_cmp(&gap(b))).map(|track| track.number)
+                    });
+                    if frame == 90 {
+                        own = now;
+                    } else {
+                        if now != own || now[0].is_none() { println!("{steady} {seed} {own:?} {now:?}"); }
+                        swaps += usize::from(now != own);
+                        more += usize::from(tracks.len() > 2);
+                    }
+                }
+            }
+        }
+        println!("steady {steady}: {swaps} swaps, {more} with more tracks");
     }
 }

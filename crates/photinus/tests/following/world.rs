@@ -40,6 +40,8 @@ pub struct Marker {
     pub word: Option<usize>,
     /// Bits into its word at the time 0.
     pub phase: f64,
+    /// Bits per second: its clock is not the camera's.
+    pub bit_rate_hz: f64,
     pub light: f64,
     /// When it is there at all, s.
     pub from_to_s: [f64; 2],
@@ -106,6 +108,7 @@ impl World {
             rate_rad_s: rate - ahead * rate.dot(&ahead),
             word: Some(self.markers.len() % self.words.len()),
             phase: self.between(0.0, 18.0),
+            bit_rate_hz: 60.0 * (1.0 + 5e-4 * self.between(-1.0, 1.0)),
             light: self.between(500.0, 1500.0),
             from_to_s: [f64::NEG_INFINITY, f64::INFINITY],
         }
@@ -204,7 +207,7 @@ impl World {
         let lit = marker.word.map_or(1.0, |word| {
             let on = |step: u32| {
                 let at_s = time_s + EXPOSURE_S * (f64::from(step) + 0.5) / 20.0;
-                f64::from(u8::from(self.words[word].bit((marker.phase + at_s * 60.0) as usize)))
+                f64::from(u8::from(self.words[word].bit((marker.phase + at_s * marker.bit_rate_hz) as usize)))
             };
             (0..20).map(on).sum::<f64>() / 20.0
         });

@@ -160,6 +160,7 @@ impl Follower {
     fn turn(&mut self, frame: &Frame<'_>, passed_s: f64) {
         if let Some(Turn { now_from_before, sigma_rad }) = frame.turn {
             let covariance_rad2 = Matrix3::identity() * (sigma_rad * sigma_rad);
+            self.own_turn.forget(&self.settings);
             self.turn_tracks(&now_from_before, Some(&covariance_rad2));
             return;
         }
@@ -177,6 +178,11 @@ impl Follower {
         self.claims.resize(frame.sightings.len(), 0.0);
         let (turn, left_rad2) = self.own_turn.estimate(passed_s, &covariance_rad2, &mut self.claims);
         self.turn_tracks(&turn, Some(&left_rad2));
+        let confirmed = self.tracks.iter().filter(|track| track.is_confirmed()).map(|track| &track.motion);
+        let common_rad_s = self.own_turn.take_common(confirmed, &self.settings);
+        for track in &mut self.tracks {
+            track.motion.take_from_rate(track.motion.by_turn().transpose() * common_rad_s);
+        }
     }
 
     fn turn_tracks(&mut self, turn: &Rotation3<f64>, covariance_rad2: Option<&Matrix3<f64>>) {
@@ -296,8 +302,8 @@ impl Follower {
 
     fn tell(&mut self) {
         self.told.clear();
-        let listeners = &self.listeners;
-        self.told.extend(self.tracks.iter().filter_map(|track| MarkerTrack::of(track, listeners)));
+        let (listeners, common) = (&self.listeners, self.own_turn.common_rad2_s2());
+        self.told.extend(self.tracks.iter().filter_map(|track| MarkerTrack::of(track, listeners, common)));
         self.told.sort_unstable_by_key(|track| track.number);
     }
 

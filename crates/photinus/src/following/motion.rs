@@ -71,6 +71,16 @@ impl Motion {
         self.axes() * self.rate_rad_s
     }
 
+    /// The rate on the axes of the plane.
+    pub(super) fn rate_on_plane(&self) -> Vector2<f64> {
+        self.rate_rad_s
+    }
+
+    /// A part of the rate turns out not to be the marker's.
+    pub(super) fn take_from_rate(&mut self, part_rad_s: Vector2<f64>) {
+        self.rate_rad_s -= part_rad_s;
+    }
+
     pub(super) fn covariance(&self) -> &Covariance {
         &self.covariance
     }

@@ -16,6 +16,7 @@ pub struct MarkerTrack {
     /// Its direction in the camera frame.
     pub bearing: Bearing,
     /// How fast that moves, rad/s, in axes that do not rotate and coincide with the camera's at the frame: tangent to the sphere.
+    /// Where no gyro tells how the observer turns, less what all tracks have in common; the covariance says so.
     pub rate_rad_s: Vector3<f64>,
     /// Two axes tangent to the sphere at the bearing, as columns.
     pub axes: Matrix3x2<f64>,
@@ -37,15 +38,16 @@ pub struct MarkerTrack {
 
 impl MarkerTrack {
     /// `None` while it is not confirmed.
-    pub(super) fn of(track: &Track, listeners: &Listeners) -> Option<Self> {
+    pub(super) fn of(track: &Track, listeners: &Listeners, common_rad2_s2: &Matrix3<f64>) -> Option<Self> {
         let number = track.number?;
         let motion = &track.motion;
         let own = motion.covariance();
+        let of_common = motion.by_turn().transpose() * common_rad2_s2 * motion.by_turn();
         let mut covariance = Matrix4::zeros();
         covariance.fixed_view_mut::<2, 2>(0, 0).copy_from(&own.bearing);
         covariance.fixed_view_mut::<2, 2>(0, 2).copy_from(&own.cross);
         covariance.fixed_view_mut::<2, 2>(2, 0).copy_from(&own.cross.transpose());
-        covariance.fixed_view_mut::<2, 2>(2, 2).copy_from(&own.rate);
+        covariance.fixed_view_mut::<2, 2>(2, 2).copy_from(&(own.rate + of_common));
         let (sighting, sighting_probability) = track.told.sighting.unzip();
         let sighting_probability = sighting_probability.unwrap_or(0.0);
         let identity = listeners.decoder().zip(track.hearing.listener());

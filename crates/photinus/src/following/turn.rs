@@ -3,11 +3,14 @@
 //! In: offsets of sightings from tracks near them. Out: a small rotation with its covariance. It is the maximum of the posterior under a
 //! rotation that goes on as it was, with every sighting being of any of the tracks near it or of none: least squares, weighed anew in each
 //! round by who is likely whose, at first with what the rotation itself leaves open.
+//!
+//! Nothing tells a rotation of the observer from markers that all move as if it rotated: what rates have in common is taken for the observer's,
+//! and how unsure that leaves them is told.
 
 use nalgebra::{Matrix2, Matrix3, Matrix3x2, Rotation3, Vector2, Vector3};
 
 use super::Settings;
-use super::motion::Offset;
+use super::motion::{Motion, Offset};
 
 /// How much of what the rotation leaves open beforehand widens the offsets, round by round.
 const ROUNDS: [f64; 4] = [1.0, 0.3, 0.03, 0.0];
@@ -17,6 +20,8 @@ const ROUNDS: [f64; 4] = [1.0, 0.3, 0.03, 0.0];
 pub(super) struct OwnTurn {
     rate_rad_s: Vector3<f64>,
     covariance_rad2_s2: Matrix3<f64>,
+    /// How unsure it is what rates have in common, rad^2/s^2.
+    common_rad2_s2: Matrix3<f64>,
     matches: Vec<Match>,
 }
 
@@ -36,8 +41,12 @@ struct Match {
 
 impl OwnTurn {
     pub(super) fn new(settings: &Settings) -> Self {
-        let mut own =
-            Self { rate_rad_s: Vector3::zeros(), covariance_rad2_s2: Matrix3::zeros(), matches: Vec::new() };
+        let mut own = Self {
+            rate_rad_s: Vector3::zeros(),
+            covariance_rad2_s2: Matrix3::zeros(),
+            common_rad2_s2: Matrix3::zeros(),
+            matches: Vec::new(),
+        };
         own.forget(settings);
         own
     }
@@ -46,6 +55,41 @@ impl OwnTurn {
     pub(super) fn forget(&mut self, settings: &Settings) {
         self.rate_rad_s = Vector3::zeros();
         self.covariance_rad2_s2 = Matrix3::identity() * (settings.turn_rad_s * settings.turn_rad_s);
+        self.common_rad2_s2 = Matrix3::zeros();
+    }
+
+    /// How unsure it is what the rates of all tracks have in common, rad^2/s^2: nothing where a gyro tells how the observer turns.
+    pub(super) fn common_rad2_s2(&self) -> &Matrix3<f64> {
+        &self.common_rad2_s2
+    }
+
+    /// What the rates of these have in common, rad/s, which is taken for the observer's.
+    pub(super) fn take_common<'a>(
+        &mut self,
+        motions: impl Iterator<Item = &'a Motion> + Clone,
+        settings: &Settings,
+    ) -> Vector3<f64> {
+        // how much rates differ: no less than with what they are known
+        let (mut squares, mut count) = (0.0, 0.0);
+        for motion in motions.clone() {
+            squares += motion.rate_on_plane().norm_squared() + motion.covariance().rate.trace();
+            count += 2.0;
+        }
+        let prior = settings.rate_rad_s * settings.rate_rad_s;
+        let variance = (squares + prior) / (count + 1.0);
+        let mut information =
+            Matrix3::identity() * (variance / (settings.turn_rad_s * settings.turn_rad_s));
+        let mut sum = Vector3::zeros();
+        for motion in motions {
+            let by_turn = motion.by_turn();
+            information += by_turn * by_turn.transpose();
+            sum += by_turn * motion.rate_on_plane();
+        }
+        let inverse = information.try_inverse().unwrap_or_else(Matrix3::zeros);
+        self.common_rad2_s2 = inverse * variance;
+        let common_rad_s = inverse * sum;
+        self.rate_rad_s += common_rad_s;
+        common_rad_s
     }
 
     /// The rotation if it went on as it was, with its covariance, rad^2; what is known of it is forgotten by and by.

@@ -5,6 +5,7 @@ use nalgebra::{Matrix2, Matrix3, Rotation3};
 use super::association::Association;
 use super::hearing::Listeners;
 use super::near::Directions;
+use super::presence::Passage;
 use super::told::MarkerTrack;
 use super::track::{Candidate, Expected, Track, looks};
 use super::turn::OwnTurn;
@@ -13,8 +14,8 @@ use crate::camera::{Bearing, Camera, Watched};
 use crate::identity::decoder::{Decoder, TimeStands};
 use crate::locator::Sighting;
 
-/// Sightings so far from a track, in squared standard deviations, are not its own: one of 300,000 is, all the same.
-const GATE: f64 = 25.0;
+/// Sightings so far from a track, in squared standard deviations, are not its own.
+const GATE: f64 = 36.0;
 /// Tracks at most: beyond, no new ones begin.
 const MOST_TRACKS: usize = 512;
 /// Sightings that no track explains are counted over so long, s.
@@ -196,10 +197,11 @@ impl Follower {
 
     /// What the frame should show of each track.
     fn expect(&mut self, frame: &Frame<'_>, passed_s: f64) {
+        let passage = Passage::of(passed_s, &self.settings);
         for track in &mut self.tracks {
             let bearing = Bearing::new(track.motion.ahead());
             let is_watched = bearing.is_some_and(|bearing| frame.watched.sees(&bearing));
-            track.presence.wait(passed_s, is_watched, &self.settings);
+            track.presence.wait(&passage, is_watched);
             track.expect_absence(frame.faintest_light, is_watched, &self.settings);
         }
         let numbered = self.tracks.iter().enumerate().filter(|(_, track)| track.is_confirmed());

@@ -2,6 +2,31 @@
 
 use super::Settings;
 
+/// What is not watched is out of sight so soon, 1/s.
+const LEAVES_PER_S: f64 = 60.0;
+
+/// How likely a marker passes from one to another while time passes.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Passage {
+    hide: f64,
+    /// Beyond the border.
+    leave: f64,
+    back: f64,
+    go: f64,
+}
+
+impl Passage {
+    pub(super) fn of(passed_s: f64, settings: &Settings) -> Self {
+        let within = |per_s: f64| 1.0 - libm::exp(-per_s * passed_s);
+        Self {
+            hide: within(settings.hides_per_s),
+            leave: within(LEAVES_PER_S),
+            back: within(settings.returns_per_s),
+            go: within(settings.goes_per_s),
+        }
+    }
+}
+
 /// Probabilities of the three; what is left is gone, or never was.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Presence {
@@ -31,13 +56,11 @@ impl Presence {
     }
 
     /// Time passes. What is not watched hides all that is there.
-    pub(super) fn wait(&mut self, passed_s: f64, is_watched: bool, settings: &Settings) {
-        let within = |per_s: f64| 1.0 - libm::exp(-per_s * passed_s);
-        let hide = if is_watched { within(settings.hides_per_s) } else { within(60.0) };
-        let back = if is_watched { within(settings.returns_per_s) } else { 0.0 };
+    pub(super) fn wait(&mut self, passage: &Passage, is_watched: bool) {
+        let (hide, back) = if is_watched { (passage.hide, passage.back) } else { (passage.leave, 0.0) };
         let (hides, returns) = (hide * self.in_sight, back * self.hidden);
         self.in_sight += returns - hides;
-        self.hidden = (self.hidden + hides - returns) * (1.0 - within(settings.goes_per_s));
+        self.hidden = (self.hidden + hides - returns) * (1.0 - passage.go);
     }
 
     /// A frame that is so much more likely if the marker is in sight than if it is not.

@@ -10,6 +10,9 @@ pub(crate) const SHARES: usize = 5;
 /// Those shares.
 const AT: [f64; SHARES] = [0.0, 0.25, 0.5, 0.75, 1.0];
 
+/// So many standard deviations are not worth a function: what it gives is lost beside a surprise.
+const NEVER: f64 = 13.0;
+
 /// A light that fits nothing still has this likelihood against the best fit, so that no frame rules out anything for ever.
 const LEAST: f64 = 1e-6;
 
@@ -96,6 +99,9 @@ pub(crate) fn density_of_light(light: f64, sigma: f64, level: &Level) -> [f64; S
     AT.map(|share| {
         let (off, deviation) = level.standing(light, sigma, share);
         let stray = level.surprise / (2.0 * level.full);
+        if off.abs() > NEVER {
+            return stray;
+        }
         libm::exp(-0.5 * off * off) / (deviation * 2.506_628_274_631_000_7) + stray
     })
 }
@@ -104,6 +110,9 @@ pub(crate) fn density_of_light(light: f64, sigma: f64, level: &Level) -> [f64; S
 pub(crate) fn probability_of_absence(limit: f64, sigma: f64, level: &Level) -> [f64; SHARES] {
     AT.map(|share| {
         let (off, _) = level.standing(limit, sigma, share);
+        if off.abs() > NEVER {
+            return if off > 0.0 { 1.0 + level.surprise } else { level.surprise };
+        }
         0.5 * libm::erfc(-off / std::f64::consts::SQRT_2) + level.surprise
     })
 }

@@ -2,6 +2,7 @@
 
 use nalgebra::{Matrix2, Rotation3, Vector3};
 use photinus::camera::{Bearing, Camera, Ideal, IdealLaw, Model, Pixel};
+use photinus::following::Turn;
 use photinus::identity::Word;
 use photinus::locator::Sighting;
 use photinus::pose::LogLight;
@@ -12,6 +13,9 @@ use rand_pcg::Pcg64Mcg;
 pub const FRAME_S: f64 = 1.0 / 60.0;
 pub const EXPOSURE_S: f64 = 1e-3;
 pub const FAINTEST: f64 = 200.0;
+pub const DEGREE: f64 = std::f64::consts::PI / 180.0;
+/// Noise of a gyro.
+pub const GYRO_RAD_S: f64 = 0.3 * DEGREE;
 const SIGMA_PX: f64 = 0.1;
 const LIGHT_SIGMA: f64 = 0.05;
 /// Steps of the motion in a frame.
@@ -79,7 +83,7 @@ impl World {
             random: Pcg64Mcg::new(u128::from(seed) * 2 + 1),
             markers: Vec::new(),
             swing: None,
-            acceleration: 0.02,
+            acceleration: 5e-3,
             clutter: 0,
             dropped: 0.0,
             time_s: 0.0,
@@ -157,10 +161,10 @@ impl World {
     }
 
     /// How a gyro with so much noise, rad/s, tells the camera's turn since the frame before.
-    pub fn turned(&mut self, noise_rad_s: f64) -> (Rotation3<f64>, f64) {
+    pub fn turned(&mut self, noise_rad_s: f64) -> Turn {
         let sigma_rad = noise_rad_s * self.passed_s();
         let error = Vector3::from_fn(|_, _| sigma_rad * self.normal());
-        (Rotation3::new(error) * self.now * self.before.inverse(), sigma_rad)
+        Turn { now_from_before: Rotation3::new(error) * self.now * self.before.inverse(), sigma_rad }
     }
 
     /// Direction and rate of a marker in the camera's axes.
@@ -172,9 +176,13 @@ impl World {
     /// Whether a marker is there and well inside the image.
     pub fn is_there(&self, index: usize) -> bool {
         let [from_s, to_s] = self.markers[index].from_to_s;
-        let place = self.camera.pixel(&Bearing::new(self.now * self.markers[index].ahead).unwrap());
-        let is_inside = |at: Pixel| (8.0..744.0).contains(&at.u) && (8.0..472.0).contains(&at.v);
-        (from_s..to_s).contains(&self.time_s) && place.is_some_and(is_inside)
+        let bearing = Bearing::new(self.now * self.markers[index].ahead).unwrap();
+        (from_s..to_s).contains(&self.time_s) && self.is_inside(&bearing)
+    }
+
+    pub fn is_inside(&self, bearing: &Bearing) -> bool {
+        let inside = |at: Pixel| (8.0..744.0).contains(&at.u) && (8.0..472.0).contains(&at.v);
+        self.camera.pixel(bearing).is_some_and(inside)
     }
 
     fn step(&mut self) {

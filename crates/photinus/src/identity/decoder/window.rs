@@ -32,6 +32,7 @@ impl Window {
 
 /// The mean likelihood for a signal that is off in the bit in which the exposure may begin and on in the next, over beginnings from
 /// `into` that bit on for the width of a place.
+#[inline]
 fn mean_of_switching(into: f32, exposure: f32, evidence: &Evidence) -> f32 {
     let width = 1.0 / PLACES as f32;
     let exposure = exposure.clamp(1e-3, 1.0);

@@ -198,7 +198,8 @@ fn a_warm_follower_allocates_nothing() {
     let frames: Vec<_> = shown.iter().map(&mut see).collect();
     let bits = |text: &str| text.chars().map(|bit| bit == '1').collect::<Vec<_>>();
     let words = ["0010110111", "0010101111", "0001110101"].map(|text| Word::new(&bits(text)).unwrap());
-    let decoder = Decoder::new(&CodeBook::new(words.to_vec()).unwrap(), decoder::Settings::default()).unwrap();
+    let decoder =
+        Decoder::new(&CodeBook::new(words.to_vec()).unwrap(), decoder::Settings::default()).unwrap();
     let mut follower = Follower::new(&camera, Some(decoder), following::Settings::default()).unwrap();
     let (mut time_s, mut tracks) = (0.0, 0);
     let mut follow = |round: usize| {

@@ -48,9 +48,11 @@ impl Markers {
         let follower = Follower::new(&camera, decoder.ok(), following::Settings::default());
         let mut markers = Self { camera, follower: follower.expect("settings"), frames, frame: 0, turn };
         (0..400).for_each(|_| markers.follow());
-        let known = markers.follower.tracks().iter().filter(|track| {
-            track.identity.is_some_and(|identity| identity.probability > 0.99)
-        });
+        let known = markers
+            .follower
+            .tracks()
+            .iter()
+            .filter(|track| track.identity.is_some_and(|identity| identity.probability > 0.99));
         println!("{count} markers: {} tracks, {} known", markers.follower.tracks().len(), known.count());
         markers
     }

@@ -93,7 +93,8 @@ mod tests {
         for way in 0..4_usize.pow(weights.len() as u32) {
             // each digit to the base of 4 is a track's sighting, 3 is none
             let of = |track: usize| way / 4_usize.pow(track as u32) % 4;
-            let has_one = |sighting: usize| (0..weights.len()).filter(|&track| of(track) == sighting).count() <= 1;
+            let has_one =
+                |sighting: usize| (0..weights.len()).filter(|&track| of(track) == sighting).count() <= 1;
             if !(0..3).all(has_one) {
                 continue;
             }

@@ -28,6 +28,8 @@ const WORTH_BEGINNING: f64 = 0.2;
 const MOST_NEW: f64 = 0.5;
 /// For how long at least a frame is looked at for what is new: the first has none before it, s.
 const SHORTEST_S: f64 = 1.0 / 60.0;
+/// After so long without a frame nobody is where they were, s.
+const LONGEST_S: f64 = 5.0;
 /// However near two tracks are, they are told apart at times.
 const MOST_MELTED: f64 = 0.9;
 
@@ -129,6 +131,9 @@ impl Follower {
         let passed_s = self.last_s.map_or(0.0, |last_s| frame.time_s - last_s);
         if !frame.time_s.is_finite() || (self.last_s.is_some() && passed_s <= 0.0) {
             return Err(TimeStands);
+        }
+        if passed_s > LONGEST_S {
+            self.restart();
         }
         self.last_s = Some(frame.time_s);
         let directions = frame.sightings.iter().map(|sighting| *sighting.bearing.vector());
@@ -260,8 +265,7 @@ impl Follower {
     fn learn(&mut self, frame: &Frame<'_>) {
         for (track, own) in self.tracks.iter_mut().zip(self.first.windows(2)) {
             let (candidates, association) = (&self.candidates[own[0]..own[1]], &self.association);
-            let evidence =
-                track.learn(frame.sightings, candidates, |pair| association.free(own[0] + pair));
+            let evidence = track.learn(frame.sightings, candidates, |pair| association.free(own[0] + pair));
             self.listeners.hear(&mut track.hearing, frame.time_s, frame.exposure_s, evidence);
             if track.may_listen() {
                 self.listeners.give(&mut track.hearing);

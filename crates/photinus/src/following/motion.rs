@@ -90,9 +90,8 @@ impl Motion {
         let noise = |factor: f64| Matrix2::identity() * (acceleration_rad2_s3 * factor);
         let Covariance { bearing, cross, rate } = &mut self.covariance;
         let square_s2 = passed_s * passed_s;
-        *bearing += (*cross + cross.transpose()) * passed_s
-            + *rate * square_s2
-            + noise(square_s2 * passed_s / 3.0);
+        *bearing +=
+            (*cross + cross.transpose()) * passed_s + *rate * square_s2 + noise(square_s2 * passed_s / 3.0);
         *cross += *rate * passed_s + noise(square_s2 / 2.0);
         *rate += noise(passed_s);
         self.shift(self.rate_rad_s * passed_s);

@@ -116,7 +116,8 @@ impl Track {
 
     /// How likely no spot is, by the share of the exposure, where a frame shows spots from this light on.
     pub(super) fn expect_absence(&mut self, faintest_light: f64, is_watched: bool, settings: &Settings) {
-        let dark = |level: &Level| probability_of_absence(faintest_light, FAINTEST_SPREAD * faintest_light, level);
+        let dark =
+            |level: &Level| probability_of_absence(faintest_light, FAINTEST_SPREAD * faintest_light, level);
         let absence = match (is_watched, &self.level) {
             (false, _) => [1.0; SHARES],
             (true, Some(level)) => dark(level),

@@ -77,8 +77,7 @@ impl OwnTurn {
         }
         let prior = settings.rate_rad_s * settings.rate_rad_s;
         let variance = (squares + prior) / (count + 1.0);
-        let mut information =
-            Matrix3::identity() * (variance / (settings.turn_rad_s * settings.turn_rad_s));
+        let mut information = Matrix3::identity() * (variance / (settings.turn_rad_s * settings.turn_rad_s));
         let mut sum = Vector3::zeros();
         for motion in motions {
             let by_turn = motion.by_turn();

@@ -6,6 +6,7 @@
 #![allow(clippy::disallowed_methods, reason = "the simulator is no part of what must be the same everywhere")]
 #![allow(unreachable_pub, reason = "modules of one test")]
 
+mod any;
 mod plain;
 mod score;
 mod table;
@@ -270,8 +271,14 @@ fn times_that_stand_change_nothing() {
     for time_s in [now_s, now_s - 1.0, f64::NAN, f64::INFINITY] {
         let camera = camera();
         let watched = Watched::new(&camera, None);
-        let frame =
-            Frame { time_s, exposure_s: EXPOSURE_S, sightings: &sightings, faintest_light: FAINTEST, turn: None, watched };
+        let frame = Frame {
+            time_s,
+            exposure_s: EXPOSURE_S,
+            sightings: &sightings,
+            faintest_light: FAINTEST,
+            turn: None,
+            watched,
+        };
         assert_eq!(follower.follow(&frame), Err(decoder::TimeStands));
         assert_eq!(follower.tracks(), before);
     }

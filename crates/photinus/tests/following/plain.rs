@@ -69,7 +69,12 @@ impl Plain {
             self.next += 1;
         }
         let told = self.tracks.iter().filter(|track| track.seen >= SEEN);
-        told.map(|track| Followed { number: track.number, ahead: track.ahead, sigma_rad: 0.0, is_there: true })
-            .collect()
+        told.map(|track| Followed {
+            number: track.number,
+            ahead: track.ahead,
+            sigma_rad: 0.0,
+            is_there: true,
+        })
+        .collect()
     }
 }

@@ -30,8 +30,7 @@ pub fn words() -> Vec<Word> {
 }
 
 pub fn camera() -> Camera {
-    let lens =
-        Ideal::new(IdealLaw::Equidistant, [1.0 / 3.7673e-3; 2], Pixel::new(375.5, 239.5)).unwrap();
+    let lens = Ideal::new(IdealLaw::Equidistant, [1.0 / 3.7673e-3; 2], Pixel::new(375.5, 239.5)).unwrap();
     Camera::new(Model::Ideal(lens), 752, 480, None).unwrap()
 }
 
@@ -243,7 +242,8 @@ fn merge(camera: &Camera, sightings: &mut Vec<Sighting>) {
             let a = &sightings[first];
             let (own, its) = (light(a), light(&b));
             let mean = |a: f64, b: f64| (a * own + b * its) / (own + its);
-            let at = Pixel::new(mean(a.spot.centre.u, b.spot.centre.u), mean(a.spot.centre.v, b.spot.centre.v));
+            let at =
+                Pixel::new(mean(a.spot.centre.u, b.spot.centre.u), mean(a.spot.centre.v, b.spot.centre.v));
             sightings[first] = sighting(camera, at, own + its);
         } else {
             first += 1;

@@ -3,19 +3,18 @@
 use nalgebra::{Matrix2, Matrix3, Rotation3};
 
 use super::association::Association;
+use super::frame::{Frame, Turn};
 use super::hearing::Listeners;
-use super::near::Directions;
+use super::near::{Directions, near};
 use super::presence::Passage;
+use super::seen::Seen;
 use super::told::MarkerTrack;
-use super::track::{Candidate, Expected, Track, looks};
+use super::track::{Candidate, Expected, Track};
 use super::turn::OwnTurn;
 use super::{Settings, SettingsError};
-use crate::camera::{Bearing, Camera, Watched};
+use crate::camera::{Bearing, Camera};
 use crate::identity::decoder::{Decoder, TimeStands};
-use crate::locator::Sighting;
 
-/// Sightings so far from a track, in squared standard deviations, are not its own.
-const GATE: f64 = 36.0;
 /// Tracks at most: beyond, no new ones begin.
 const MOST_TRACKS: usize = 512;
 /// Sightings that no track explains are counted over so long, s.
@@ -33,32 +32,6 @@ const LONGEST_S: f64 = 5.0;
 /// However near two tracks are, they are told apart at times.
 const MOST_MELTED: f64 = 0.9;
 
-/// A frame of a camera.
-#[derive(Clone, Copy, Debug)]
-pub struct Frame<'a> {
-    /// When its exposure began, s.
-    pub time_s: f64,
-    /// How long it lasted, s.
-    pub exposure_s: f64,
-    /// What may be markers.
-    pub sightings: &'a [Sighting],
-    /// Light at which a marker is found half of the time, in units of the sightings' light.
-    pub faintest_light: f64,
-    /// How the observer turned since the frame before, where that is known.
-    pub turn: Option<Turn>,
-    /// Where a marker would be seen.
-    pub watched: Watched<'a>,
-}
-
-/// How the observer turned between two frames.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Turn {
-    /// Takes directions in the camera frame of the frame before to that of this one.
-    pub now_from_before: Rotation3<f64>,
-    /// Standard deviation of its error about each axis, rad.
-    pub sigma_rad: f64,
-}
-
 /// Follows blinking markers from frame to frame.
 #[derive(Debug)]
 pub struct Follower {
@@ -72,6 +45,7 @@ pub struct Follower {
     /// Sightings in a frame that no track explains.
     unexplained: f64,
     sightings: Directions,
+    seen: Vec<Seen>,
     confirmed: Directions,
     association: Association,
     candidates: Vec<Candidate>,
@@ -97,6 +71,7 @@ impl Follower {
             own_turn: OwnTurn::new(&settings),
             unexplained: 1.0,
             sightings: Directions::default(),
+            seen: Vec::new(),
             confirmed: Directions::default(),
             association: Association::default(),
             candidates: Vec::new(),
@@ -136,8 +111,9 @@ impl Follower {
             self.restart();
         }
         self.last_s = Some(frame.time_s);
-        let directions = frame.sightings.iter().map(|sighting| *sighting.bearing.vector());
-        self.sightings.begin(directions.enumerate());
+        self.sightings.of_sightings(frame.sightings);
+        self.seen.clear();
+        self.seen.extend(frame.sightings.iter().map(Seen::of));
         self.wait(frame, passed_s);
         if passed_s > 0.0 {
             self.turn(frame, passed_s);
@@ -177,7 +153,7 @@ impl Follower {
             let (place, by_turn) = (track.motion.covariance().bearing, track.motion.by_turn());
             let open = place + by_turn.transpose() * covariance_rad2 * by_turn;
             let odds = track.presence.in_sight() * track.frame.lit / others_per_sr;
-            near(track, frame.sightings, &self.sightings, &open, |index, offset| {
+            near(&track.motion, frame.sightings, &self.sightings, &open, |index, offset| {
                 self.own_turn.add(index, &offset, &place, by_turn, odds);
             });
         }
@@ -250,9 +226,9 @@ impl Follower {
             // a merged sighting lies anywhere between the two
             let merged = Matrix2::identity() * (melted * gap_rad * gap_rad / 4.0);
             let open = track.motion.covariance().bearing + merged;
-            near(track, frame.sightings, &self.sightings, &open, |sighting, mut offset| {
+            near(&track.motion, frame.sightings, &self.sightings, &open, |sighting, mut offset| {
                 offset.noise += merged;
-                let candidate = track.compare(sighting, &frame.sightings[sighting], others_per_sr, offset);
+                let candidate = track.compare(sighting, &self.seen[sighting], others_per_sr, offset);
                 self.association.add(index, sighting, track.weight(&candidate));
                 self.candidates.push(candidate);
             });
@@ -265,7 +241,7 @@ impl Follower {
     fn learn(&mut self, frame: &Frame<'_>) {
         for (track, own) in self.tracks.iter_mut().zip(self.first.windows(2)) {
             let (candidates, association) = (&self.candidates[own[0]..own[1]], &self.association);
-            let evidence = track.learn(frame.sightings, candidates, |pair| association.free(own[0] + pair));
+            let evidence = track.learn(&self.seen, candidates, |pair| association.free(own[0] + pair));
             self.listeners.hear(&mut track.hearing, frame.time_s, frame.exposure_s, evidence);
             if track.may_listen() {
                 self.listeners.give(&mut track.hearing);
@@ -286,8 +262,14 @@ impl Follower {
             let own = self.association.is_unexplained(index);
             unexplained += own;
             if own > WORTH_BEGINNING && self.tracks.len() < MOST_TRACKS {
-                let odds = own * looks(sighting) * share / (1.0 - share);
-                self.tracks.push(Track::new(index, sighting, odds / (1.0 + odds), &self.settings));
+                let odds = own * self.seen[index].looks * share / (1.0 - share);
+                self.tracks.push(Track::new(
+                    index,
+                    sighting,
+                    &self.seen[index],
+                    odds / (1.0 + odds),
+                    &self.settings,
+                ));
             }
         }
         let weight = (passed_s / COUNTED_S).min(1.0);
@@ -316,29 +298,5 @@ impl Follower {
     /// Density of sightings that no track explains, 1/sr.
     fn others_per_sr(&self) -> f64 {
         self.unexplained.max(LEAST_UNEXPLAINED) / self.field_sr
-    }
-}
-
-/// The sightings within the gate of a track whose place has this covariance, rad^2.
-fn near(
-    track: &Track,
-    sightings: &[Sighting],
-    directions: &Directions,
-    place_rad2: &Matrix2<f64>,
-    mut take: impl FnMut(usize, super::motion::Offset),
-) {
-    let ahead = track.motion.ahead();
-    // centres are no worse than a pixel or two
-    let reach_rad = (GATE * place_rad2.trace()).sqrt() + 4.0 * track.rad_per_px;
-    for index in directions.near(&ahead, reach_rad) {
-        let Sighting { bearing, covariance_rad2, .. } = &sightings[index];
-        if (bearing.vector() - ahead).norm_squared() > reach_rad * reach_rad {
-            continue;
-        }
-        let offset = track.motion.offset(bearing, covariance_rad2);
-        let inverse = (place_rad2 + offset.noise).try_inverse();
-        if inverse.is_some_and(|inverse| offset.value.dot(&(inverse * offset.value)) < GATE) {
-            take(index, offset);
-        }
     }
 }

@@ -4,7 +4,9 @@
 //! watches. Out: [`MarkerTrack`]s: a number that stays, bearing and rate with covariance, whether it shines, whether it exists, who it is.
 //!
 //! ```text
+//! frame        what enters
 //! follower     the stages of a frame, a line each
+//! seen         what a sighting is worth to any track
 //! turn         how the observer turned, where nothing tells it     <- all tracks together
 //! motion       bearing and rate on the plane that touches the sphere, with covariance
 //! near         which sightings lie near a track
@@ -21,15 +23,18 @@
 
 mod association;
 mod follower;
+mod frame;
 mod hearing;
 mod motion;
 mod near;
 mod presence;
+mod seen;
 mod settings;
 mod told;
 mod track;
 mod turn;
 
-pub use follower::{Follower, Frame, Turn};
+pub use follower::Follower;
+pub use frame::{Frame, Turn};
 pub use settings::{Settings, SettingsError};
 pub use told::MarkerTrack;

@@ -4,6 +4,7 @@ use super::Settings;
 use super::hearing::Hearing;
 use super::motion::{Motion, Offset};
 use super::presence::Presence;
+use super::seen::Seen;
 use crate::identity::{Evidence, Level, SHARES, density_of_light, probability_of_absence};
 use crate::locator::Sighting;
 
@@ -17,8 +18,6 @@ const WITHOUT_LIGHT: [f64; SHARES] = [0.01, 0.26, 0.51, 0.76, 1.0];
 const PARTLY: f64 = 0.01;
 /// How likely it does not.
 const WHOLE: f64 = 1.0 - PARTLY * (SHARES - 2) as f64;
-/// Looks of a spot count by no more than this factor, as a logarithm: they are told by the frame alone.
-const MOST_LOOKS: f64 = 3.0;
 /// A track is a marker from this probability on.
 const CONFIRMED: f64 = 0.99;
 /// It gets a listener from this probability on.
@@ -81,13 +80,19 @@ pub(super) struct Candidate {
 
 impl Track {
     /// A sighting that may be a new marker, with this probability.
-    pub(super) fn new(index: usize, sighting: &Sighting, probability: f64, settings: &Settings) -> Self {
+    pub(super) fn new(
+        index: usize,
+        sighting: &Sighting,
+        seen: &Seen,
+        probability: f64,
+        settings: &Settings,
+    ) -> Self {
         let lit = 1.0;
         Self {
             number: None,
             motion: Motion::new(&sighting.bearing, &sighting.covariance_rad2, settings.rate_rad_s),
             presence: Presence::new(probability),
-            level: light(sighting).and_then(|(light, _)| Level::of_first(light)),
+            level: seen.light.and_then(|(light, _)| Level::of_first(light)),
             hearing: Hearing::default(),
             rad_per_px: sighting.rad_per_px,
             least: LEAST.min(LEAST_OF_FIRST * probability),
@@ -127,17 +132,11 @@ impl Track {
     }
 
     /// Where and how bright a sighting is beside what is expected.
-    pub(super) fn compare(
-        &self,
-        index: usize,
-        sighting: &Sighting,
-        others_per_sr: f64,
-        offset: Offset,
-    ) -> Candidate {
+    pub(super) fn compare(&self, index: usize, seen: &Seen, others_per_sr: f64, offset: Offset) -> Candidate {
         let (melted, _) = self.frame.melted;
         let covariance = self.motion.covariance().bearing + offset.noise;
-        let place = looks(sighting) * super::turn::density(&offset.value, &covariance) / others_per_sr;
-        let by_light = match (light(sighting), &self.level) {
+        let place = seen.looks * super::turn::density(&offset.value, &covariance) / others_per_sr;
+        let by_light = match (seen.light, &self.level) {
             (Some((light, sigma)), Some(level)) => {
                 density_of_light(light, sigma, level).map(|density| density * light * LIGHT_RANGE)
             }
@@ -158,7 +157,7 @@ impl Track {
     /// Learns from the sightings near it, each with the probability that no other track has it. Returns the evidence for its code.
     pub(super) fn learn(
         &mut self,
-        sightings: &[Sighting],
+        sightings: &[Seen],
         candidates: &[Candidate],
         free: impl Fn(usize) -> f64,
     ) -> Evidence {
@@ -195,13 +194,13 @@ impl Track {
     }
 
     /// Learns how much light it shows from the sighting that it most probably is.
-    fn see_light(&mut self, sightings: &[Sighting], melted: f64) {
+    fn see_light(&mut self, sightings: &[Seen], melted: f64) {
         let Some((index, probability)) = self.told.sighting else { return };
         let seen = &sightings[index];
         if probability > 0.5 {
             self.rad_per_px = seen.rad_per_px;
         }
-        let Some((light, sigma)) = light(seen) else { return };
+        let Some((light, sigma)) = seen.light else { return };
         match &mut self.level {
             Some(level) => level.see(light, sigma, probability * self.told.lit * (1.0 - melted)),
             None => self.level = Level::of_first(light),
@@ -213,16 +212,4 @@ impl Track {
 fn over_light(lit: f64, by_share: &[f64; SHARES]) -> f64 {
     let [off, partly @ .., on] = by_share;
     WHOLE * (lit * on + (1.0 - lit) * off) + PARTLY * partly.iter().sum::<f64>()
-}
-
-/// How much more likely a sighting looks as it does if it is a marker than if it is clutter.
-pub(super) fn looks(sighting: &Sighting) -> f64 {
-    libm::exp(sighting.spot.marker_log_odds.clamp(-MOST_LOOKS, MOST_LOOKS))
-}
-
-/// The light of a sighting with its standard deviation.
-fn light(sighting: &Sighting) -> Option<(f64, f64)> {
-    let log_light = sighting.log_light?;
-    let light = libm::exp(log_light.value);
-    Some((light, light * log_light.sigma))
 }

@@ -4,6 +4,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 #![allow(clippy::disallowed_methods, reason = "the simulator is no part of what must be the same everywhere")]
+#![allow(clippy::print_stdout, reason = "a table is printed")]
 #![allow(unreachable_pub, reason = "modules of one test")]
 
 mod any;

@@ -8,7 +8,10 @@
 #![allow(unreachable_pub, reason = "modules of one test")]
 
 mod any;
+#[path = "../hash/mod.rs"]
+mod hash;
 mod plain;
+mod same;
 mod score;
 mod table;
 mod world;

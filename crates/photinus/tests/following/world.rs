@@ -255,6 +255,11 @@ fn light(sighting: &Sighting) -> f64 {
     sighting.log_light.unwrap().value.exp()
 }
 
+/// A sighting straight ahead, to be changed.
+pub fn any_sighting() -> Sighting {
+    sighting(&camera(), Pixel::new(375.0, 239.0), 1000.0)
+}
+
 fn sighting(camera: &Camera, centre: Pixel, light: f64) -> Sighting {
     let (bearing, jacobian) = camera.bearing_with_jacobian(centre).unwrap();
     let covariance_px2 = Matrix2::identity() * (SIGMA_PX * SIGMA_PX);

@@ -122,16 +122,29 @@ mod tests {
         weights.iter().enumerate().map(of).collect()
     }
 
+    fn largest_error(weights: &[[f64; 3]]) -> f64 {
+        let (near, exact) = (by_messages(weights), all_ways(weights));
+        let errors =
+            near.iter().flatten().zip(exact.iter().flatten()).map(|(near, exact)| (near - exact).abs());
+        errors.fold(0.0, f64::max)
+    }
+
     proptest! {
-        /// Without loops they are exact; with them near to what they stand for.
+        /// Where tracks all share sightings with one another they are near: the largest error of a cluster is 0.03 on the mean, and 0.27 was
+        /// the largest of 6000 clusters.
         #[test]
-        fn probabilities_are_those_of_all_ways(logs in proptest::collection::vec(proptest::array::uniform3(-4.0..8.0_f64), 1..5)) {
+        fn probabilities_are_near_those_of_all_ways(logs in proptest::collection::vec(proptest::array::uniform3(-4.0..8.0_f64), 1..5)) {
             let weights: Vec<[f64; 3]> = logs.iter().map(|row| row.map(f64::exp2)).collect();
-            let (near, exact) = (by_messages(&weights), all_ways(&weights));
-            let most = if weights.len() == 1 { 1e-9 } else { 0.2 };
-            for (near, exact) in near.iter().flatten().zip(exact.iter().flatten()) {
-                prop_assert!((near - exact).abs() < most, "{near} {exact} {weights:?}");
-            }
+            let most = if weights.len() == 1 { 1e-9 } else { 0.4 };
+            prop_assert!(largest_error(&weights) < most, "{weights:?}");
+        }
+
+        /// Where no way leads back, as in a row of neighbours, they are exact.
+        #[test]
+        fn probabilities_in_a_row_are_exact(logs in proptest::array::uniform5(-4.0..12.0_f64)) {
+            let [a, b, c, d, e] = logs.map(f64::exp2);
+            let weights = [[a, b, 0.0], [0.0, c, d], [0.0, 0.0, e]];
+            prop_assert!(largest_error(&weights) < 1e-3, "{weights:?}");
         }
 
         /// Tracks that all want one sighting.

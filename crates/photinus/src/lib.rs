@@ -4,6 +4,7 @@
 //!
 //! ```text
 //! frame -> spots -> bearings (camera) -> ranges (airframe, ranging) -> neighbours (locator)
+//!                                                            -> marker tracks (following, identity)
 //! ```
 //!
 //! No files, threads, clocks or printing happen here. Transcendental functions come from the `libm`
@@ -11,6 +12,7 @@
 
 pub mod airframe;
 pub mod camera;
+pub mod following;
 pub mod frame;
 pub mod identity;
 mod lanes;

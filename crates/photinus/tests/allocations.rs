@@ -1,4 +1,4 @@
-//! A warm detector and a warm locator allocate nothing: every request to the allocator is counted.
+//! A warm detector, locator, decoder and follower allocate nothing: every request to the allocator is counted.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
@@ -7,7 +7,8 @@ use std::cell::Cell;
 
 use nalgebra::Vector3;
 use photinus::airframe::{Airframe, Ring};
-use photinus::camera::{Camera, Ideal, IdealLaw, Model, Pixel};
+use photinus::camera::{Camera, Ideal, IdealLaw, Model, Pixel, Watched};
+use photinus::following::{self, Follower};
 use photinus::frame::{FrameView, Mask};
 use photinus::identity::decoder::{self, Decoder};
 use photinus::identity::{CodeBook, Evidence, Word};
@@ -178,4 +179,47 @@ fn a_warm_decoder_allocates_nothing() {
         decoder.restart(&mut listener);
     });
     assert_eq!(requests, 0);
+}
+
+/// Markers that blink, come, go and move to and fro; spots that a locator sees in rendered frames, many of them clutter.
+#[test]
+fn a_warm_follower_allocates_nothing() {
+    let lens = Ideal::new(IdealLaw::Equidistant, [130.0; 2], Pixel::new(187.5, 119.5)).unwrap();
+    let camera = Camera::new(Model::Ideal(lens), WIDTH, HEIGHT, None).unwrap();
+    let ring = Ring { arms: 6, radius_m: 0.4, leds_per_arm: 1, splay_rad: 0.0 };
+    let airframe = Airframe::from_ring("hexarotor", ring).unwrap();
+    let mut locator = Locator::new(camera.clone(), &airframe, None, locator::Settings::default()).unwrap();
+    let mut rng = Pcg64::new(33, 7);
+    let shown: Vec<Vec<u8>> = (0..8).map(|i| frame(20 + i, &mut rng)).collect();
+    let mut see = |pixels: &Vec<u8>| {
+        let frame = FrameView::packed(pixels, WIDTH, HEIGHT).unwrap();
+        locator.locate(&frame, None, &mut |_| ()).unwrap().sightings.to_vec()
+    };
+    let frames: Vec<_> = shown.iter().map(&mut see).collect();
+    let bits = |text: &str| text.chars().map(|bit| bit == '1').collect::<Vec<_>>();
+    let words = ["0010110111", "0010101111", "0001110101"].map(|text| Word::new(&bits(text)).unwrap());
+    let decoder =
+        Decoder::new(&CodeBook::new(words.to_vec()).unwrap(), decoder::Settings::default()).unwrap();
+    let mut follower = Follower::new(&camera, Some(decoder), following::Settings::default()).unwrap();
+    let (mut time_s, mut tracks) = (0.0, 0);
+    let mut follow = |round: usize| {
+        for frame in 0..120 {
+            time_s += 1.0 / 60.0;
+            // another picture each second, whose spots blink
+            let sightings = &frames[(round + frame / 60) % frames.len()];
+            let all = if words[0].bit(frame) { sightings.len() } else { sightings.len() / 2 };
+            let frame = following::Frame {
+                time_s,
+                exposure_s: 1e-3,
+                sightings: &sightings[..all],
+                faintest_light: 100.0,
+                turn: None,
+                watched: Watched::new(&camera, None),
+            };
+            tracks += follower.follow(&frame).unwrap().len();
+        }
+    };
+    (0..8).for_each(&mut follow);
+    assert_eq!(requests_during(|| (0..8).for_each(&mut follow)), 0);
+    assert!(tracks > 1000, "{tracks}");
 }

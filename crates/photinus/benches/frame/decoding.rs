@@ -22,9 +22,7 @@ struct Markers {
 
 impl Markers {
     fn new(count: usize) -> Self {
-        let word = |line: &str| Word::new(&line.split(',').map(|bit| bit == "1").collect::<Vec<_>>());
-        let words: Vec<Word> =
-            BOOK.lines().filter_map(|line| word(line).filter(|_| !line.starts_with('#'))).collect();
+        let words = words();
         let book = CodeBook::new(words.clone()).expect("a book");
         let decoder = Decoder::new(&book, Settings::default()).expect("a decoder");
         let listeners = vec![decoder.listener(); count];
@@ -49,6 +47,12 @@ impl Markers {
             self.decoder.restart(listener);
         }
     }
+}
+
+/// The words of the book.
+pub(crate) fn words() -> Vec<Word> {
+    let word = |line: &str| Word::new(&line.split(',').map(|bit| bit == "1").collect::<Vec<_>>());
+    BOOK.lines().filter_map(|line| word(line).filter(|_| !line.starts_with('#'))).collect()
 }
 
 pub(crate) fn run() {

@@ -2,7 +2,7 @@
 //!
 //! Times differ from machine to machine and from run to run; the ratios to the floors, above all to a pass that only takes
 //! the maximum of the frame, are what to compare. Every contender runs in turn within each round, medians are over the
-//! rounds. Run only some tables with `cargo bench -p photinus -- detection` (or `decoding`, `locating`, `posing`, `clutter`).
+//! rounds. Run only some tables with `cargo bench -p photinus -- detection` (or `decoding`, `following`, `locating`, `posing`, `clutter`).
 
 #![expect(clippy::print_stdout, reason = "a benchmark prints its table")]
 
@@ -10,6 +10,7 @@ mod clutter;
 mod contest;
 mod decoding;
 mod detection;
+mod following;
 mod frames;
 
 use std::hint::black_box;
@@ -27,6 +28,7 @@ fn main() {
     let tables = [
         ("detection", detection::run as fn()),
         ("decoding", decoding::run),
+        ("following", following::run),
         ("locating", locating),
         ("posing", posing),
         ("clutter", clutter::run),

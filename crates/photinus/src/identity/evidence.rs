@@ -5,7 +5,13 @@
 use super::Level;
 
 /// Shares of the exposure at which likelihoods are kept: 0, 1/4, 1/2, 3/4, 1; between them they are drawn straight.
-pub(super) const SHARES: usize = 5;
+pub(crate) const SHARES: usize = 5;
+
+/// Those shares.
+const AT: [f64; SHARES] = [0.0, 0.25, 0.5, 0.75, 1.0];
+
+/// So many standard deviations are not worth a function: what it gives is lost beside a surprise.
+const NEVER: f64 = 13.0;
 
 /// A light that fits nothing still has this likelihood against the best fit, so that no frame rules out anything for ever.
 const LEAST: f64 = 1e-6;
@@ -33,30 +39,21 @@ impl Evidence {
         let error = error.clamp(0.0, 0.5);
         let on = |share: f64| error + (1.0 - 2.0 * error) * share;
         let of = |share: f64| if is_on { on(share) } else { 1.0 - on(share) };
-        Self::of_likelihoods([0.0, 0.25, 0.5, 0.75, 1.0].map(of))
+        Self::of_likelihoods(AT.map(of))
     }
 
     /// Of a spot whose light is `light` with standard deviation `sigma`, where the LED would show `level` if it shone all the time.
     pub fn of_light(light: f64, sigma: f64, level: &Level) -> Self {
-        let of = |share: f64| {
-            let (off, deviation) = level.standing(light, sigma, share);
-            let stray = level.surprise / (2.0 * level.full);
-            libm::exp(-0.5 * off * off) / (deviation * 2.506_628_274_631_000_7) + stray
-        };
-        Self::of_likelihoods([0.0, 0.25, 0.5, 0.75, 1.0].map(of))
+        Self::of_likelihoods(density_of_light(light, sigma, level))
     }
 
     /// Of no spot: what was there showed less light than `limit`, which noise of standard deviation `sigma` makes unsharp.
     pub fn of_absence(limit: f64, sigma: f64, level: &Level) -> Self {
-        let of = |share: f64| {
-            let (off, _) = level.standing(limit, sigma, share);
-            0.5 * libm::erfc(-off / std::f64::consts::SQRT_2) + level.surprise
-        };
-        Self::of_likelihoods([0.0, 0.25, 0.5, 0.75, 1.0].map(of))
+        Self::of_likelihoods(probability_of_absence(limit, sigma, level))
     }
 
     /// Of likelihoods that are not negative; what is no number says nothing.
-    fn of_likelihoods(likelihood: [f64; SHARES]) -> Self {
+    pub(crate) fn of_likelihoods(likelihood: [f64; SHARES]) -> Self {
         let most = likelihood.iter().copied().fold(0.0, f64::max);
         if !(most > 0.0 && most.is_finite()) {
             return Self::NONE;
@@ -95,4 +92,27 @@ impl Evidence {
         likelihood.reverse();
         Self { likelihood }
     }
+}
+
+/// By share of the exposure the density, per unit of light, of a spot of this light.
+pub(crate) fn density_of_light(light: f64, sigma: f64, level: &Level) -> [f64; SHARES] {
+    AT.map(|share| {
+        let (off, deviation) = level.standing(light, sigma, share);
+        let stray = level.surprise / (2.0 * level.full);
+        if off.abs() > NEVER {
+            return stray;
+        }
+        libm::exp(-0.5 * off * off) / (deviation * 2.506_628_274_631_000_7) + stray
+    })
+}
+
+/// By share of the exposure the probability of less light than `limit`.
+pub(crate) fn probability_of_absence(limit: f64, sigma: f64, level: &Level) -> [f64; SHARES] {
+    AT.map(|share| {
+        let (off, _) = level.standing(limit, sigma, share);
+        if off.abs() > NEVER {
+            return if off > 0.0 { 1.0 + level.surprise } else { level.surprise };
+        }
+        0.5 * libm::erfc(-off / std::f64::consts::SQRT_2) + level.surprise
+    })
 }

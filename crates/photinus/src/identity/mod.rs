@@ -23,6 +23,7 @@ mod word;
 
 pub use book::{BookError, CodeBook};
 pub use evidence::Evidence;
+pub(crate) use evidence::{SHARES, density_of_light, probability_of_absence};
 pub use level::Level;
 pub use properties::Properties;
 pub use word::Word;

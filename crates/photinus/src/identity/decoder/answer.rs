@@ -6,6 +6,9 @@ use super::listener::{Listener, Others, TimeStands};
 use super::phases;
 use super::window::{PLACES, Window};
 
+/// What is less probable than this does not tell whether a marker shines.
+const NEGLIGIBLE: f64 = 1e-4;
+
 /// Who a marker is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Who {
@@ -53,7 +56,10 @@ impl Decoder {
             phases::mean(phases, &self.signals[word], self.length, &windows)
         });
         let Others { random, patterned, steady, .. } = listener.others;
-        let others = 0.5 * random + patterned * f64::from(listener.stranger.mean(&windows)) + steady;
+        // what is as good as excluded is not worth a look at all its bits
+        let is_likely = patterned > NEGLIGIBLE * listener.total;
+        let by_pattern = if is_likely { f64::from(listener.stranger.mean(&windows)) } else { 0.5 };
+        let others = 0.5 * random + patterned * by_pattern + steady;
         Ok((f64::from(lit.sum::<f32>()) + others) / listener.total)
     }
 

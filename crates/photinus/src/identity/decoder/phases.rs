@@ -51,18 +51,7 @@ pub(super) fn weigh(phases: &mut [f32], signal: &Signal, length: usize, step: &S
         let bits = &signal.0[window.bit..];
         let (first, _) = bits[..width].as_chunks::<LANES>();
         let (next, _) = bits[1..=width].as_chunks::<LANES>();
-        let [[dark, rising], [falling, lit]] = window.table;
-        let [none, one, other, both] =
-            [dark, falling - dark, rising - dark, lit - falling - rising + dark].map(Lanes::splat);
-        // an exposure on one bit does not ask for the next
-        let is_on_one = rising.to_bits() == dark.to_bits() && falling.to_bits() == lit.to_bits();
-        let likelihood = |first: Lanes, next: &[f32; LANES]| match is_on_one {
-            true => none + first * one,
-            false => {
-                let next = Lanes::new(*next);
-                none + first * (one + next * both) + next * other
-            }
-        };
+        let likelihood = likelihood(window);
         let (cells, _) = row.as_chunks_mut::<LANES>();
         let count = cells.len();
         for (at, ((cell, first), next)) in cells.iter_mut().zip(first).zip(next).enumerate() {
@@ -73,6 +62,22 @@ pub(super) fn weigh(phases: &mut [f32], signal: &Signal, length: usize, step: &S
         }
     }
     sum(total)
+}
+
+/// The likelihood of four phases, by the bits on which the exposure may fall.
+fn likelihood(window: &Window) -> impl Fn(Lanes, &[f32; LANES]) -> Lanes + use<> {
+    let [[dark, rising], [falling, lit]] = window.table;
+    let [none, one, other, both] =
+        [dark, falling - dark, rising - dark, lit - falling - rising + dark].map(Lanes::splat);
+    // an exposure on one bit does not ask for the next
+    let is_on_one = rising.to_bits() == dark.to_bits() && falling.to_bits() == lit.to_bits();
+    move |first, next| match is_on_one {
+        true => none + first * one,
+        false => {
+            let next = Lanes::new(*next);
+            none + first * (one + next * both) + next * other
+        }
+    }
 }
 
 /// Lets phases step to their neighbours, with this probability each way.
@@ -103,12 +108,16 @@ pub(super) fn wander(phases: &mut [f32], length: usize, each_way: f32) {
 /// The mean of a table over the phases, times their sum.
 pub(super) fn mean(phases: &[f32], signal: &Signal, length: usize, windows: &[Window; PLACES]) -> f32 {
     let width = row(length);
-    let mut total = 0.0;
+    let mut total = Lanes::ZERO;
     for (window, phases) in windows.iter().zip(phases.chunks_exact(width)) {
-        for (shift, phase) in phases[..length].iter().enumerate() {
-            let on = |k: usize| usize::from(signal.is_on(window.bit + shift + k));
-            total += phase * window.table[on(0)][on(1)];
+        let bits = &signal.0[window.bit..];
+        let (first, _) = bits[..width].as_chunks::<LANES>();
+        let (next, _) = bits[1..=width].as_chunks::<LANES>();
+        let likelihood = likelihood(window);
+        let (cells, _) = phases.as_chunks::<LANES>();
+        for ((cell, first), next) in cells.iter().zip(first).zip(next) {
+            total += Lanes::new(*cell) * likelihood(Lanes::new(*first), next);
         }
     }
-    total
+    sum(total)
 }

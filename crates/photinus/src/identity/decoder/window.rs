@@ -5,6 +5,9 @@ use super::super::evidence::Evidence;
 /// Places in a bit that are told apart.
 pub(super) const PLACES: usize = 8;
 
+/// How wide a place is, bits.
+const WIDTH: f32 = 1.0 / PLACES as f32;
+
 /// The exposure as a signal meets it that is at one place of its bit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Window {
@@ -18,14 +21,21 @@ impl Window {
     /// The exposure of so many bits (up to 1) that begins at `base` bits, from 0 to `length`, for each place in a bit. What lies
     /// within a place is as likely everywhere in it.
     pub(super) fn all(base: f64, exposure_bits: f64, length: usize, evidence: &Evidence) -> [Self; PLACES] {
-        let inverted = evidence.inverted();
+        let (off, on, inverted) = (evidence.off(), evidence.on(), evidence.inverted());
+        let exposure = (exposure_bits as f32).clamp(1e-3, 1.0);
         std::array::from_fn(|place| {
             let at = base + place as f64 / PLACES as f64;
             let whole = at as usize;
             let into = (at - whole as f64) as f32;
-            let mean = |evidence: &Evidence| mean_of_switching(into, exposure_bits as f32, evidence);
-            let table = [[evidence.off(), mean(evidence)], [mean(&inverted), evidence.on()]];
-            Self { bit: whole % length, table }
+            let bit = if whole < length { whole } else { whole - length };
+            let table = if into + WIDTH <= 1.0 - exposure {
+                // it ends before the next bit, wherever in the place it begins
+                [[off, off], [on, on]]
+            } else {
+                let mean = |evidence: &Evidence| mean_of_switching(into, exposure, evidence);
+                [[off, mean(evidence)], [mean(&inverted), on]]
+            };
+            Self { bit, table }
         })
     }
 }
@@ -33,19 +43,14 @@ impl Window {
 /// The mean likelihood for a signal that is off in the bit in which the exposure may begin and on in the next, over beginnings from
 /// `into` that bit on for the width of a place.
 fn mean_of_switching(into: f32, exposure: f32, evidence: &Evidence) -> f32 {
-    let width = 1.0 / PLACES as f32;
-    let exposure = exposure.clamp(1e-3, 1.0);
-    let (begin, end) = (into, into + width);
+    let (begin, end) = (into, into + WIDTH);
     // begins before `edge`: none of the next bit; from 1 on: all of it
     let edge = 1.0 - exposure;
-    if end <= edge {
-        return evidence.off();
-    }
     let before = (edge.min(end) - begin).max(0.0);
     let after = (end - begin.max(1.0)).max(0.0);
     let share = |at: f32| ((at - edge) / exposure).clamp(0.0, 1.0);
     let across = exposure * (evidence.up_to(share(end)) - evidence.up_to(share(begin)));
-    (before * evidence.off() + across + after * evidence.on()) / width
+    (before * evidence.off() + across + after * evidence.on()) / WIDTH
 }
 
 #[cfg(test)]

@@ -1,0 +1,215 @@
+//! One marker that is followed, and what a frame says of it.
+
+use super::Settings;
+use super::hearing::Hearing;
+use super::motion::{Motion, Offset};
+use super::presence::Presence;
+use super::seen::Seen;
+use crate::identity::{Evidence, Level, SHARES, density_of_light, probability_of_absence};
+use crate::locator::Sighting;
+
+/// Spread of the light at which a spot is found half of the time, as a share of it (rendered frames: 39, 71, 86 % at 0.9, 1.1, 1.3 times).
+const FAINTEST_SPREAD: f64 = 0.23;
+/// Range of the logarithm of light over which what is no marker of a track is even.
+const LIGHT_RANGE: f64 = 6.0;
+/// How much more likely a spot without light is of an LED that shines than of clutter, by the share of the exposure.
+const WITHOUT_LIGHT: [f64; SHARES] = [0.01, 0.26, 0.51, 0.76, 1.0];
+/// How likely the exposure holds an edge of the signal, for each of the shares between: short exposures hold one in 30 frames.
+const PARTLY: f64 = 0.01;
+/// How likely it does not.
+const WHOLE: f64 = 1.0 - PARTLY * (SHARES - 2) as f64;
+/// A track is a marker from this probability on.
+const CONFIRMED: f64 = 0.99;
+/// It gets a listener from this probability on.
+const LISTENS: f64 = 0.7;
+/// It ends below this probability, or this share of that with which it began.
+const LEAST: f64 = 0.02;
+const LEAST_OF_FIRST: f64 = 0.2;
+/// It ends when its bearing is less sure than this, rad.
+const LOST_RAD: f64 = 0.15;
+
+/// Sightings less likely its own than this do not move a track.
+const NEGLIGIBLE: f64 = 1e-4;
+
+/// A marker that is followed.
+#[derive(Debug)]
+pub(super) struct Track {
+    /// Given when it is confirmed.
+    pub(super) number: Option<u64>,
+    pub(super) motion: Motion,
+    pub(super) presence: Presence,
+    pub(super) level: Option<Level>,
+    pub(super) hearing: Hearing,
+    pub(super) rad_per_px: f64,
+    /// It ends when its existence is less probable.
+    least: f64,
+    pub(super) frame: Expected,
+    pub(super) told: Told,
+}
+
+/// What is expected of a frame.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Expected {
+    /// The mean share of the exposure that the marker shines.
+    pub(super) lit: f64,
+    /// Probability of no spot by the share of the exposure that it shines, if it is in sight.
+    pub(super) absence: [f64; SHARES],
+    /// With what probability its light melts into that of another track, and how far that is, rad.
+    pub(super) melted: (f64, f64),
+}
+
+/// What a frame told.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Told {
+    /// The sighting that it most probably is, with the probability.
+    pub(super) sighting: Option<(usize, f64)>,
+    /// The probability that it shone.
+    pub(super) lit: f64,
+}
+
+/// A sighting near a track.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Candidate {
+    pub(super) sighting: usize,
+    pub(super) offset: Offset,
+    /// How much more likely it is there if it is the marker than if it is not.
+    pub(super) place: f64,
+    /// The same of its light, by the share of the exposure that the marker shone.
+    pub(super) light: [f64; SHARES],
+}
+
+impl Track {
+    /// A sighting that may be a new marker, with this probability.
+    pub(super) fn new(
+        index: usize,
+        sighting: &Sighting,
+        seen: &Seen,
+        probability: f64,
+        settings: &Settings,
+    ) -> Self {
+        let lit = 1.0;
+        Self {
+            number: None,
+            motion: Motion::new(&sighting.bearing, &sighting.covariance_rad2, settings.rate_rad_s),
+            presence: Presence::new(probability),
+            level: seen.light.and_then(|(light, _)| Level::of_first(light)),
+            hearing: Hearing::default(),
+            rad_per_px: sighting.rad_per_px,
+            least: LEAST.min(LEAST_OF_FIRST * probability),
+            frame: Expected { lit, absence: [1.0; SHARES], melted: (0.0, 0.0) },
+            told: Told { sighting: Some((index, probability)), lit },
+        }
+    }
+
+    pub(super) fn is_confirmed(&self) -> bool {
+        self.number.is_some()
+    }
+
+    pub(super) fn is_sure(&self) -> bool {
+        self.presence.exists() > CONFIRMED
+    }
+
+    pub(super) fn may_listen(&self) -> bool {
+        self.presence.exists() > LISTENS
+    }
+
+    /// Whether it is most probably gone, or could be anywhere.
+    pub(super) fn is_over(&self) -> bool {
+        let place = self.motion.covariance().bearing;
+        !(self.presence.exists() > self.least && place.trace() < 2.0 * LOST_RAD * LOST_RAD)
+    }
+
+    /// How likely no spot is, by the share of the exposure, where a frame shows spots from this light on.
+    pub(super) fn expect_absence(&mut self, faintest_light: f64, is_watched: bool, settings: &Settings) {
+        let dark =
+            |level: &Level| probability_of_absence(faintest_light, FAINTEST_SPREAD * faintest_light, level);
+        let absence = match (is_watched, &self.level) {
+            (false, _) => [1.0; SHARES],
+            (true, Some(level)) => dark(level),
+            (true, None) => WITHOUT_LIGHT.map(|found| 1.0 - found),
+        };
+        self.frame.absence = absence.map(|one| (one + settings.missed).min(1.0));
+    }
+
+    /// Where and how bright a sighting is beside what is expected.
+    pub(super) fn compare(&self, index: usize, seen: &Seen, others_per_sr: f64, offset: Offset) -> Candidate {
+        let (melted, _) = self.frame.melted;
+        let covariance = self.motion.covariance().bearing + offset.noise;
+        let place = seen.looks * super::turn::density(&offset.value, &covariance) / others_per_sr;
+        let by_light = match (seen.light, &self.level) {
+            (Some((light, sigma)), Some(level)) => {
+                density_of_light(light, sigma, level).map(|density| density * light * LIGHT_RANGE)
+            }
+            _ => WITHOUT_LIGHT,
+        };
+        // what shines with another may have any light
+        let light = by_light.map(|ratio| ratio * (1.0 - melted) + melted);
+        Candidate { sighting: index, offset, place, light }
+    }
+
+    /// How much more likely a frame is with this sighting than with none.
+    pub(super) fn weight(&self, candidate: &Candidate) -> f64 {
+        let in_sight = self.presence.in_sight();
+        let none = 1.0 - in_sight + in_sight * over_light(self.frame.lit, &self.frame.absence);
+        in_sight * candidate.place * over_light(self.frame.lit, &candidate.light) / none
+    }
+
+    /// Learns from the sightings near it, each with the probability that no other track has it. Returns the evidence for its code.
+    pub(super) fn learn(
+        &mut self,
+        sightings: &[Seen],
+        candidates: &[Candidate],
+        free: impl Fn(usize) -> f64,
+    ) -> Evidence {
+        let mut by_share = self.frame.absence;
+        for (pair, candidate) in candidates.iter().enumerate() {
+            let place = candidate.place * free(pair);
+            for (sum, light) in by_share.iter_mut().zip(&candidate.light) {
+                *sum += place * light;
+            }
+        }
+        let lit = self.frame.lit;
+        let (all, shows) = (over_light(lit, &by_share), self.presence.shows());
+        // if it exists
+        let share = shows / (1.0 + shows * (all - 1.0));
+        let own = candidates.iter().enumerate().map(|(pair, candidate)| {
+            (share * candidate.place * free(pair) * over_light(lit, &candidate.light), candidate)
+        });
+        self.told = Told { sighting: None, lit };
+        for (probability, candidate) in own.clone() {
+            if self.told.sighting.is_none_or(|(_, most)| probability > most) {
+                self.told.sighting = Some((candidate.sighting, probability));
+            }
+        }
+        let likely = own.filter(|&(probability, _)| probability > NEGLIGIBLE);
+        self.motion.update(likely.map(|(probability, candidate)| (probability, candidate.offset)));
+        self.presence.weigh(all);
+        // where it is hidden a frame says nothing of its code, and little where it melts into another
+        let (melted, _) = self.frame.melted;
+        let mean = by_share.iter().sum::<f64>() / SHARES as f64;
+        let evidence = by_share.map(|one| shows * (one + melted * (mean - one)) + 1.0 - shows);
+        self.told.lit = WHOLE * lit * evidence[SHARES - 1] / over_light(lit, &evidence);
+        self.see_light(sightings, melted);
+        Evidence::of_likelihoods(evidence)
+    }
+
+    /// Learns how much light it shows from the sighting that it most probably is.
+    fn see_light(&mut self, sightings: &[Seen], melted: f64) {
+        let Some((index, probability)) = self.told.sighting else { return };
+        let seen = &sightings[index];
+        if probability > 0.5 {
+            self.rad_per_px = seen.rad_per_px;
+        }
+        let Some((light, sigma)) = seen.light else { return };
+        match &mut self.level {
+            Some(level) => level.see(light, sigma, probability * self.told.lit * (1.0 - melted)),
+            None => self.level = Level::of_first(light),
+        }
+    }
+}
+
+/// The mean over shining not at all, all the time, with probability `lit` unless it is for a part, and for a part.
+fn over_light(lit: f64, by_share: &[f64; SHARES]) -> f64 {
+    let [off, partly @ .., on] = by_share;
+    WHOLE * (lit * on + (1.0 - lit) * off) + PARTLY * partly.iter().sum::<f64>()
+}

@@ -28,7 +28,7 @@ pub(super) const LOG_RANGE: f64 = 4.6;
 /// Light of the wrong power does not rule out what geometry is sure of, nats.
 const MOST_POWER_NATS: f64 = 12.0;
 /// Two markers so far apart are told apart half of the time, px (rendered frames).
-const RESOLUTION_PX: f64 = 2.5;
+pub(crate) const RESOLUTION_PX: f64 = 2.5;
 /// Light of a spot that is found half of the time over the step that makes a pixel bright, px (rendered frames).
 const FAINTEST_PX: f64 = 2.5;
 
@@ -62,7 +62,7 @@ impl Poser {
             observations: Vec::with_capacity(airframe.markers().len()),
             pairs: Pairs::new(airframe),
             scale_sigma: settings.scale_sigma,
-            visible: Visible { faintest_light: faintest_light(spots), watched: None, others: &[] },
+            visible: Visible { faintest_light: faintest_light(spots), watched: None, others: &[], lit: &[] },
             within: Vec::with_capacity(airframe.markers().len()),
             others: Vec::with_capacity(512),
         })
@@ -249,7 +249,7 @@ fn of_calibration(sightings: &[Sighting], group: &[usize], position_m: &Vector3<
 }
 
 /// Light at which a detector with these settings finds a marker half of the time, grey levels.
-pub(super) fn faintest_light(settings: &spots::Settings) -> f64 {
+pub(crate) fn faintest_light(settings: &spots::Settings) -> f64 {
     let (Brightness::Threshold(step) | Brightness::Contrast(step)) = settings.brightness;
     FAINTEST_PX * f64::from(step)
 }

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! look        what a frame brings, and how the camera turned                look
-//! motion      where everybody is expected                                   motion
+//! motion      where everybody is expected                                   motion, splitting
 //! ways        which spots may be which markers of whom, each with its       ways (branches, update)
 //!             Kalman update; the pose room brings the measurement
 //! joint       how likely each way is, no spot being two vehicles'           joint
@@ -26,6 +26,7 @@ mod look;
 mod motion;
 mod reduction;
 mod settings;
+mod splitting;
 mod state;
 mod step;
 #[cfg(test)]

@@ -1,6 +1,7 @@
-//! Many normal distributions of one vehicle -> few: those of no weight go, those that say the same become one.
+//! Many normal distributions of one vehicle -> few: those of no weight go, those that say the same become one, unless that is wider than is split again.
 
 use super::component::{Component, merged};
+use super::splitting::STRAIGHT_RAD;
 use super::state::MOST_COMPONENTS;
 
 /// A share of the weight that is none.
@@ -22,7 +23,8 @@ pub(super) fn reduce(components: &mut Vec<Component>) {
         };
         let is_same = |other: &Component| {
             let off = heaviest.step_to(other);
-            off.dot(&factor.solve(&off)) < SAME
+            let yaw_rad2 = heaviest.covariance[(8, 8)].max(other.covariance[(8, 8)]) + 0.25 * off[8] * off[8];
+            yaw_rad2 < STRAIGHT_RAD * STRAIGHT_RAD && off.dot(&factor.solve(&off)) < SAME
         };
         // Those that say the same, brought next to it.
         let mut end = kept + 1;

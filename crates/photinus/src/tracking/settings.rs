@@ -12,7 +12,8 @@ pub struct Settings {
     pub velocity_sigma_m_s: f64,
     /// Time after which a tilt is another one, s. Its sigma is that of the pose's settings. Default 0.5.
     pub tilt_time_s: f64,
-    /// White yaw rate, root of its spectral density, rad per sqrt(s). Default 0.5: rms 0.7 rad/s that lasts a quarter of a second.
+    /// White yaw rate, root of its spectral density, rad per sqrt(s). Default 0.3: rms 0.5 rad/s that lasts a fifth of a second,
+    /// sqrt(2 * 0.2 s) * 0.5 rad/s.
     pub yaw_rate: f64,
     /// How fast the camera turns where nobody tells, standard deviation per axis, rad/s. Default 0.35.
     pub turn_sigma_rad_s: f64,
@@ -45,7 +46,7 @@ impl Default for Settings {
             acceleration: 3.0,
             velocity_sigma_m_s: 5.0,
             tilt_time_s: 0.5,
-            yaw_rate: 0.5,
+            yaw_rate: 0.3,
             turn_sigma_rad_s: 0.35,
             correlation_s: 0.5,
             hiding_per_s: 0.05,

@@ -1,7 +1,7 @@
 //! What is believed before a frame, and the frame -> what is believed after it.
 //!
 //! ```text
-//! predicted   every normal distribution, carried on to the frame       motion
+//! predicted   every normal distribution, carried on to the frame       motion, splitting
 //! ways        which spots may be which of its markers, each updated    ways (branches, update)
 //! joint       how likely each is, no spot being two vehicles'          joint
 //! concluded   vehicles as sums of those, few; whether they exist       reduction, existence
@@ -18,7 +18,8 @@ use super::joint::Joint;
 use super::look::Moment;
 use super::motion::Motion;
 use super::reduction::reduce;
-use super::state::{State, Target};
+use super::splitting::split;
+use super::state::{MOST_TARGETS, State, Target};
 use super::ways::{Scene, Way, Ways};
 use crate::airframe::Airframe;
 use crate::camera::Watched;
@@ -45,7 +46,9 @@ pub(super) struct Model {
 /// Carries what is believed from frame to frame. Keeps its room.
 #[derive(Debug)]
 pub(super) struct Stepper {
+    /// By vehicle, one after the other.
     predicted: Vec<Component>,
+    first_predicted: Vec<usize>,
     ways: Ways,
     joint: Joint,
     /// How likely each sighting is a vehicle's.
@@ -56,7 +59,8 @@ pub(super) struct Stepper {
 impl Stepper {
     pub(super) fn new(airframe: &Airframe) -> Self {
         Self {
-            predicted: Vec::new(),
+            predicted: Vec::with_capacity(1024),
+            first_predicted: Vec::with_capacity(MOST_TARGETS + 1),
             ways: Ways::with_room(airframe),
             joint: Joint::default(),
             claimed: Vec::new(),
@@ -81,12 +85,18 @@ impl Stepper {
             tilt_sigma_rad: model.pose.tilt_sigma_rad,
         };
         self.predicted.clear();
-        self.predicted
-            .extend(before.components.iter().map(|component| motion.predict(component, &model.settings)));
+        self.first_predicted.clear();
+        for target in &before.targets {
+            self.first_predicted.push(self.predicted.len());
+            for component in before.components(target) {
+                split(&motion.predict(component, &model.settings), &mut self.predicted);
+            }
+        }
+        self.first_predicted.push(self.predicted.len());
         let scene = Scene { model, watched, moment, interval_s };
         self.ways.begin(&scene, before.clutter);
         for (vehicle, target) in before.targets.iter().enumerate() {
-            let components = &self.predicted[target.first_component..][..target.components];
+            let components = &self.predicted[self.first_predicted[vehicle]..self.first_predicted[vehicle + 1]];
             self.ways.add_vehicle(&scene, vehicle, target, components);
         }
         self.joint.explain(&self.ways.choices, &self.ways.log_unseen, model.settings.association);
@@ -112,7 +122,7 @@ impl Stepper {
         interval_s: f64,
         after: &mut State,
     ) {
-        let Self { predicted, ways, joint, claimed, reduced, .. } = self;
+        let Self { predicted, first_predicted, ways, joint, claimed, reduced, .. } = self;
         let unseen = joint.unseen[vehicle];
         let existence = Existence::new(before.existence, before.hidden).after(interval_s, &model.settings);
         let with = existence.with(unseen, ways.unseen_if_shown(vehicle));
@@ -129,7 +139,7 @@ impl Stepper {
                 log_power = averaged(before.log_power, way.log_power);
             }
         }
-        let own = &predicted[before.first_component..][..before.components];
+        let own = &predicted[first_predicted[vehicle]..first_predicted[vehicle + 1]];
         let all = existence.unseen(ways.unseen_if_shown(vehicle)).max(f64::MIN_POSITIVE);
         for (component, unseen_if_shown) in own.iter().zip(ways.unseen_of(vehicle)) {
             // One that must have shown is the less likely for it, unless it is hidden.

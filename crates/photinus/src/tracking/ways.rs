@@ -3,10 +3,15 @@
 //! Ways come from the prediction ([`super::branches`]) and, where that is too wide to tell markers apart, from the neighbours that the locator found near
 //! it: their poses say which spots are which markers and where to begin. Either way the weight is the density of the frame's spots under the vehicle's own
 //! prediction, so that a neighbour located again is a way to look at the same spots and no second sight of them.
+//!
+//! A prediction may be wrong for good: two spots fit two poses, and a track may have settled for the other one. Where a neighbour's spots cannot all be the
+//! predicted markers, there is a way to begin the track anew from them, as one about which nothing is known, at a price.
+
+use nalgebra::Vector3;
 
 use super::appearing::turned_next_to;
 use super::branches::{Around, Branches, Pairs};
-use super::component::Component;
+use super::component::{Component, Covariance, Step};
 use super::existence::Existence;
 use super::joint::{Choice, Spots};
 use super::look::{Appearance, Moment};
@@ -15,7 +20,7 @@ use super::step::Model;
 use super::update::Prior;
 use crate::airframe::Airframe;
 use crate::camera::{Bearing, Watched};
-use crate::pose::{self, Assignment, Known, Measurement, Observation, Pose, Seen, Visible, Whitened};
+use crate::pose::{self, Assignment, Known, Measurement, Mode, Observation, Pose, Seen, Visible, Whitened};
 use crate::ranging::Interval;
 
 /// Neighbours at half of the sphere.
@@ -29,6 +34,11 @@ const MOST_STARTS: usize = 6;
 const LEAST_START: f64 = 0.02;
 /// A wrong signal costs no more than this, nats: one in a hundred and fifty is wrong.
 const WRONG_SIGNAL_NATS: f64 = 5.0;
+/// A track has settled for the wrong pose so seldom, ...
+const WRONG: f64 = 1e-3;
+/// ... and then nothing is known of it but this: its distance to so much of itself, and yaw, rad.
+const ANEW_SHARE: f64 = 0.5;
+const ANEW_YAW_RAD: f64 = 1.0;
 /// Spots within so many radii of a vehicle may hide its markers.
 const NEAR_RADII: f64 = 3.0;
 
@@ -184,6 +194,9 @@ impl Ways {
                 self.begin_at_neighbour(scene, &way, appearance);
             }
         }
+        for appearance in &moment.appearances {
+            self.begin_anew(scene, vehicle, log_shown, appearance);
+        }
         self.unseen_if_shown.push(unseen_if_shown);
         self.log_unseen.push(libm::log(existence.unseen(unseen_if_shown)));
     }
@@ -267,6 +280,26 @@ impl Ways {
                 self.tried.push(pairs);
                 self.try_way(scene, origin, pairs, start);
             }
+        }
+    }
+
+    /// The ways to begin a track anew at a neighbour that shares spots with it, where none of its own ways explains all of them.
+    fn begin_anew(&mut self, scene: &Scene<'_>, vehicle: usize, log_shown: f64, appearance: &Appearance) {
+        let Scene { model, moment, .. } = *scene;
+        let members = moment.members(appearance);
+        let shared = |way: &Way| members.iter().filter(|&&spot| way.pairs.has_spot(spot)).count();
+        let most = self.of(vehicle).map(|(_, way)| shared(way)).max().unwrap_or(0);
+        if most == 0 || most == members.len() {
+            return;
+        }
+        for mode in
+            moment.modes(appearance).iter().take_while(|mode| mode.weight > LEAST_START).take(MOST_STARTS)
+        {
+            let Some(pairs) = self.pairs_of(model, members, &mode.pose) else { continue };
+            let Some(prior) = Prior::of(&anew(model, mode)) else { continue };
+            let log_weight = log_shown + libm::log(WRONG * mode.weight);
+            let origin = Origin { vehicle, from: usize::MAX, log_weight, prior: &prior };
+            self.try_way(scene, &origin, pairs, prior.component);
         }
     }
 
@@ -355,6 +388,16 @@ impl Ways {
             }
         }
     }
+}
+
+/// What is known of a vehicle near a pose of which nothing is known.
+fn anew(model: &Model, mode: &Mode) -> Component {
+    let far_m = ANEW_SHARE * mode.pose.position_m.norm();
+    let speed_m_s = model.settings.velocity_sigma_m_s;
+    let tilt_rad = model.pose.tilt_sigma_rad;
+    let sigmas = [far_m, far_m, far_m, speed_m_s, speed_m_s, speed_m_s, tilt_rad, tilt_rad, ANEW_YAW_RAD];
+    let covariance = Covariance::from_diagonal(&Step::from_iterator(sigmas.map(|sigma| sigma * sigma)));
+    Component { weight: mode.weight, pose: mode.pose, velocity_m_s: Vector3::zeros(), covariance }
 }
 
 /// Where a way comes from.

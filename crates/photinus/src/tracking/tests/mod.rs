@@ -1,0 +1,5 @@
+//! Tracks against truth: vehicles flown by [`simulator`], located by the real locator.
+
+mod accuracy;
+mod simulator;
+mod told;

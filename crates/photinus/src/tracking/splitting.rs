@@ -33,9 +33,10 @@ pub(super) fn split(whole: &Component, parts: &mut Vec<Component>) {
         let at = f64::from(place) * step;
         (at, libm::exp(-0.5 * at * at / rest))
     };
-    let (total, square) = places.clone().map(density).fold((0.0, 0.0), |(total, square), (at, weight)| {
-        (total + weight, square + weight * at * at)
-    });
+    let (total, square) = places
+        .clone()
+        .map(density)
+        .fold((0.0, 0.0), |(total, square), (at, weight)| (total + weight, square + weight * at * at));
     // Together they are as wide as the whole.
     let stretch = (rest * total / square).sqrt();
     let along = whole.covariance.column(YAW) / variance;

@@ -96,7 +96,8 @@ impl Stepper {
         let scene = Scene { model, watched, moment, interval_s };
         self.ways.begin(&scene, before.clutter);
         for (vehicle, target) in before.targets.iter().enumerate() {
-            let components = &self.predicted[self.first_predicted[vehicle]..self.first_predicted[vehicle + 1]];
+            let components =
+                &self.predicted[self.first_predicted[vehicle]..self.first_predicted[vehicle + 1]];
             self.ways.add_vehicle(&scene, vehicle, target, components);
         }
         self.joint.explain(&self.ways.choices, &self.ways.log_unseen, model.settings.association);

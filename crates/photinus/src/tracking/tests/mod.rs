@@ -1,5 +1,6 @@
 //! Tracks against truth: vehicles flown by [`simulator`], located by the real locator.
 
 mod accuracy;
+mod manoeuvres;
 mod simulator;
 mod told;

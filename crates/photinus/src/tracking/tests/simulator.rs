@@ -11,7 +11,7 @@ use crate::camera::{Bearing, Camera, Ideal, IdealLaw, Model, Pixel};
 use crate::locator::{self, Locator};
 use crate::pose;
 use crate::spots::{Extent, Spot};
-use crate::tracking::{Settings, Tracker};
+use crate::tracking::{Look, Settings, Track, TrackError, Tracked, Tracker, Turned};
 
 pub(super) const SIGMA_PX: f64 = 0.1;
 pub(super) const RATE_HZ: f64 = 30.0;
@@ -51,12 +51,65 @@ pub(super) fn located_by() -> locator::Settings {
     locator::Settings { pose, ..locator::Settings::default() }
 }
 
-pub(super) fn locator(airframe: &Airframe) -> Locator {
-    Locator::new(camera(), airframe, None, located_by()).unwrap()
+/// An observer: camera, locator and tracker.
+pub(super) struct Observer {
+    pub(super) airframe: Airframe,
+    pub(super) locator: Locator,
+    pub(super) tracker: Tracker,
+    /// How the camera was turned in the frame before.
+    before: Rotation3<f64>,
+    /// How well its gyro tells a turn from frame to frame, rad.
+    pub(super) gyro_sigma_rad: f64,
 }
 
-pub(super) fn tracker(airframe: &Airframe, settings: Settings) -> Tracker {
-    Tracker::new(camera(), airframe, &located_by(), settings).unwrap()
+impl Observer {
+    pub(super) fn new(airframe: Airframe, settings: Settings) -> Self {
+        let locator = Locator::new(camera(), &airframe, None, located_by()).unwrap();
+        let tracker = Tracker::new(camera(), &airframe, &located_by(), settings).unwrap();
+        Self { airframe, locator, tracker, before: Rotation3::identity(), gyro_sigma_rad: 0.0 }
+    }
+
+    /// Forgets everything.
+    pub(super) fn forget(&mut self) {
+        self.locator.forget();
+        self.tracker.forget();
+        self.before = Rotation3::identity();
+    }
+
+    /// Takes in a frame with these spots.
+    pub(super) fn see(
+        &mut self,
+        time_s: f64,
+        seen: &[Seen],
+        camera_from_world: &Rotation3<f64>,
+        rng: &mut Pcg64,
+    ) -> Result<Tracked, TrackError> {
+        let spots: Vec<_> = seen.iter().map(|seen| seen.spot.clone()).collect();
+        let gravity = down(camera_from_world);
+        let noise = Rotation3::new(normal3(rng) * self.gyro_sigma_rad);
+        let now_from_before = noise * camera_from_world * self.before.inverse();
+        self.before = *camera_from_world;
+        let look = Look {
+            time_s,
+            turned: Some(Turned { now_from_before, sigma_rad: self.gyro_sigma_rad }),
+            gravity: Some(gravity),
+            located: self.locator.locate_spots(&spots, Some(&gravity), &mut |_| ()),
+            signals: &[],
+            lit: &[],
+        };
+        self.tracker.track(&look).cloned()
+    }
+}
+
+/// The track that is nearest to a vehicle in units of its covariance, with that distance squared.
+pub(super) fn nearest<'a>(
+    tracked: &'a Tracked,
+    vehicle: &Vehicle,
+    camera_from_world: &Rotation3<f64>,
+) -> Option<(&'a Track, f64)> {
+    let truth_m = camera_from_world * vehicle.position_m;
+    let off = |track: &'a Track| (track, nees(&(track.position_m - truth_m), &track.position_covariance_m2));
+    tracked.tracks.iter().map(off).min_by(|a, b| a.1.total_cmp(&b.1))
 }
 
 pub(super) fn normal(rng: &mut Pcg64) -> f64 {

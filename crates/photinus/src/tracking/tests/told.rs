@@ -13,8 +13,8 @@ use crate::tracking::Settings;
 type State = SVector<f64, 9>;
 
 pub(super) struct Told {
-    pub(super) state: State,
-    pub(super) covariance: SMatrix<f64, 9, 9>,
+    state: State,
+    covariance: SMatrix<f64, 9, 9>,
 }
 
 impl Told {
@@ -102,10 +102,6 @@ impl Told {
 
     pub(super) fn position_m(&self) -> Vector3<f64> {
         self.state.fixed_rows::<3>(0).into_owned()
-    }
-
-    pub(super) fn covariance_m2(&self) -> Matrix3<f64> {
-        self.covariance.fixed_view::<3, 3>(0, 0).into_owned()
     }
 }
 

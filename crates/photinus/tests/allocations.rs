@@ -1,4 +1,4 @@
-//! A warm detector and a warm locator allocate nothing: every request to the allocator is counted.
+//! A warm detector, locator and tracker allocate nothing: every request to the allocator is counted.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
@@ -11,9 +11,10 @@ use photinus::camera::{Camera, Ideal, IdealLaw, Model, Pixel};
 use photinus::frame::{FrameView, Mask};
 use photinus::identity::decoder::{self, Decoder};
 use photinus::identity::{CodeBook, Evidence, Word};
-use photinus::locator::{self, Locator};
+use photinus::locator::{self, Located, Locator};
 use photinus::pose::{p3p, pnp};
 use photinus::spots::{Brightness, Detector, Settings};
+use photinus::tracking::{self, Look, Tracker};
 use rand_distr::{Distribution, Uniform};
 use rand_pcg::Pcg64;
 
@@ -157,6 +158,39 @@ fn a_warm_locator_allocates_nothing() {
     warm_up.iter().chain(&frames).for_each(|pixels| locate(pixels));
     assert_eq!(requests_during(|| frames.iter().for_each(|pixels| locate(pixels))), 0);
     assert!(neighbours > 300, "{neighbours}");
+}
+
+#[test]
+fn a_warm_tracker_allocates_nothing() {
+    let mut rng = Pcg64::new(33, 7);
+    let lens = Ideal::new(IdealLaw::Equidistant, [130.0; 2], Pixel::new(187.5, 119.5)).unwrap();
+    let camera = Camera::new(Model::Ideal(lens), WIDTH, HEIGHT, None).unwrap();
+    let ring = Ring { arms: 6, radius_m: 0.4, leds_per_arm: 1, splay_rad: 0.0 };
+    let airframe = Airframe::from_ring("hexarotor", ring).unwrap();
+    let settings = locator::Settings { min_probability: 0.0, ..locator::Settings::default() };
+    let mut locator = Locator::new(camera.clone(), &airframe, None, settings).unwrap();
+    let gravity = Vector3::y_axis();
+    let located: Vec<_> = (0..24)
+        .map(|_| {
+            let pixels = frame(20, &mut rng);
+            let frame = FrameView::packed(&pixels, WIDTH, HEIGHT).unwrap();
+            locator.locate(&frame, Some(&gravity), &mut |_| ()).unwrap().clone()
+        })
+        .collect();
+    let mut tracker = Tracker::new(camera, &airframe, &settings, tracking::Settings::default()).unwrap();
+    let (mut tracks, mut number) = (0, 0);
+    let mut track = |located: &Located| {
+        number += 1;
+        // Every fifth frame comes after the next one.
+        let time_s = f64::from(number + u32::from(number % 5 == 1) - u32::from(number % 5 == 2)) / 30.0;
+        let look = Look { time_s, turned: None, gravity: Some(gravity), located, signals: &[], lit: &[] };
+        tracks += tracker.track(&look).unwrap().tracks.len();
+        tracker.at(f64::from(number + 2) / 30.0).unwrap();
+    };
+    // Warm is who has been through it.
+    (0..4).for_each(|_| located.iter().for_each(&mut track));
+    assert_eq!(requests_during(|| located.iter().for_each(&mut track)), 0);
+    assert!(tracks > 100, "{tracks}");
 }
 
 #[test]

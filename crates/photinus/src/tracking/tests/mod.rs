@@ -2,5 +2,7 @@
 
 mod accuracy;
 mod manoeuvres;
+mod order;
+mod parts;
 mod simulator;
 mod told;

@@ -175,11 +175,10 @@ impl Vehicle {
     }
 }
 
-/// A spot, and whose markers it is: vehicle and marker of the brightest, and whether it is that one alone.
+/// A spot, and which marker it is: the brightest, and whether it is that one alone.
 #[derive(Clone, Debug)]
 pub(super) struct Seen {
     pub(super) spot: Spot,
-    pub(super) vehicle: usize,
     pub(super) marker: usize,
     pub(super) is_alone: bool,
 }
@@ -193,7 +192,7 @@ pub(super) fn look(
 ) -> Vec<Seen> {
     let camera = camera();
     let mut points = Vec::new();
-    for (owner, vehicle) in vehicles.iter().enumerate() {
+    for vehicle in vehicles {
         let place_m = camera_from_world * vehicle.position_m;
         let camera_from_body = camera_from_world * vehicle.world_from_body();
         let camera_m = camera_from_body.inverse() * -place_m;
@@ -203,7 +202,7 @@ pub(super) fn look(
             let within = |pixel: &Pixel| (3.0..748.0).contains(&pixel.u) && (3.0..476.0).contains(&pixel.v);
             let pixel = Bearing::new(at_m).and_then(|bearing| camera.pixel(&bearing)).filter(within);
             if let Some(pixel) = pixel.filter(|_| flux >= FAINTEST) {
-                points.push((flux, pixel, owner, number));
+                points.push((flux, pixel, number));
             }
         }
     }
@@ -218,7 +217,7 @@ pub(super) fn look(
     }
     let mut seen = Vec::new();
     for &index in &own {
-        let (flux, at, vehicle, marker) = points[index];
+        let (flux, at, marker) = points[index];
         let (mut total, mut u, mut v) = (flux, flux * at.u, flux * at.v);
         for (_, (light, other, ..)) in points.iter().enumerate().filter(|(index, _)| !own.contains(index)) {
             let off = gap(other, &at);
@@ -229,7 +228,7 @@ pub(super) fn look(
             }
         }
         let centre = Pixel::new(u / total + SIGMA_PX * normal(rng), v / total + SIGMA_PX * normal(rng));
-        seen.push(Seen { spot: spot(centre, total), vehicle, marker, is_alone: total <= flux });
+        seen.push(Seen { spot: spot(centre, total), marker, is_alone: total <= flux });
     }
     // As a detector reports them.
     seen.sort_by(|a, b| a.spot.centre.v.total_cmp(&b.spot.centre.v));

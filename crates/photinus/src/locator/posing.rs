@@ -241,6 +241,14 @@ fn told_apart(sightings: &[Sighting], group: &[usize], reach_m: f64, bounds: &In
 fn of_calibration(sightings: &[Sighting], group: &[usize], position_m: &Vector3<f64>) -> (Matrix3<f64>, f64) {
     let of_one = |&spot: &usize| sightings[spot].covariance_rad2 - sightings[spot].spot_covariance_rad2;
     let mean_rad2 = group.iter().map(of_one).sum::<Matrix3<f64>>() / group.len() as f64;
+    of_mean_calibration(&mean_rad2, position_m)
+}
+
+/// The same from the mean of what it leaves of the spots' directions, rad^2.
+pub(crate) fn of_mean_calibration(
+    mean_rad2: &Matrix3<f64>,
+    position_m: &Vector3<f64>,
+) -> (Matrix3<f64>, f64) {
     let scale = 0.5 * mean_rad2.trace() / (CALIBRATION_LENGTH_RAD * CALIBRATION_LENGTH_RAD);
     (
         mean_rad2 * position_m.norm_squared() + position_m * position_m.transpose() * scale,

@@ -218,8 +218,7 @@ impl Predicted {
         let covariance = seen.map * self.covariance * seen.map.transpose() + Matrix2::identity();
         let inverse = covariance.try_inverse()?;
         let square = residual.dot(&(inverse * residual));
-        // What is no number is no marker either.
-        if !(square < GATE) {
+        if square.is_nan() || square >= GATE {
             return None;
         }
         let log_density = -0.5 * square

@@ -52,7 +52,7 @@ impl Component {
 pub(super) fn merged<'a>(all: impl Iterator<Item = &'a Component> + Clone) -> Option<Component> {
     let heaviest = all.clone().reduce(|best, next| if next.weight > best.weight { next } else { best })?;
     let weight: f64 = all.clone().map(|component| component.weight).sum();
-    if !(weight > 0.0) {
+    if weight <= 0.0 {
         return Some(*heaviest);
     }
     let (mut mean, mut square) = (Step::zeros(), Covariance::zeros());

@@ -19,8 +19,7 @@ const YAW: usize = 8;
 pub(super) fn split(whole: &Component, parts: &mut Vec<Component>) {
     let variance = whole.covariance[(YAW, YAW)];
     let sigma = variance.sqrt();
-    // What is no number is not wide.
-    if !(sigma > STRAIGHT_RAD) {
+    if sigma.is_nan() || sigma <= STRAIGHT_RAD {
         parts.push(*whole);
         return;
     }

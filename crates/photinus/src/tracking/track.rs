@@ -7,6 +7,7 @@ use super::existence::Existence;
 use super::motion::Motion;
 use super::state::{MOST_COMPONENTS, State};
 use super::step::Model;
+use crate::locator::of_mean_calibration;
 
 /// A vehicle that is followed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -87,7 +88,7 @@ impl Tracked {
             let Some(one) = merged(carried.iter().flatten()) else { continue };
             let scale = model.pose.scale_sigma * model.pose.scale_sigma;
             let [p, v] = [one.pose.position_m, one.velocity_m_s];
-            let calibration_m2 = target.calibration_rad2 * p.norm_squared();
+            let (calibration_m2, _) = of_mean_calibration(&target.calibration_rad2, &p);
             let first_member = self.members.len();
             if motion.is_none() {
                 self.members.extend_from_slice(state.members(target));

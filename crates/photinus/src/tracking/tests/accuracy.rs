@@ -36,7 +36,7 @@ fn fly(airframe: Airframe, flights: u64, distances_m: [f64; 2], lost: f64) -> Sc
         let any = |low: f64, high: f64, rng: &mut Pcg64| Uniform::new(low, high).unwrap().sample(rng);
         let distance_m = any(distances_m[0], distances_m[1], &mut rng);
         let place_m = [any(-2.0, 2.0, &mut rng), any(-1.0, 1.0, &mut rng), distance_m];
-        let mut vehicle = Vehicle::at(place_m, [0.0; 3], any(0.0, 6.28, &mut rng));
+        let mut vehicle = Vehicle::at(place_m, [0.0; 3], any(0.0, core::f64::consts::TAU, &mut rng));
         vehicle.velocity_m_s = normal3(&mut rng) * settings.velocity_sigma_m_s;
         vehicle.tilt_rad = [(); 2].map(|()| tilt_sigma_rad * normal(&mut rng));
         let mut told = Told::near(&vehicle, settings.velocity_sigma_m_s, tilt_sigma_rad, &mut rng);

@@ -57,7 +57,7 @@ impl State {
             up: None,
             clutter: CLUTTER_BEFOREHAND,
             targets: Vec::with_capacity(MOST_TARGETS),
-            components: Vec::with_capacity(MOST_TARGETS * MOST_COMPONENTS),
+            components: Vec::with_capacity(2 * MOST_TARGETS),
             members: Vec::with_capacity(128),
         }
     }

@@ -13,7 +13,7 @@
 //! ```
 //!
 //! A vehicle is a small sum of normal distributions of position, velocity and attitude, so that what one frame leaves open (two spots fit two poses) is
-//! settled by the next ones. Every spot updates it, also one marker alone. [`step`] has the flow of a frame.
+//! settled by the next ones. Every spot updates it, also one marker alone. `step` has the flow of a frame.
 
 mod appearing;
 mod branches;

@@ -128,6 +128,7 @@ fn panning(time_s: f64) -> (Vec<(Vehicle, bool)>, Rotation3<f64>) {
 
 #[test]
 fn manoeuvres_are_followed() {
+    // Crossing quadrotors trail by millimetres, which docs/tracking.md says.
     let all: [(&str, &Manoeuvre, [f64; 2], bool); 5] = [
         ("even", &even, [0.3, 3.0], true),
         ("crossing", &crossing, [0.3, 2.4], false),
@@ -136,7 +137,7 @@ fn manoeuvres_are_followed() {
         ("panning", &panning, [0.3, 3.0], true),
     ];
     for (name, airframe) in [("hexarotor", hexarotor()), ("quadrotor", quadrotor())] {
-        for (kind, manoeuvre, span_s, is_even) in all {
+        for (kind, manoeuvre, span_s, has_no_lag) in all {
             let score = fly(airframe.clone(), Settings::default(), 12, span_s, manoeuvre);
             println!(
                 "| {name} | {kind} | {:.0} | {:.0} | {:.2} | {:.1} | {} |",
@@ -148,14 +149,14 @@ fn manoeuvres_are_followed() {
             );
             assert!(score.missing < 1.0 && score.switches == 0, "{name} {kind} {score:?}");
             assert!(score.nees < 4.0, "{name} {kind} {score:?}");
-            assert!(!is_even || score.lag().abs() < 3.0, "{name} {kind} {score:?}");
+            assert!(!has_no_lag || score.lag().abs() < 3.0, "{name} {kind} {score:?}");
         }
     }
 }
 
 /// Joint association against taking the nearest, where they differ: vehicles that pass close by each other.
 #[test]
-fn joint_association_switches_no_more_than_the_nearest() {
+fn joint_association_is_honest_where_the_nearest_is_not() {
     let passing = |time_s: f64| {
         let near = Vehicle::at([-1.2, 0.0, 7.0], [0.8, 0.0, 0.0], 0.4).on(time_s);
         let far = Vehicle::at([1.2, 0.05, 7.6], [-0.8, 0.0, 0.0], 1.1).on(time_s);
@@ -168,5 +169,5 @@ fn joint_association_switches_no_more_than_the_nearest() {
         score
     });
     assert!(scores[0].switches <= scores[1].switches);
-    assert!(scores[0].nees < 4.0);
+    assert!(scores[0].nees < 4.0 && scores[1].nees > 8.0);
 }

@@ -3,7 +3,7 @@
 //! The data flow is the architecture, and the modules carry its names in its order:
 //!
 //! ```text
-//! frame -> spots -> bearings (camera) -> ranges (airframe, ranging) -> neighbours (locator)
+//! frame -> spots -> bearings (camera) -> ranges (airframe, ranging) -> neighbours (locator) -> tracks (tracking)
 //!                                                            -> marker tracks (following, identity)
 //! ```
 //!
@@ -21,6 +21,7 @@ pub mod optics;
 pub mod pose;
 pub mod ranging;
 pub mod spots;
+pub mod tracking;
 
 /// The README's example is a test.
 #[cfg(doctest)]

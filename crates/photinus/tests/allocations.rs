@@ -1,20 +1,21 @@
-//! A warm detector, locator, decoder and follower allocate nothing: every request to the allocator is counted.
+//! A warm detector, locator, decoder, follower and tracker allocate nothing: every request to the allocator is counted.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix2, Vector3};
 use photinus::airframe::{Airframe, Ring};
-use photinus::camera::{Camera, Ideal, IdealLaw, Model, Pixel, Watched};
+use photinus::camera::{Bearing, Camera, Ideal, IdealLaw, Model, Pixel, Watched};
 use photinus::following::{self, Follower};
 use photinus::frame::{FrameView, Mask};
 use photinus::identity::decoder::{self, Decoder};
 use photinus::identity::{CodeBook, Evidence, Word};
-use photinus::locator::{self, Locator};
+use photinus::locator::{self, Located, Locator};
 use photinus::pose::{p3p, pnp};
-use photinus::spots::{Brightness, Detector, Settings};
+use photinus::spots::{Brightness, Detector, Extent, Settings, Spot};
+use photinus::tracking::{self, Look, Tracker};
 use rand_distr::{Distribution, Uniform};
 use rand_pcg::Pcg64;
 
@@ -158,6 +159,71 @@ fn a_warm_locator_allocates_nothing() {
     warm_up.iter().chain(&frames).for_each(|pixels| locate(pixels));
     assert_eq!(requests_during(|| frames.iter().for_each(|pixels| locate(pixels))), 0);
     assert!(neighbours > 300, "{neighbours}");
+}
+
+#[test]
+fn a_warm_tracker_allocates_nothing() {
+    let lens = Ideal::new(IdealLaw::Equidistant, [130.0; 2], Pixel::new(187.5, 119.5)).unwrap();
+    let camera = Camera::new(Model::Ideal(lens), WIDTH, HEIGHT, None).unwrap();
+    let ring = Ring { arms: 6, radius_m: 0.4, leds_per_arm: 1, splay_rad: 0.0 };
+    let airframe = Airframe::from_ring("hexarotor", ring).unwrap();
+    let settings = locator::Settings::default();
+    let mut locator = Locator::new(camera.clone(), &airframe, None, settings).unwrap();
+    let gravity = Vector3::y_axis();
+    // Two vehicles that drift by, a glint now and then.
+    let spot = |centre: Pixel, flux: f64| {
+        let middle = (centre.u as u32, centre.v as u32);
+        Spot {
+            centre,
+            covariance_px2: Matrix2::identity() * 0.01,
+            area_px: 9,
+            peak: 200,
+            saturated_px: 0,
+            flux,
+            light: None,
+            background: 5.0,
+            marker_log_odds: 3.0,
+            middle,
+            extent: Extent { left: middle.0, top: middle.1, right: middle.0 + 1, bottom: middle.1 + 1 },
+        }
+    };
+    let mut locate = |number: u32| {
+        let mut spots = Vec::new();
+        for place_m in
+            [[0.01 * f64::from(number) - 1.0, 0.1, 4.0], [1.0 - 0.02 * f64::from(number), -0.1, 5.0]]
+        {
+            let place_m = Vector3::from(place_m);
+            for (index, marker) in airframe.markers().iter().enumerate() {
+                let [x, y, z]: [f64; 3] = marker.position_m.into();
+                let at_m = place_m + Vector3::new(x, -z, y);
+                let camera_m = Vector3::new(-place_m.x, -place_m.z, place_m.y);
+                let flux = 1e5 * airframe.intensity(index, &camera_m) / at_m.norm_squared();
+                if flux > 75.0 {
+                    spots.push(spot(camera.pixel(&Bearing::new(at_m).unwrap()).unwrap(), flux));
+                }
+            }
+        }
+        if number.is_multiple_of(3) {
+            spots.push(spot(Pixel::new(150.0 + f64::from(number), 80.0), 900.0));
+        }
+        locator.locate_spots(&spots, Some(&gravity), &mut |_| ()).clone()
+    };
+    let located: Vec<_> = (0..60).map(&mut locate).collect();
+    let mut tracker =
+        Tracker::new(camera.clone(), &airframe, &settings, tracking::Settings::default()).unwrap();
+    let (mut tracks, mut number) = (0, 0);
+    let mut track = |located: &Located| {
+        number += 1;
+        // Every fifth frame comes after the next one.
+        let time_s = f64::from(number + u32::from(number % 5 == 1) - u32::from(number % 5 == 2)) / 30.0;
+        let look = Look { time_s, turned: None, gravity: Some(gravity), located, signals: &[], lit: &[] };
+        tracks += tracker.track(&look).unwrap().tracks.len();
+        tracker.at(f64::from(number + 2) / 30.0).unwrap();
+    };
+    // Warm is who has been through it.
+    (0..20).for_each(|_| located.iter().for_each(&mut track));
+    assert_eq!(requests_during(|| located.iter().for_each(&mut track)), 0);
+    assert!(tracks > 100, "{tracks}");
 }
 
 #[test]

@@ -44,6 +44,7 @@ use crate::spots::{Detector, Reason, Rejected, Spot};
 pub use error::{LocateError, LocatorError};
 use inference::Inference;
 pub use neighbour::{Distance, Located, Neighbour, Orientation, Position, RunnerUp};
+pub(crate) use posing::{RESOLUTION_PX, faintest_light, of_mean_calibration};
 pub use settings::Settings;
 pub use sighting::Sighting;
 

@@ -28,7 +28,7 @@ pub(super) const LOG_RANGE: f64 = 4.6;
 /// Light of the wrong power does not rule out what geometry is sure of, nats.
 const MOST_POWER_NATS: f64 = 12.0;
 /// Two markers so far apart are told apart half of the time, px (rendered frames).
-const RESOLUTION_PX: f64 = 2.5;
+pub(crate) const RESOLUTION_PX: f64 = 2.5;
 /// Light of a spot that is found half of the time over the step that makes a pixel bright, px (rendered frames).
 const FAINTEST_PX: f64 = 2.5;
 
@@ -62,7 +62,7 @@ impl Poser {
             observations: Vec::with_capacity(airframe.markers().len()),
             pairs: Pairs::new(airframe),
             scale_sigma: settings.scale_sigma,
-            visible: Visible { faintest_light: faintest_light(spots), watched: None, others: &[] },
+            visible: Visible { faintest_light: faintest_light(spots), watched: None, others: &[], lit: &[] },
             within: Vec::with_capacity(airframe.markers().len()),
             others: Vec::with_capacity(512),
         })
@@ -241,6 +241,14 @@ fn told_apart(sightings: &[Sighting], group: &[usize], reach_m: f64, bounds: &In
 fn of_calibration(sightings: &[Sighting], group: &[usize], position_m: &Vector3<f64>) -> (Matrix3<f64>, f64) {
     let of_one = |&spot: &usize| sightings[spot].covariance_rad2 - sightings[spot].spot_covariance_rad2;
     let mean_rad2 = group.iter().map(of_one).sum::<Matrix3<f64>>() / group.len() as f64;
+    of_mean_calibration(&mean_rad2, position_m)
+}
+
+/// The same from the mean of what it leaves of the spots' directions, rad^2.
+pub(crate) fn of_mean_calibration(
+    mean_rad2: &Matrix3<f64>,
+    position_m: &Vector3<f64>,
+) -> (Matrix3<f64>, f64) {
     let scale = 0.5 * mean_rad2.trace() / (CALIBRATION_LENGTH_RAD * CALIBRATION_LENGTH_RAD);
     (
         mean_rad2 * position_m.norm_squared() + position_m * position_m.transpose() * scale,
@@ -249,7 +257,7 @@ fn of_calibration(sightings: &[Sighting], group: &[usize], position_m: &Vector3<
 }
 
 /// Light at which a detector with these settings finds a marker half of the time, grey levels.
-pub(super) fn faintest_light(settings: &spots::Settings) -> f64 {
+pub(crate) fn faintest_light(settings: &spots::Settings) -> f64 {
     let (Brightness::Threshold(step) | Brightness::Contrast(step)) = settings.brightness;
     FAINTEST_PX * f64::from(step)
 }

@@ -6,7 +6,7 @@ use crate::airframe::Airframe;
 
 /// Room for pairs of spot and marker.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Assignment {
+pub(crate) struct Assignment {
     /// Squared distance of directions, spot, marker.
     pairs: Vec<(f64, u16, u16)>,
     taken: Vec<bool>,
@@ -14,13 +14,13 @@ pub(super) struct Assignment {
 
 impl Assignment {
     /// Room for so many spots and markers.
-    pub(super) fn with_room(markers: usize) -> Self {
+    pub(crate) fn with_room(markers: usize) -> Self {
         Self { pairs: Vec::with_capacity(markers * markers), taken: Vec::with_capacity(2 * markers) }
     }
 
     /// Gives every spot the nearest marker that shines towards the camera and is not yet taken, the nearest pairs first;
     /// `None` where no marker is left. Returns whether any spot changed.
-    pub(super) fn assign(
+    pub(crate) fn assign(
         &mut self,
         airframe: &Airframe,
         pose: &Pose,

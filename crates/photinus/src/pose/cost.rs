@@ -35,6 +35,21 @@ const LOG_ELEVATION_SHARE: f64 = -0.384;
 impl Problem<'_> {
     /// Cost and normal equations at a pose.
     pub(super) fn normal(&self, pose: &Pose) -> Normal {
+        let mut normal = self.normal_of_spots(pose);
+        self.add_attitude(pose, &mut normal);
+        if let Some(LogDistance { mean, sigma }) = self.known.size {
+            let distance_m = pose.position_m.norm();
+            let direction = pose.position_m / (distance_m * sigma);
+            let row = Vector6::new(direction.x, direction.y, direction.z, 0.0, 0.0, 0.0);
+            normal.add((libm::log(distance_m) - mean) / sigma, &row);
+            normal.nats += 0.5 * libm::log(TAU * sigma * sigma);
+        }
+        normal.finish();
+        normal
+    }
+
+    /// What the spots alone say: bearings, light, and clutter for those that are no marker. Only the upper triangle of the information.
+    pub(super) fn normal_of_spots(&self, pose: &Pose) -> Normal {
         let mut normal = Normal::zero();
         let is_clutter = |(_, marker): &(&Observation, &Option<u16>)| marker.is_none();
         let clutter = self.observations.iter().zip(self.markers).filter(is_clutter);
@@ -45,15 +60,6 @@ impl Problem<'_> {
             light.add_to(&mut normal);
             normal.log_power = light.log_power();
         }
-        self.add_attitude(pose, &mut normal);
-        if let Some(LogDistance { mean, sigma }) = self.known.size {
-            let distance_m = pose.position_m.norm();
-            let direction = pose.position_m / (distance_m * sigma);
-            let row = Vector6::new(direction.x, direction.y, direction.z, 0.0, 0.0, 0.0);
-            normal.add((libm::log(distance_m) - mean) / sigma, &row);
-            normal.nats += 0.5 * libm::log(TAU * sigma * sigma);
-        }
-        normal.finish();
         normal
     }
 

@@ -39,4 +39,6 @@ pub struct Visible<'a> {
     pub watched: Option<Watched<'a>>,
     /// Spots that are not this neighbour's, near it: a marker beside one of them may be merged with it.
     pub others: &'a [Bearing],
+    /// How likely each marker is lit in this frame, by marker; those beyond its end are.
+    pub lit: &'a [f64],
 }

@@ -226,7 +226,7 @@ fn nearest_turn(from: &Rotation3<f64>, to: &Rotation3<f64>, turns: usize) -> Vec
 }
 
 /// Axis times angle; by the quaternion, since the arc cosine of a matrix's trace is no number where rounding takes it past 1.
-fn turn_of(rotation: &Rotation3<f64>) -> Vector3<f64> {
+pub(crate) fn turn_of(rotation: &Rotation3<f64>) -> Vector3<f64> {
     UnitQuaternion::from_rotation_matrix(rotation).scaled_axis()
 }
 

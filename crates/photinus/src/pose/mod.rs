@@ -12,7 +12,7 @@
 //! mixture       weights, truncation to the strict bounds, moments, modes
 //! ```
 //!
-//! Beside the flow stand [`p3p`] and [`pnp`], closed forms for callers who know which bearing is which marker; first guesses
+//! `measurement` hands on the cost of the spots without priors, to tracks, which have their own. Beside the flow stand [`p3p`] and [`pnp`], closed forms for callers who know which bearing is which marker; first guesses
 //! of hypotheses come from the locator's views instead.
 //!
 //! The prior prefers no direction, no yaw and no scale (even over the logarithm of distance): of all priors it is the one
@@ -26,6 +26,7 @@ mod estimator;
 mod hypotheses;
 mod known;
 mod light;
+mod measurement;
 mod melting;
 mod misfit;
 mod mixture;
@@ -41,16 +42,21 @@ mod symmetry;
 mod tests;
 mod visibility;
 
+pub(crate) use assignment::Assignment;
 pub use estimator::{Estimator, Posterior};
 pub use hypotheses::Hypotheses;
 pub use known::{Known, LogDistance, Visible};
 pub(crate) use light::POWER_RANGE;
+pub(crate) use measurement::{Measurement, Seen};
 pub use misfit::Misfit;
+pub(crate) use mixture::turn_of;
 pub use mixture::{Mode, Summary};
+pub(crate) use observation::Whitened;
 pub use observation::{LogLight, Observation};
 pub(crate) use p3p::p3p_with_near_misses;
 pub use p3p::{P3pSolutions, p3p};
 pub use pnp::pnp;
+pub(crate) use problem::Normal;
 pub use problem::Pose;
 pub use settings::{Settings, SettingsError};
 pub use symmetry::Symmetry;

@@ -45,16 +45,16 @@ impl Observation {
 
 /// A direction with the map that makes its error one of unit covariance: e = map (u - direction).
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Whitened {
-    pub(super) direction: Vector3<f64>,
-    pub(super) map: Matrix2x3<f64>,
+pub(crate) struct Whitened {
+    pub(crate) direction: Vector3<f64>,
+    pub(crate) map: Matrix2x3<f64>,
     /// Half the logarithm of the covariance's determinant: the density's normaliser but for 2 pi.
-    pub(super) log_sigmas: f64,
+    pub(crate) log_sigmas: f64,
 }
 
 impl Whitened {
     /// `extra_rad2` is what is added to the variance along both axes.
-    pub(super) fn of(observation: &Observation, extra_rad2: f64) -> Self {
+    pub(crate) fn of(observation: &Observation, extra_rad2: f64) -> Self {
         let direction = *observation.bearing.vector();
         let [across, along] = tangent_basis(&direction);
         let covariance = &observation.covariance_rad2;

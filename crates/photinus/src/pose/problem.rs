@@ -53,12 +53,12 @@ pub(super) struct Problem<'a> {
 
 /// The cost of a pose, nats, with gradient and Gauss-Newton information for a step [delta; omega].
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Normal {
-    pub(super) nats: f64,
-    pub(super) gradient: Vector6<f64>,
-    pub(super) information: Matrix6<f64>,
+pub(crate) struct Normal {
+    pub(crate) nats: f64,
+    pub(crate) gradient: Vector6<f64>,
+    pub(crate) information: Matrix6<f64>,
     /// Logarithm of the light of an LED of intensity 1 at 1 m that fits best; `None` where no spot has a light.
-    pub(super) log_power: Option<f64>,
+    pub(crate) log_power: Option<f64>,
 }
 
 impl Normal {

@@ -37,7 +37,8 @@ impl Problem<'_> {
         let intensity = |marker: usize| self.airframe.intensity(marker, &camera_m);
         let nats = |marker: usize| {
             let shines = intensity(marker).max(1e-4);
-            let found = (1.0 - self.settings.missed) * probability(odds(shines / half));
+            let lit = self.known.visible.lit.get(marker).copied().unwrap_or(1.0);
+            let found = lit * (1.0 - self.settings.missed) * probability(odds(shines / half));
             if self.is_used(marker) {
                 // How seldom what is too faint is found was never measured: no more seldom than what is bright is missed.
                 return -libm::log(found.max(self.settings.missed.max(1e-9)));

@@ -66,7 +66,7 @@ fn known() -> impl Strategy<Value = Known<'static>> {
     );
     let light = || prop_oneof![Just(0.0), scale(-6.0..9.0)];
     (up(), interval(), size, log_light(), light()).prop_map(|(up, bounds, size, power, faintest_light)| {
-        let visible = Visible { faintest_light, watched: None, others: &[] };
+        let visible = Visible { faintest_light, ..Visible::default() };
         Known { up, bounds, size, power, visible }
     })
 }

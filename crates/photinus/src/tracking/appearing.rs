@@ -1,0 +1,95 @@
+//! Located neighbours whose spots no vehicle claims -> new vehicles.
+//!
+//! A neighbour that is a vehicle's own spots, located again, is claimed and no news. The mixture of a neighbour's poses enters as it is.
+
+use nalgebra::Matrix3;
+
+use super::component::{Component, Covariance};
+use super::look::Moment;
+use super::reduction::reduce;
+use super::state::{MOST_TARGETS, State, Target};
+use super::step::Model;
+use crate::pose::{Mode, turn_of};
+
+/// A neighbour less likely than this to be new and there is none.
+const LEAST: f64 = 0.1;
+
+/// Adds those that appear; returns how many sightings are nobody's.
+pub(super) fn appear(
+    model: &Model,
+    moment: &Moment,
+    claimed: &[f64],
+    modes: &mut Vec<Component>,
+    after: &mut State,
+) -> f64 {
+    let mut unexplained: f64 = claimed.iter().map(|claimed| (1.0 - claimed).max(0.0)).sum();
+    for appearance in &moment.appearances {
+        let members = moment.members(appearance);
+        let of_others = members.iter().map(|&spot| claimed[spot]).fold(0.0, f64::max);
+        let existence = appearance.probability * (1.0 - of_others).max(0.0);
+        unexplained -= existence * members.len() as f64;
+        if existence < LEAST || after.targets.len() == MOST_TARGETS {
+            continue;
+        }
+        modes.clear();
+        let anonymous = members.iter().all(|&spot| moment.signals[spot].is_none());
+        let turns = if anonymous { model.symmetry.turns() } else { 1 };
+        for mode in moment.modes(appearance) {
+            let first = modes.first().copied();
+            modes.push(begin(model, mode, first.as_ref(), turns));
+        }
+        reduce(modes);
+        if modes.is_empty() {
+            continue;
+        }
+        let calibration = members.iter().map(|&spot| moment.calibrations[spot]).sum::<Matrix3<f64>>();
+        let (first_component, first_member) = (after.components.len(), after.members.len());
+        after.components.extend_from_slice(modes);
+        after.members.extend_from_slice(members);
+        after.targets.push(Target {
+            id: after.next_id,
+            existence,
+            hidden: 0.0,
+            seen_s: moment.time_s,
+            is_predicted: false,
+            log_power: None,
+            calibration_rad2: calibration / members.len() as f64,
+            first_component,
+            components: modes.len(),
+            first_member,
+            members: members.len(),
+        });
+        after.next_id += 1;
+    }
+    unexplained.max(0.0)
+}
+
+/// A mode as the beginning of a track, turned next to the `first` as far as the airframe's symmetry allows.
+fn begin(model: &Model, mode: &Mode, first: Option<&Component>, turns: usize) -> Component {
+    let mut covariance = Covariance::zeros();
+    covariance.fixed_view_mut::<3, 3>(0, 0).copy_from(&mode.position_covariance_m2);
+    let speed = model.settings.velocity_sigma_m_s * model.settings.velocity_sigma_m_s;
+    covariance.fixed_view_mut::<3, 3>(3, 3).copy_from(&Matrix3::from_diagonal_element(speed));
+    covariance.fixed_view_mut::<3, 3>(6, 6).copy_from(&mode.orientation_covariance_rad2);
+    let begun = Component {
+        weight: mode.weight,
+        pose: mode.pose,
+        velocity_m_s: nalgebra::Vector3::zeros(),
+        covariance,
+    };
+    first.map_or(begun, |first| turned_next_to(model, begun, first, turns))
+}
+
+/// The same state with the yaw next to another's, of those that the airframe's symmetry makes equal.
+pub(super) fn turned_next_to(model: &Model, mut state: Component, to: &Component, turns: usize) -> Component {
+    let own = state.pose.camera_from_body;
+    let mut least = f64::INFINITY;
+    for turn in 0..turns {
+        let camera_from_body = model.symmetry.attitude(&own, turn);
+        let off = turn_of(&(to.pose.camera_from_body.inverse() * camera_from_body)).norm_squared();
+        if off < least {
+            (least, state.pose.camera_from_body) = (off, camera_from_body);
+        }
+    }
+    state
+}

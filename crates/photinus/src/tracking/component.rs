@@ -1,0 +1,65 @@
+//! One normal distribution of where a vehicle is, how fast and how turned.
+//!
+//! An error is [position, m; velocity, m/s; rotation in the body frame, rad], position and velocity along the camera's axes at the stamp, relative to the
+//! camera, which do not rotate.
+
+use nalgebra::{Matrix3, Rotation3, SMatrix, SVector, Vector3};
+
+use crate::pose::{Pose, turn_of};
+
+/// An error of the state.
+pub(super) type Step = SVector<f64, 9>;
+/// Its covariance.
+pub(super) type Covariance = SMatrix<f64, 9, 9>;
+
+/// A normal distribution of the state, with a weight.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Component {
+    pub(super) weight: f64,
+    pub(super) pose: Pose,
+    pub(super) velocity_m_s: Vector3<f64>,
+    pub(super) covariance: Covariance,
+}
+
+impl Component {
+    /// The same, elsewhere.
+    pub(super) fn stepped(&self, step: &Step) -> Self {
+        let part = |first: usize| step.fixed_rows::<3>(first).into_owned();
+        let pose = Pose {
+            position_m: self.pose.position_m + part(0),
+            camera_from_body: self.pose.camera_from_body * Rotation3::new(part(6)),
+        };
+        Self { pose, velocity_m_s: self.velocity_m_s + part(3), ..*self }
+    }
+
+    /// The step that leads to another.
+    pub(super) fn step_to(&self, other: &Self) -> Step {
+        let mut step = Step::zeros();
+        step.fixed_rows_mut::<3>(0).copy_from(&(other.pose.position_m - self.pose.position_m));
+        step.fixed_rows_mut::<3>(3).copy_from(&(other.velocity_m_s - self.velocity_m_s));
+        let turn = turn_of(&(self.pose.camera_from_body.inverse() * other.pose.camera_from_body));
+        step.fixed_rows_mut::<3>(6).copy_from(&turn);
+        step
+    }
+
+    /// The covariance of a part of the state: 0 position, 1 velocity, 2 attitude.
+    pub(super) fn block(&self, part: usize) -> Matrix3<f64> {
+        self.covariance.fixed_view::<3, 3>(3 * part, 3 * part).into_owned()
+    }
+}
+
+/// The one normal distribution with the mean and covariance of several, at their weight; `None` of none.
+pub(super) fn merged<'a>(all: impl Iterator<Item = &'a Component> + Clone) -> Option<Component> {
+    let heaviest = all.clone().reduce(|best, next| if next.weight > best.weight { next } else { best })?;
+    let weight: f64 = all.clone().map(|component| component.weight).sum();
+    if weight <= 0.0 {
+        return Some(*heaviest);
+    }
+    let (mut mean, mut square) = (Step::zeros(), Covariance::zeros());
+    for component in all {
+        let (off, share) = (heaviest.step_to(component), component.weight / weight);
+        mean += off * share;
+        square += (component.covariance + off * off.transpose()) * share;
+    }
+    Some(Component { weight, covariance: square - mean * mean.transpose(), ..heaviest.stepped(&mean) })
+}

@@ -1,0 +1,114 @@
+//! The last frames with what was believed after each: a late frame takes its place among them, and all after it are gone through again.
+
+use super::Tracker;
+use super::error::TrackError;
+use super::look::{Look, Moment};
+use super::state::State;
+use super::step::{Model, Stepper};
+use crate::camera::Watched;
+
+/// Frames that are kept: half a second at up to 120 a second.
+const MOST_FRAMES: usize = 64;
+
+/// A frame, and what was believed after it.
+#[derive(Debug)]
+struct Entry {
+    moment: Moment,
+    state: State,
+}
+
+/// The last frames, in the order of their times.
+#[derive(Debug)]
+pub(super) struct History {
+    entries: Vec<Entry>,
+    /// Room of frames that are forgotten.
+    spare: Vec<Entry>,
+    /// What was believed before the first frame.
+    nobody: State,
+    /// Whether the first frame since the last reset is still kept.
+    is_whole: bool,
+}
+
+impl History {
+    pub(super) fn new() -> Self {
+        Self {
+            entries: Vec::with_capacity(MOST_FRAMES + 1),
+            spare: Vec::with_capacity(MOST_FRAMES + 1),
+            nobody: State::empty(0.0, 0),
+            is_whole: true,
+        }
+    }
+
+    /// What is believed after the newest frame.
+    pub(super) fn newest(&self) -> Option<&State> {
+        self.entries.last().map(|entry| &entry.state)
+    }
+
+    /// What was believed after the newest frame that is no later than this.
+    pub(super) fn at(&self, time_s: f64) -> Option<&State> {
+        self.entries.iter().rev().map(|entry| &entry.state).find(|state| state.time_s <= time_s)
+    }
+
+    /// Forgets all frames; no track gets an id again.
+    pub(super) fn forget(&mut self) {
+        self.nobody.next_id = self.newest().map_or(self.nobody.next_id, |state| state.next_id);
+        self.spare.append(&mut self.entries);
+        self.is_whole = true;
+    }
+
+    /// Takes a frame in at its place.
+    pub(super) fn take_in(
+        &mut self,
+        stepper: &mut Stepper,
+        model: &Model,
+        watched: Watched<'_>,
+        look: &Look<'_>,
+    ) -> Result<(), TrackError> {
+        let place = self.entries.partition_point(|entry| entry.moment.time_s < look.time_s);
+        self.check(place, look.time_s)?;
+        let mut entry = self
+            .spare
+            .pop()
+            .unwrap_or_else(|| Entry { moment: Moment::default(), state: State::empty(look.time_s, 0) });
+        entry.moment.keep(look);
+        if place > 0 && place < self.entries.len() {
+            let before_s = self.entries[place - 1].moment.time_s;
+            self.entries[place].moment.follow(&mut entry.moment, before_s);
+        }
+        self.entries.insert(place, entry);
+        for index in place..self.entries.len() {
+            let (before, from) = self.entries.split_at_mut(index);
+            let Entry { moment, state } = &mut from[0];
+            // Nobody was there a second before the first frame.
+            self.nobody.time_s = moment.time_s - 1.0;
+            let before = before.last().map_or(&self.nobody, |entry| &entry.state);
+            stepper.step(model, watched, before, moment, state);
+        }
+        self.forget_oldest();
+        Ok(())
+    }
+
+    fn check(&self, place: usize, time_s: f64) -> Result<(), TrackError> {
+        let Some(newest) = self.newest() else { return Ok(()) };
+        if self.entries.get(place).is_some_and(|entry| entry.moment.time_s <= time_s) {
+            return Err(TrackError::Repeated { time_s });
+        }
+        let behind_s = newest.time_s - time_s;
+        if behind_s > Tracker::MOST_LATE_S || (place == 0 && !self.is_whole) {
+            return Err(TrackError::TooLate { time_s, behind_s });
+        }
+        Ok(())
+    }
+
+    /// Forgets what no late frame can come before.
+    fn forget_oldest(&mut self) {
+        let Some(newest_s) = self.newest().map(|state| state.time_s) else { return };
+        while self.entries.len() > MOST_FRAMES
+            || self.entries.get(1).is_some_and(|next| next.moment.time_s < newest_s - Tracker::MOST_LATE_S)
+        {
+            let oldest = self.entries.remove(0);
+            self.spare.push(oldest);
+            self.is_whole = false;
+        }
+    }
+}

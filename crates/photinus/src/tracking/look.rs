@@ -1,0 +1,188 @@
+//! What a frame brings: its time, how the camera turned, what was sighted and located, who blinks; and the copy of it that is kept for replays.
+
+use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
+
+use super::error::TrackError;
+use super::motion::Turn;
+use crate::camera::Bearing;
+use crate::locator::{Located, RESOLUTION_PX, Sighting};
+use crate::pose::{Mode, Observation, POWER_RANGE};
+
+/// Most ways in which a neighbour can be its airframe that are taken over.
+const MOST_MODES: usize = 16;
+/// A signal that comes with its sighting is right so often.
+const SIGNAL_IS_RIGHT: f64 = 0.99;
+
+/// A frame, as the tracker takes it.
+#[derive(Clone, Copy, Debug)]
+pub struct Look<'a> {
+    /// When, s, on a clock of the caller's.
+    pub time_s: f64,
+    /// How the camera turned since the frame before it in time, where that is known.
+    pub turned: Option<Turned>,
+    /// Down in the camera frame, where it is known.
+    pub gravity: Option<Unit<Vector3<f64>>>,
+    /// What the locator makes of it.
+    pub located: &'a Located,
+    /// Which of the airframe's signals each sighting blinks, by sighting; those beyond its end blink what the locator was told.
+    pub signals: &'a [Option<Signalled>],
+    /// Which markers of which tracks are likely dark in this frame; all others are lit.
+    pub lit: &'a [Lit],
+}
+
+/// How the camera turned.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Turned {
+    /// Maps coordinates in the axes of the frame before to those of this frame.
+    pub now_from_before: Rotation3<f64>,
+    /// Standard deviation per axis, rad.
+    pub sigma_rad: f64,
+}
+
+/// Whose light a sighting is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Signalled {
+    /// Which of the airframe's signals.
+    pub signal: u32,
+    /// With what probability.
+    pub probability: f64,
+}
+
+/// How likely a marker of a track is lit while a frame is exposed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lit {
+    /// The track.
+    pub track: u64,
+    /// The marker of the airframe.
+    pub marker: u16,
+    /// 0 dark to 1 lit.
+    pub probability: f64,
+}
+
+impl Look<'_> {
+    /// Refuses what has no meaning.
+    pub(super) fn check(&self) -> Result<(), TrackError> {
+        if !self.time_s.is_finite() {
+            return Err(TrackError::Time(self.time_s));
+        }
+        match self.turned {
+            Some(Turned { sigma_rad, .. }) if !(sigma_rad.is_finite() && sigma_rad >= 0.0) => {
+                Err(TrackError::Turn(sigma_rad))
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+/// A neighbour of the frame: who may be a new track.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Appearance {
+    pub(super) probability: f64,
+    first_member: usize,
+    members: usize,
+    first_mode: usize,
+    modes: usize,
+}
+
+/// A frame, kept.
+#[derive(Debug, Default)]
+pub(super) struct Moment {
+    pub(super) time_s: f64,
+    pub(super) turned: Option<Turned>,
+    pub(super) up: Option<Unit<Vector3<f64>>>,
+    /// With the density of clutter per unit of the logarithm of its light, for one point of clutter per sr.
+    pub(super) observations: Vec<Observation>,
+    /// What the camera's calibration adds to the covariance of each.
+    pub(super) calibrations: Vec<Matrix3<f64>>,
+    pub(super) signals: Vec<Option<Signalled>>,
+    pub(super) appearances: Vec<Appearance>,
+    members: Vec<usize>,
+    modes: Vec<Mode>,
+    pub(super) lit: Vec<Lit>,
+}
+
+impl Moment {
+    /// Takes over a frame.
+    pub(super) fn keep(&mut self, look: &Look<'_>) {
+        let Look { time_s, turned, gravity, located, signals, lit } = *look;
+        (self.time_s, self.turned, self.up) = (time_s, turned, gravity.map(|down| -down));
+        self.observations.clear();
+        self.calibrations.clear();
+        self.signals.clear();
+        for (index, sighting) in located.sightings.iter().enumerate() {
+            self.observations.push(observe(sighting));
+            self.calibrations.push(sighting.covariance_rad2 - sighting.spot_covariance_rad2);
+            let told = sighting.signal.map(|signal| Signalled { signal, probability: SIGNAL_IS_RIGHT });
+            self.signals.push(signals.get(index).copied().unwrap_or(told));
+        }
+        self.lit.clear();
+        self.lit.extend_from_slice(lit);
+        self.appearances.clear();
+        self.members.clear();
+        self.modes.clear();
+        for neighbour in &located.neighbours {
+            let (members, modes) = (located.members(neighbour), located.modes(neighbour));
+            let modes = &modes[..modes.len().min(MOST_MODES)];
+            self.appearances.push(Appearance {
+                probability: neighbour.probability,
+                first_member: self.members.len(),
+                members: members.len(),
+                first_mode: self.modes.len(),
+                modes: modes.len(),
+            });
+            self.members.extend_from_slice(members);
+            self.modes.extend_from_slice(modes);
+        }
+    }
+
+    /// The sightings of an appearance.
+    pub(super) fn members(&self, appearance: &Appearance) -> &[usize] {
+        &self.members[appearance.first_member..][..appearance.members]
+    }
+
+    /// The ways in which it can be the airframe, the likeliest first.
+    pub(super) fn modes(&self, appearance: &Appearance) -> &[Mode] {
+        &self.modes[appearance.first_mode..][..appearance.modes]
+    }
+
+    /// The direction of a sighting.
+    pub(super) fn bearing(&self, sighting: usize) -> &Bearing {
+        &self.observations[sighting].bearing
+    }
+
+    /// How the camera turned over the interval since the frame before; where nobody tells, anyhow.
+    pub(super) fn turn(&self, interval_s: f64, rate_sigma_rad_s: f64) -> Turn {
+        match self.turned {
+            Some(Turned { now_from_before, sigma_rad }) => Turn { now_from_before, sigma_rad },
+            None => Turn { now_from_before: Rotation3::identity(), sigma_rad: rate_sigma_rad_s * interval_s },
+        }
+    }
+
+    /// Puts a late frame before this one: this one's turn is since the late one from now on. Where the late one's own turn is not told, the camera is taken
+    /// to have turned evenly. `before_s` is the time of the frame before both.
+    pub(super) fn follow(&mut self, late: &mut Moment, before_s: f64) {
+        let Some(whole) = self.turned else { return };
+        let share = (late.time_s - before_s) / (self.time_s - before_s);
+        let first = late.turned.unwrap_or_else(|| Turned {
+            now_from_before: Rotation3::new(crate::pose::turn_of(&whole.now_from_before) * share),
+            sigma_rad: whole.sigma_rad,
+        });
+        late.turned = Some(first);
+        self.turned = Some(Turned {
+            now_from_before: whole.now_from_before * first.now_from_before.inverse(),
+            sigma_rad: whole.sigma_rad,
+        });
+    }
+}
+
+fn observe(sighting: &Sighting) -> Observation {
+    let of_light = sighting.log_light.map_or(0.0, |_| libm::log(POWER_RANGE));
+    Observation {
+        bearing: sighting.bearing,
+        covariance_rad2: sighting.spot_covariance_rad2,
+        log_light: sighting.log_light,
+        resolution_rad: RESOLUTION_PX * sighting.rad_per_px,
+        signal: None,
+        clutter_log_density: -of_light - sighting.spot.marker_log_odds.min(0.0),
+    }
+}

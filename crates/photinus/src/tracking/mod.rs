@@ -1,0 +1,156 @@
+//! Sightings and located neighbours, frame by frame -> tracks: where each vehicle is, how fast, how turned, and whether it exists.
+//!
+//! ```text
+//! look        what a frame brings, and how the camera turned                look
+//! motion      where everybody is expected                                   motion, splitting
+//! ways        which spots may be which markers of whom, each with its       ways (branches, update)
+//!             Kalman update; the pose room brings the measurement
+//! joint       how likely each way is, no spot being two vehicles'           joint
+//! state       vehicles as sums of normal distributions, and whether they    reduction, existence
+//!             exist; new ones from located neighbours nobody claims         appearing
+//! history     late frames in their place, and all after them again          history
+//! tracks      one mean and covariance each                                  track
+//! ```
+//!
+//! A vehicle is a small sum of normal distributions of position, velocity and attitude, so that what one frame leaves open (two spots fit two poses) is
+//! settled by the next ones. Every spot updates it, also one marker alone. `step` has the flow of a frame.
+
+mod appearing;
+mod branches;
+mod component;
+mod error;
+mod existence;
+mod history;
+mod joint;
+mod look;
+mod motion;
+mod reduction;
+mod settings;
+mod splitting;
+mod state;
+mod step;
+#[cfg(test)]
+mod tests;
+mod track;
+mod update;
+mod ways;
+
+use nalgebra::Rotation3;
+
+use crate::airframe::Airframe;
+use crate::camera::{Camera, Watched};
+use crate::frame::Mask;
+use crate::locator;
+use crate::pose::Symmetry;
+pub use error::{TrackError, TrackerError};
+use history::History;
+pub use look::{Lit, Look, Signalled, Turned};
+use motion::{Motion, Turn};
+pub use settings::{Association, Settings};
+use step::{Model, Stepper};
+pub use track::{Placed, Track, Tracked};
+
+/// Follows the vehicles that one camera sees, all with the same airframe. Keeps its room from frame to frame, so that a warm tracker allocates nothing.
+#[derive(Debug)]
+pub struct Tracker {
+    camera: Camera,
+    mask: Option<Mask>,
+    model: Model,
+    stepper: Stepper,
+    history: History,
+    tracked: Tracked,
+}
+
+impl Tracker {
+    /// Frames so far behind the newest take their place, s.
+    pub const MOST_LATE_S: f64 = 0.5;
+    /// A time so much before or after the newest is another clock, s.
+    pub const JUMP_S: f64 = 5.0;
+
+    /// A tracker of what a locator with these settings tells.
+    ///
+    /// # Errors
+    /// [`TrackerError`] when a setting has no meaning.
+    pub fn new(
+        camera: Camera,
+        airframe: &Airframe,
+        locator: &locator::Settings,
+        settings: Settings,
+    ) -> Result<Self, TrackerError> {
+        locator.pose.check()?;
+        settings.check()?;
+        let model = Model {
+            airframe: airframe.clone(),
+            symmetry: Symmetry::of(airframe),
+            pose: locator.pose,
+            faintest_light: locator::faintest_light(&locator.spots),
+            settings,
+        };
+        let stepper = Stepper::new(airframe);
+        Ok(Self { camera, mask: None, model, stepper, history: History::new(), tracked: Tracked::default() })
+    }
+
+    /// Sets where the locator does not look.
+    ///
+    /// # Errors
+    /// [`TrackerError::Mask`] when the mask is not of the camera's size.
+    pub fn set_mask(&mut self, mask: Option<Mask>) -> Result<(), TrackerError> {
+        if let Some(mask) = &mask {
+            mask.check_size(self.camera.width(), self.camera.height())?;
+        }
+        self.mask = mask;
+        Ok(())
+    }
+
+    /// Forgets all tracks. Their ids are not given again.
+    pub fn forget(&mut self) {
+        self.history.forget();
+    }
+
+    /// Takes a frame in, and tells the tracks at the time of the newest frame, in its camera's axes. Frames up to [`Self::MOST_LATE_S`] behind the newest
+    /// take their place; one that is more than [`Self::JUMP_S`] off is of another clock: all tracks are forgotten first, and [`Tracked::placed`] says so.
+    ///
+    /// # Errors
+    /// [`TrackError`] for a time or a turn without meaning, a frame that is too late, and a second one of the same time; nothing is changed then.
+    pub fn track(&mut self, look: &Look<'_>) -> Result<&Tracked, TrackError> {
+        look.check()?;
+        let off_s = self.history.newest().map_or(0.0, |newest| look.time_s - newest.time_s);
+        let placed = match off_s {
+            _ if off_s.abs() > Self::JUMP_S => Placed::Reset,
+            _ if off_s < 0.0 => Placed::Late,
+            _ => Placed::Newest,
+        };
+        if placed == Placed::Reset {
+            self.history.forget();
+        }
+        let watched = Watched::new(&self.camera, self.mask.as_ref());
+        self.history.take_in(&mut self.stepper, &self.model, watched, look)?;
+        if let Some(state) = self.history.newest() {
+            self.tracked.tell(&self.model, state, None);
+        }
+        self.tracked.placed = placed;
+        Ok(&self.tracked)
+    }
+
+    /// Where everybody is at a time: carried on from the last frame before it, in that frame's axes.
+    ///
+    /// # Errors
+    /// [`TrackError`] for a time that is no number, and one before all frames that are kept.
+    pub fn at(&mut self, time_s: f64) -> Result<&Tracked, TrackError> {
+        if !time_s.is_finite() {
+            return Err(TrackError::Time(time_s));
+        }
+        let Some(state) = self.history.at(time_s) else {
+            let newest_s = self.history.newest().map_or(time_s, |newest| newest.time_s);
+            return Err(TrackError::TooLate { time_s, behind_s: newest_s - time_s });
+        };
+        let motion = Motion {
+            interval_s: time_s - state.time_s,
+            turn: Turn { now_from_before: Rotation3::identity(), sigma_rad: 0.0 },
+            up: state.up,
+            tilt_sigma_rad: self.model.pose.tilt_sigma_rad,
+        };
+        self.tracked.tell(&self.model, state, Some(&motion));
+        Ok(&self.tracked)
+    }
+}

@@ -1,0 +1,108 @@
+//! A state -> the same a while later: velocity carries on, tilts fade, yaw wanders, and the camera turned.
+//!
+//! Acceleration and yaw rate are white; a tilt is an Ornstein-Uhlenbeck process about the vertical, whose sigma is the prior of the pose. Where gravity is
+//! not known the tilt changes as fast, about the image's up, and is hardly pulled to it. Y. Bar-Shalom, X. R. Li, T. Kirubarajan, "Estimation with
+//! Applications to Tracking and Navigation" (2001), 6.2.1.
+
+use nalgebra::{Matrix3, Rotation3, SMatrix, Unit, Vector3};
+
+use super::component::{Component, Covariance};
+use super::settings::Settings;
+use crate::pose::Pose;
+
+/// Without gravity: how far a vehicle is from upright in the image, rad.
+const IMAGE_TILT_SIGMA_RAD: f64 = 1.0;
+/// A yaw is no less sure than this, rad: that of one who knows nothing.
+const MOST_YAW_RAD: f64 = 1.8;
+
+/// How the camera turned over an interval.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Turn {
+    pub(super) now_from_before: Rotation3<f64>,
+    /// Standard deviation per axis, rad.
+    pub(super) sigma_rad: f64,
+}
+
+/// What moves a vehicle over an interval.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Motion {
+    pub(super) interval_s: f64,
+    pub(super) turn: Turn,
+    /// Away from the ground, in the camera's axes afterwards.
+    pub(super) up: Option<Unit<Vector3<f64>>>,
+    pub(super) tilt_sigma_rad: f64,
+}
+
+impl Motion {
+    /// Where a vehicle is afterwards.
+    pub(super) fn predict(&self, before: &Component, settings: &Settings) -> Component {
+        let interval_s = self.interval_s;
+        let turn = &self.turn.now_from_before;
+        let position_m = turn * (before.pose.position_m + before.velocity_m_s * interval_s);
+        let velocity_m_s = turn * before.velocity_m_s;
+        let camera_from_body = turn * before.pose.camera_from_body;
+        let (keeps, tilt_rad2) = self.tilt(settings);
+        let upright = self.upright(&camera_from_body);
+        let mut transition = Covariance::identity();
+        let matrix = turn.matrix();
+        transition.fixed_view_mut::<3, 3>(0, 0).copy_from(matrix);
+        transition.fixed_view_mut::<3, 3>(0, 3).copy_from(&(matrix * interval_s));
+        transition.fixed_view_mut::<3, 3>(3, 3).copy_from(matrix);
+        transition[(6, 6)] = keeps;
+        transition[(7, 7)] = keeps;
+        let mut covariance = transition * before.covariance * transition.transpose();
+        let density = settings.acceleration * settings.acceleration;
+        for axis in 0..3 {
+            covariance[(axis, axis)] += density * interval_s * interval_s * interval_s / 3.0;
+            covariance[(axis, axis + 3)] += density * interval_s * interval_s / 2.0;
+            covariance[(axis + 3, axis)] += density * interval_s * interval_s / 2.0;
+            covariance[(axis + 3, axis + 3)] += density * interval_s;
+        }
+        covariance[(6, 6)] += tilt_rad2;
+        covariance[(7, 7)] += tilt_rad2;
+        let wandering = settings.yaw_rate * settings.yaw_rate * interval_s;
+        covariance[(8, 8)] += wandering.min((MOST_YAW_RAD * MOST_YAW_RAD - covariance[(8, 8)]).max(0.0));
+        let by_turn = by_turn(&position_m, &velocity_m_s, &camera_from_body);
+        covariance += by_turn * by_turn.transpose() * (self.turn.sigma_rad * self.turn.sigma_rad);
+        let pose =
+            Pose { position_m, camera_from_body: camera_from_body * Rotation3::new(upright * (1.0 - keeps)) };
+        Component { weight: before.weight, pose, velocity_m_s, covariance }
+    }
+
+    /// The share of a tilt that is left, and the variance that is new.
+    fn tilt(&self, settings: &Settings) -> (f64, f64) {
+        let (sigma_rad, time_s) = match self.up {
+            Some(_) => (self.tilt_sigma_rad, settings.tilt_time_s),
+            None => {
+                let wider = IMAGE_TILT_SIGMA_RAD / self.tilt_sigma_rad;
+                (IMAGE_TILT_SIGMA_RAD, settings.tilt_time_s * wider * wider)
+            }
+        };
+        let keeps = libm::exp(-self.interval_s / time_s);
+        (keeps, sigma_rad * sigma_rad * -libm::expm1(-2.0 * self.interval_s / time_s))
+    }
+
+    /// The rotation in the body frame that brings it upright.
+    fn upright(&self, camera_from_body: &Rotation3<f64>) -> Vector3<f64> {
+        let up = camera_from_body.inverse() * self.up.map_or(-Vector3::y(), Unit::into_inner);
+        let across = libm::hypot(up.x, up.y);
+        if across < 1e-12 {
+            return Vector3::zeros();
+        }
+        Vector3::new(-up.y, up.x, 0.0) * (libm::atan2(across, up.z) / across)
+    }
+}
+
+/// How the state changes with a small rotation of the camera's axes.
+fn by_turn(
+    position_m: &Vector3<f64>,
+    velocity_m_s: &Vector3<f64>,
+    camera_from_body: &Rotation3<f64>,
+) -> SMatrix<f64, 9, 3> {
+    let mut by_turn = SMatrix::<f64, 9, 3>::zeros();
+    by_turn.fixed_view_mut::<3, 3>(0, 0).copy_from(&-position_m.cross_matrix());
+    by_turn.fixed_view_mut::<3, 3>(3, 0).copy_from(&-velocity_m_s.cross_matrix());
+    let back: Matrix3<f64> = camera_from_body.matrix().transpose();
+    by_turn.fixed_view_mut::<3, 3>(6, 0).copy_from(&back);
+    by_turn
+}

@@ -1,0 +1,83 @@
+//! What is believed after a frame: every vehicle, as a sum of normal distributions, with how likely it exists.
+
+use nalgebra::{Matrix3, Unit, Vector3};
+
+use super::component::Component;
+
+/// Most vehicles that are followed at once.
+pub(super) const MOST_TARGETS: usize = 64;
+/// Most normal distributions of one vehicle.
+pub(super) const MOST_COMPONENTS: usize = 12;
+/// Points of clutter in a frame before any was seen.
+const CLUTTER_BEFOREHAND: f64 = 0.5;
+
+/// A vehicle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Target {
+    pub(super) id: u64,
+    /// How likely it exists.
+    pub(super) existence: f64,
+    /// How likely it is hidden, if it exists.
+    pub(super) hidden: f64,
+    /// When it was seen last, s.
+    pub(super) seen_s: f64,
+    /// Whether it is not seen in this frame.
+    pub(super) is_predicted: bool,
+    /// Logarithm of the light of an LED of intensity 1 at 1 m, where it was told.
+    pub(super) log_power: Option<f64>,
+    /// What the camera's calibration leaves open of its direction, rad^2.
+    pub(super) calibration_rad2: Matrix3<f64>,
+    pub(super) first_component: usize,
+    pub(super) components: usize,
+    pub(super) first_member: usize,
+    pub(super) members: usize,
+}
+
+/// All that is believed at a time.
+#[derive(Debug)]
+pub(super) struct State {
+    pub(super) time_s: f64,
+    pub(super) next_id: u64,
+    /// Away from the ground, camera frame, where it is known.
+    pub(super) up: Option<Unit<Vector3<f64>>>,
+    /// Points of clutter in a frame, on average.
+    pub(super) clutter: f64,
+    pub(super) targets: Vec<Target>,
+    pub(super) components: Vec<Component>,
+    /// Sightings that updated a vehicle.
+    pub(super) members: Vec<usize>,
+}
+
+impl State {
+    /// Nobody yet.
+    pub(super) fn empty(time_s: f64, next_id: u64) -> Self {
+        Self {
+            time_s,
+            next_id,
+            up: None,
+            clutter: CLUTTER_BEFOREHAND,
+            targets: Vec::with_capacity(MOST_TARGETS),
+            components: Vec::with_capacity(2 * MOST_TARGETS),
+            members: Vec::with_capacity(128),
+        }
+    }
+
+    /// Forgets everybody.
+    pub(super) fn clear(&mut self, time_s: f64, next_id: u64) {
+        (self.time_s, self.next_id, self.up) = (time_s, next_id, None);
+        self.clutter = CLUTTER_BEFOREHAND;
+        self.targets.clear();
+        self.components.clear();
+        self.members.clear();
+    }
+
+    /// The normal distributions of a vehicle, the heaviest first.
+    pub(super) fn components(&self, target: &Target) -> &[Component] {
+        &self.components[target.first_component..][..target.components]
+    }
+
+    /// The sightings of the last frame that updated it.
+    pub(super) fn members(&self, target: &Target) -> &[usize] {
+        &self.members[target.first_member..][..target.members]
+    }
+}

@@ -1,0 +1,193 @@
+//! What is believed before a frame, and the frame -> what is believed after it.
+//!
+//! ```text
+//! predicted   every normal distribution, carried on to the frame       motion, splitting
+//! ways        which spots may be which of its markers, each updated    ways (branches, update)
+//! joint       how likely each is, no spot being two vehicles'          joint
+//! concluded   vehicles as sums of those, few; whether they exist       reduction, existence
+//! appeared    located neighbours whose spots nobody claims             appearing
+//! ```
+
+use nalgebra::Matrix3;
+
+use super::Settings;
+use super::appearing;
+use super::component::Component;
+use super::existence::Existence;
+use super::joint::Joint;
+use super::look::Moment;
+use super::motion::Motion;
+use super::reduction::reduce;
+use super::splitting::split;
+use super::state::{MOST_TARGETS, State, Target};
+use super::ways::{Scene, Way, Ways};
+use crate::airframe::Airframe;
+use crate::camera::Watched;
+use crate::pose::{self, Symmetry};
+
+/// Clutter is counted over so many frames, and is at least so many points.
+const CLUTTER_FRAMES: f64 = 32.0;
+const LEAST_CLUTTER: f64 = 0.05;
+/// A vehicle less likely than this is forgotten.
+const GONE: f64 = 0.02;
+/// The power of LEDs is the mean of so many frames.
+const POWER_FRAMES: f64 = 16.0;
+
+/// What does not change from frame to frame.
+#[derive(Clone, Debug)]
+pub(super) struct Model {
+    pub(super) airframe: Airframe,
+    pub(super) symmetry: Symmetry,
+    pub(super) pose: pose::Settings,
+    pub(super) faintest_light: f64,
+    pub(super) settings: Settings,
+}
+
+/// Carries what is believed from frame to frame. Keeps its room.
+#[derive(Debug)]
+pub(super) struct Stepper {
+    /// By vehicle, one after the other.
+    predicted: Vec<Component>,
+    first_predicted: Vec<usize>,
+    ways: Ways,
+    joint: Joint,
+    /// How likely each sighting is a vehicle's.
+    claimed: Vec<f64>,
+    reduced: Vec<Component>,
+}
+
+impl Stepper {
+    pub(super) fn new(airframe: &Airframe) -> Self {
+        Self {
+            predicted: Vec::with_capacity(1024),
+            first_predicted: Vec::with_capacity(MOST_TARGETS + 1),
+            ways: Ways::with_room(airframe),
+            joint: Joint::default(),
+            claimed: Vec::new(),
+            reduced: Vec::with_capacity(512),
+        }
+    }
+
+    /// Fills `after` with what is believed after a frame.
+    pub(super) fn step(
+        &mut self,
+        model: &Model,
+        watched: Watched<'_>,
+        before: &State,
+        moment: &Moment,
+        after: &mut State,
+    ) {
+        let interval_s = moment.time_s - before.time_s;
+        let motion = Motion {
+            interval_s,
+            turn: moment.turn(interval_s, model.settings.turn_sigma_rad_s),
+            up: moment.up,
+            tilt_sigma_rad: model.pose.tilt_sigma_rad,
+        };
+        self.predicted.clear();
+        self.first_predicted.clear();
+        for target in &before.targets {
+            self.first_predicted.push(self.predicted.len());
+            for component in before.components(target) {
+                split(&motion.predict(component, &model.settings), &mut self.predicted);
+            }
+        }
+        self.first_predicted.push(self.predicted.len());
+        let scene = Scene { model, watched, moment, interval_s };
+        self.ways.begin(&scene, before.clutter);
+        for (vehicle, target) in before.targets.iter().enumerate() {
+            let components =
+                &self.predicted[self.first_predicted[vehicle]..self.first_predicted[vehicle + 1]];
+            self.ways.add_vehicle(&scene, vehicle, target, components);
+        }
+        self.joint.explain(&self.ways.choices, &self.ways.log_unseen, model.settings.association);
+        after.clear(moment.time_s, before.next_id);
+        after.up = moment.up;
+        self.claimed.clear();
+        self.claimed.resize(moment.observations.len(), 0.0);
+        for (vehicle, target) in before.targets.iter().enumerate() {
+            self.conclude(vehicle, target, model, moment, interval_s, after);
+        }
+        let unexplained = appearing::appear(model, moment, &self.claimed, &mut self.reduced, after);
+        let clutter = before.clutter + (unexplained - before.clutter) / CLUTTER_FRAMES;
+        after.clutter = clutter.max(LEAST_CLUTTER);
+    }
+
+    /// Adds a vehicle as it is with the frame, unless it is gone.
+    fn conclude(
+        &mut self,
+        vehicle: usize,
+        before: &Target,
+        model: &Model,
+        moment: &Moment,
+        interval_s: f64,
+        after: &mut State,
+    ) {
+        let Self { predicted, first_predicted, ways, joint, claimed, reduced, .. } = self;
+        let unseen = joint.unseen[vehicle];
+        let existence = Existence::new(before.existence, before.hidden).after(interval_s, &model.settings);
+        let with = existence.with(unseen, ways.unseen_if_shown(vehicle));
+        let (first_member, mut log_power, mut best) = (after.members.len(), before.log_power, 0.0);
+        reduced.clear();
+        for (index, way) in ways.of(vehicle) {
+            let probability = joint.probability[index];
+            reduced.push(Component { weight: probability, ..way.component });
+            for &(spot, _) in way.pairs.as_slice() {
+                claimed[usize::from(spot)] += probability;
+            }
+            if probability > best {
+                best = probability;
+                log_power = averaged(before.log_power, way.log_power);
+            }
+        }
+        let own = &predicted[first_predicted[vehicle]..first_predicted[vehicle + 1]];
+        let all = existence.unseen(ways.unseen_if_shown(vehicle)).max(f64::MIN_POSITIVE);
+        for (component, unseen_if_shown) in own.iter().zip(ways.unseen_of(vehicle)) {
+            // One that must have shown is the less likely for it, unless it is hidden.
+            let there = existence.hidden + existence.shown * unseen_if_shown;
+            reduced.push(Component { weight: unseen * component.weight * there / all, ..*component });
+        }
+        reduce(reduced);
+        let is_seen = unseen < 0.5;
+        let seen_s = if is_seen { moment.time_s } else { before.seen_s };
+        let is_lost = moment.time_s - seen_s > model.settings.coast_s;
+        if with.total() < GONE || is_lost || reduced.is_empty() {
+            return;
+        }
+        let mut calibration_rad2 = Matrix3::zeros();
+        for spot in 0..moment.observations.len() {
+            let claims = |(index, way): (usize, &Way)| {
+                if way.pairs.has_spot(spot) { joint.probability[index] } else { 0.0 }
+            };
+            if ways.of(vehicle).map(claims).sum::<f64>() > 0.5 {
+                after.members.push(spot);
+                calibration_rad2 += moment.calibrations[spot];
+            }
+        }
+        let members = after.members.len() - first_member;
+        let calibration_rad2 =
+            if members > 0 { calibration_rad2 / members as f64 } else { before.calibration_rad2 };
+        let first_component = after.components.len();
+        after.components.extend_from_slice(reduced);
+        after.targets.push(Target {
+            id: before.id,
+            existence: with.total().min(1.0),
+            hidden: with.hidden / with.total(),
+            seen_s,
+            is_predicted: !is_seen,
+            log_power,
+            calibration_rad2,
+            first_component,
+            components: reduced.len(),
+            first_member,
+            members,
+        });
+    }
+}
+
+fn averaged(before: Option<f64>, now: Option<f64>) -> Option<f64> {
+    match (before, now) {
+        (Some(before), Some(now)) => Some(before + (now - before) / POWER_FRAMES),
+        (before, now) => now.or(before),
+    }
+}

@@ -1,0 +1,8 @@
+//! Tracks against truth: vehicles flown by [`simulator`], located by the real locator.
+
+mod accuracy;
+mod manoeuvres;
+mod order;
+mod parts;
+mod simulator;
+mod told;

@@ -1,0 +1,331 @@
+//! A predicted vehicle and a frame -> the ways in which the frame may show it, each with the state that follows and its weight.
+//!
+//! Ways come from the prediction ([`super::branches`]) and, where that is too wide to tell markers apart, from the neighbours that the locator found near
+//! it: their poses say which spots are which markers and where to begin. Either way the weight is the density of the frame's spots under the vehicle's own
+//! prediction, so that a neighbour located again is a way to look at the same spots and no second sight of them.
+
+mod located;
+
+use super::branches::{Around, Branches, Pairs};
+use super::component::Component;
+use super::existence::Existence;
+use super::joint::{Choice, Spots};
+use super::look::Moment;
+use super::state::Target;
+use super::step::Model;
+use super::update::Prior;
+use crate::airframe::Airframe;
+use crate::camera::{Bearing, Watched};
+use crate::pose::{self, Assignment, Known, Measurement, Observation, Pose, Seen, Visible, Whitened};
+use crate::ranging::Interval;
+
+/// Neighbours at half of the sphere.
+const FIELD_SR: f64 = core::f64::consts::TAU;
+/// A wrong signal costs no more than this, nats: one in a hundred and fifty is wrong.
+const WRONG_SIGNAL_NATS: f64 = 5.0;
+/// Spots within so many radii of a vehicle may hide its markers.
+const NEAR_RADII: f64 = 3.0;
+
+/// One frame, and what it is looked at with.
+#[derive(Clone, Copy)]
+pub(super) struct Scene<'a> {
+    pub(super) model: &'a Model,
+    pub(super) watched: Watched<'a>,
+    pub(super) moment: &'a Moment,
+    /// Since the frame before, s.
+    pub(super) interval_s: f64,
+}
+
+/// One way in which a frame may show a vehicle.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Way {
+    /// The state with its spots.
+    pub(super) component: Component,
+    pub(super) pairs: Pairs,
+    pub(super) log_power: Option<f64>,
+    /// Which of the vehicle's distributions it comes from.
+    from: usize,
+}
+
+/// The ways of all vehicles.
+#[derive(Debug)]
+pub(super) struct Ways {
+    all: Vec<Way>,
+    /// The same for the joint explanation.
+    pub(super) choices: Vec<Choice>,
+    /// Logarithm of the weight that nothing of a vehicle is seen, by vehicle.
+    pub(super) log_unseen: Vec<f64>,
+    /// How likely none of its markers is seen if nothing hides it: by vehicle, and by its distributions.
+    unseen_if_shown: Vec<f64>,
+    unseen_of: Vec<f64>,
+    first_unseen: Vec<usize>,
+    /// The bit of each spot that may be a vehicle's.
+    bits: Vec<Option<u32>>,
+    used_bits: u32,
+    observations: Vec<Observation>,
+    clutter_nats: f64,
+    per_frame: pose::Settings,
+    correlated: f64,
+    whitened: Vec<Whitened>,
+    lit: Vec<f64>,
+    branches: Branches,
+    tried: Vec<Pairs>,
+    markers: Vec<Option<u16>>,
+    others: Vec<Bearing>,
+    own: Vec<Observation>,
+    own_markers: Vec<Option<u16>>,
+    assignment: Assignment,
+}
+
+impl Ways {
+    pub(super) fn with_room(airframe: &Airframe) -> Self {
+        let markers = airframe.markers().len();
+        Self {
+            all: Vec::with_capacity(256),
+            choices: Vec::with_capacity(256),
+            log_unseen: Vec::new(),
+            unseen_if_shown: Vec::new(),
+            unseen_of: Vec::new(),
+            first_unseen: Vec::new(),
+            bits: Vec::new(),
+            used_bits: 0,
+            observations: Vec::new(),
+            clutter_nats: 0.0,
+            per_frame: pose::Settings::default(),
+            correlated: 1.0,
+            whitened: Vec::new(),
+            lit: Vec::with_capacity(markers),
+            branches: Branches::with_room(markers),
+            tried: Vec::with_capacity(16),
+            markers: Vec::new(),
+            others: Vec::new(),
+            own: Vec::new(),
+            own_markers: Vec::new(),
+            assignment: Assignment::with_room(markers),
+        }
+    }
+
+    /// The ways of a vehicle with their places.
+    pub(super) fn of(&self, vehicle: usize) -> impl Iterator<Item = (usize, &Way)> {
+        let own = self.choices.iter().zip(&self.all).enumerate();
+        own.filter(move |(_, (choice, _))| choice.vehicle == vehicle).map(|(index, (_, way))| (index, way))
+    }
+
+    /// How likely none of a vehicle's markers is seen if nothing hides it.
+    pub(super) fn unseen_if_shown(&self, vehicle: usize) -> f64 {
+        self.unseen_if_shown[vehicle]
+    }
+
+    /// The same by its distributions.
+    pub(super) fn unseen_of(&self, vehicle: usize) -> impl Iterator<Item = f64> {
+        self.unseen_of[self.first_unseen[vehicle]..].iter().copied()
+    }
+
+    /// Begins a frame with so many points of clutter.
+    pub(super) fn begin(&mut self, scene: &Scene<'_>, clutter: f64) {
+        let Scene { model, moment, interval_s, .. } = *scene;
+        self.all.clear();
+        self.choices.clear();
+        self.log_unseen.clear();
+        self.unseen_if_shown.clear();
+        self.unseen_of.clear();
+        self.first_unseen.clear();
+        self.bits.clear();
+        self.bits.resize(moment.observations.len(), None);
+        self.used_bits = 0;
+        let log_per_sr = libm::log(clutter / FIELD_SR);
+        self.observations.clear();
+        self.observations.extend(
+            moment.observations.iter().map(|seen| Observation {
+                clutter_log_density: seen.clutter_log_density + log_per_sr,
+                ..*seen
+            }),
+        );
+        self.clutter_nats = -self.observations.iter().map(|seen| seen.clutter_log_density).sum::<f64>();
+        // An error that lasts for a time is as white noise of the density 2 time sigma^2.
+        self.correlated = (2.0 * model.settings.correlation_s / interval_s).max(1.0);
+        let widening = self.correlated.sqrt();
+        self.per_frame = pose::Settings {
+            unit_sigma: model.pose.unit_sigma * widening,
+            lobe_sigma: model.pose.lobe_sigma * widening,
+            ..model.pose
+        };
+    }
+
+    /// Adds the ways of the next vehicle, whose distributions are predicted.
+    pub(super) fn add_vehicle(
+        &mut self,
+        scene: &Scene<'_>,
+        vehicle: usize,
+        target: &Target,
+        components: &[Component],
+    ) {
+        let Scene { model, moment, interval_s, .. } = *scene;
+        self.prepare(scene, target, components);
+        self.first_unseen.push(self.unseen_of.len());
+        let existence = Existence::new(target.existence, target.hidden).after(interval_s, &model.settings);
+        let log_shown = libm::log(existence.shown.max(f64::MIN_POSITIVE));
+        let mut unseen_if_shown = 0.0;
+        for (from, component) in components.iter().enumerate() {
+            let unseen = self.unseen(scene, target, component);
+            self.unseen_of.push(unseen);
+            unseen_if_shown += component.weight * unseen;
+            let Some(prior) = Prior::of(component) else { continue };
+            let log_weight = log_shown + libm::log(component.weight);
+            let way = Origin { vehicle, from, log_weight, prior: &prior };
+            self.grow(scene, &way);
+            for appearance in &moment.appearances {
+                self.begin_at_neighbour(scene, &way, appearance);
+            }
+        }
+        for appearance in &moment.appearances {
+            self.begin_anew(scene, vehicle, log_shown, appearance);
+        }
+        self.unseen_if_shown.push(unseen_if_shown);
+        self.log_unseen.push(libm::log(existence.unseen(unseen_if_shown)));
+    }
+
+    /// What spots are against this vehicle, whose markers are where the airframe says but for the prior's sigma.
+    fn prepare(&mut self, scene: &Scene<'_>, target: &Target, components: &[Component]) {
+        let Scene { model, moment, .. } = *scene;
+        let distance_m = components.first().map_or(1.0, |first| first.pose.position_m.norm()).max(1e-3);
+        let angle_rad = model.pose.marker_sigma_m / distance_m;
+        let extra_rad2 = self.correlated * angle_rad * angle_rad;
+        self.whitened.clear();
+        self.whitened.extend(self.observations.iter().map(|seen| Whitened::of(seen, extra_rad2)));
+        self.lit.clear();
+        self.lit.resize(model.airframe.markers().len(), 1.0);
+        for told in moment.lit.iter().filter(|told| told.track == target.id) {
+            if let Some(place) = self.lit.get_mut(usize::from(told.marker)) {
+                *place = told.probability.clamp(0.0, 1.0);
+            }
+        }
+    }
+
+    /// How likely no marker of a vehicle is seen that nothing hides.
+    fn unseen(&mut self, scene: &Scene<'_>, target: &Target, component: &Component) -> f64 {
+        self.markers.clear();
+        self.markers.resize(self.observations.len(), None);
+        self.gather_others(scene, component);
+        let nats = self.measured(scene, &component.pose, |measurement| {
+            measurement.visibility_nats(&component.pose, target.log_power)
+        });
+        libm::exp(-nats)
+    }
+
+    /// The ways that the prediction offers.
+    fn grow(&mut self, scene: &Scene<'_>, origin: &Origin<'_>) {
+        let Scene { model, moment, .. } = *scene;
+        let around = Around {
+            airframe: &model.airframe,
+            observations: &self.observations,
+            whitened: &self.whitened,
+            lit: &self.lit,
+            missed: model.pose.missed,
+        };
+        let signal_nats = |spot, marker| signal_nats(model, moment, spot, marker);
+        let grown = self.branches.grow(&around, &origin.prior.component, signal_nats);
+        self.tried.clear();
+        self.tried
+            .extend(grown.iter().map(|branch| branch.pairs).filter(|pairs| !pairs.as_slice().is_empty()));
+        for index in 0..self.tried.len() {
+            self.try_way(scene, origin, self.tried[index], origin.prior.component);
+        }
+    }
+
+    /// Updates a vehicle with a way, and keeps it.
+    fn try_way(&mut self, scene: &Scene<'_>, origin: &Origin<'_>, pairs: Pairs, start: Component) {
+        let Scene { model, moment, .. } = *scene;
+        self.markers.clear();
+        self.markers.resize(self.observations.len(), None);
+        let (mut spots, mut signals): (Spots, f64) = (0, 0.0);
+        for &(spot, marker) in pairs.as_slice() {
+            self.markers[usize::from(spot)] = Some(marker);
+            let Some(bit) = self.bit(usize::from(spot)) else { return };
+            spots |= 1 << bit;
+            signals += signal_nats(model, moment, usize::from(spot), usize::from(marker));
+        }
+        self.gather_others(scene, &start);
+        let updated =
+            self.measured(scene, &start.pose, |measurement| origin.prior.update(measurement, &start));
+        let Some(updated) = updated else { return };
+        let Origin { vehicle, from, log_weight, .. } = *origin;
+        if self.all.iter().zip(&self.choices).any(|(way, choice)| {
+            (choice.vehicle, choice.spots, way.from) == (vehicle, spots, from)
+                && is_same(&way.component, &updated.component)
+        }) {
+            return;
+        }
+        let log_weight = log_weight + updated.log_evidence + self.clutter_nats - signals;
+        self.all.push(Way { component: updated.component, pairs, log_power: updated.log_power, from });
+        self.choices.push(Choice { vehicle, spots, log_weight });
+    }
+
+    /// The bit of a spot; `None` where there are none left.
+    fn bit(&mut self, spot: usize) -> Option<u32> {
+        if self.bits[spot].is_none() && self.used_bits < Spots::BITS {
+            self.bits[spot] = Some(self.used_bits);
+            self.used_bits += 1;
+        }
+        self.bits[spot]
+    }
+
+    /// Does something with what the spots say under the assignment in `markers`.
+    fn measured<T>(&self, scene: &Scene<'_>, near: &Pose, with: impl FnOnce(&Measurement<'_>) -> T) -> T {
+        let Scene { model, watched, .. } = *scene;
+        let visible = Visible {
+            faintest_light: model.faintest_light,
+            watched: Some(watched),
+            others: &self.others,
+            lit: &self.lit,
+        };
+        let known = Known { up: None, bounds: Interval::ANY, size: None, power: None, visible };
+        let seen = Seen {
+            airframe: &model.airframe,
+            settings: &model.pose,
+            per_frame: &self.per_frame,
+            observations: &self.observations,
+            whitened: &self.whitened,
+            known: &known,
+        };
+        with(&Measurement::new(&seen, &self.markers, near))
+    }
+
+    /// The directions of spots near a vehicle that are not its own.
+    fn gather_others(&mut self, scene: &Scene<'_>, component: &Component) {
+        let distance_m = component.pose.position_m.norm();
+        let ahead = component.pose.position_m / distance_m;
+        let reach_rad = NEAR_RADII * scene.model.airframe.max_radius_m() / distance_m;
+        self.others.clear();
+        for (spot, marker) in self.markers.iter().enumerate() {
+            let bearing = scene.moment.bearing(spot);
+            if marker.is_none() && (bearing.vector() - ahead).norm() < reach_rad {
+                self.others.push(*bearing);
+            }
+        }
+    }
+}
+
+/// Where a way comes from.
+struct Origin<'a> {
+    vehicle: usize,
+    from: usize,
+    /// Logarithm of how likely the vehicle is shown, as this distribution.
+    log_weight: f64,
+    prior: &'a Prior,
+}
+
+/// What it costs that a spot is a marker, for the signal that it blinks.
+fn signal_nats(model: &Model, moment: &Moment, spot: usize, marker: usize) -> f64 {
+    let Some(told) = moment.signals[spot] else { return 0.0 };
+    let carries = model.symmetry.carries(marker as u16, told.signal);
+    let probability = if carries { told.probability } else { 1.0 - told.probability };
+    (-libm::log(probability.max(1e-9))).clamp(0.0, WRONG_SIGNAL_NATS)
+}
+
+/// Whether two searches ended at one summit.
+fn is_same(a: &Component, b: &Component) -> bool {
+    let moved = (a.pose.position_m - b.pose.position_m).norm() / a.pose.position_m.norm();
+    let turn = (a.pose.camera_from_body.matrix() - b.pose.camera_from_body.matrix()).norm();
+    moved < 1e-2 && turn < 3e-2
+}

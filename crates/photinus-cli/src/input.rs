@@ -300,6 +300,7 @@ impl Entry {
             camera: None,
             time_s: frame.time_s,
             latency_s: None,
+            tracks: Vec::new(),
             source: frame.source.clone(),
             spots: Vec::new(),
             rejected: Vec::new(),

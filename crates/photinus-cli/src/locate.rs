@@ -3,10 +3,13 @@
 use std::path::{Path, PathBuf};
 
 use nalgebra::{Unit, Vector3};
+use photinus::airframe::Airframe;
 use photinus::camera::{Bearing, Camera};
+use photinus::frame::Mask;
 use photinus::locator::{Locator, LocatorError, Settings, Stage};
 use photinus::ranging::SpotCurve;
 use photinus::spots::Spot;
+use photinus::tracking::{self, Look, Tracker, TrackerError};
 use photinus_io::airframe::{AirframeFile, Tolerances};
 use photinus_io::calibration::{MountingFile, read_mounting};
 use photinus_io::dataset::{Dataset, DatasetCamera};
@@ -30,6 +33,8 @@ const EXAMPLES: &str = "\
 Examples:
   # a dataset folder says itself what camera and airframe are
   photinus locate recording --out results.jsonl
+  # follows neighbours from frame to frame
+  photinus locate recording --track --out results.jsonl
   # goes on where a stopped run ended
   photinus locate recording --out results.jsonl --resume
   photinus locate *.png --camera camera.txt --airframe quad.toml \\
@@ -88,6 +93,9 @@ pub(crate) struct Args {
     spot_options: SpotArgs,
     #[command(flatten)]
     output: OutputArgs,
+    /// Follow neighbours from frame to frame: where each is, how fast, and where it must be while it is hidden. Frames need times
+    #[arg(long)]
+    track: bool,
     /// Write a table with a row per neighbour; - is standard output
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
@@ -161,10 +169,27 @@ impl Args {
             let refuse = |error: LocatorError| Failure::Input(error.to_string());
             let mut locator =
                 Locator::new(camera.clone(), airframe, curve, self.settings(tolerances)).map_err(refuse)?;
-            locator.set_mask(mask_of(mask.as_ref()).cloned()).map_err(refuse)?;
-            Ok(View { camera, mounting, locator })
+            let mask = mask_of(mask.as_ref());
+            locator.set_mask(mask.cloned()).map_err(refuse)?;
+            let tracker =
+                self.track.then(|| self.tracker(&camera, airframe, tolerances, mask)).transpose()?;
+            Ok(View { camera, mounting, locator, tracker })
         };
         cameras.into_iter().zip(masks).map(view).collect()
+    }
+
+    fn tracker(
+        &self,
+        camera: &Camera,
+        airframe: &Airframe,
+        tolerances: &Tolerances,
+        mask: Option<&Mask>,
+    ) -> std::result::Result<Tracker, Failure> {
+        let refuse = |error: TrackerError| Failure::Input(error.to_string());
+        let (located, settings) = (self.settings(tolerances), tracking::Settings::default());
+        let mut tracker = Tracker::new(camera.clone(), airframe, &located, settings).map_err(refuse)?;
+        tracker.set_mask(mask.cloned()).map_err(refuse)?;
+        Ok(tracker)
     }
 
     fn spot_curve(
@@ -192,6 +217,7 @@ struct View {
     camera: Camera,
     mounting: Option<MountingFile>,
     locator: Locator,
+    tracker: Option<Tracker>,
 }
 
 /// Runs the command.
@@ -219,6 +245,9 @@ impl run::Work for Locating<'_> {
         let view = &mut self.views[entry.camera];
         entry.gravity = self.gravity.or(entry.gravity);
         fill(entry, &mut view.locator, self.airframe, clock)?;
+        if let Some(tracker) = &mut view.tracker {
+            follow(entry, &view.locator, tracker, self.airframe)?;
+        }
         if let Some(mounting) = &view.mounting {
             entry.record.put_mounting(mounting);
         }
@@ -260,6 +289,31 @@ pub(crate) fn fill(
         }
     };
     entry.record.put_located(located, airframe);
+    Ok(())
+}
+
+/// Completes the record of a frame that was located with who is followed.
+///
+/// # Errors
+/// [`Error`] when the frame has no time, or its time is not after that of the frame before.
+fn follow(entry: &mut Entry, locator: &Locator, tracker: &mut Tracker, airframe: &str) -> Result<()> {
+    let refused = |what: String, advice: &str| Error::format(&entry.record.source, what).advise(advice);
+    let time_s = entry.record.time_s.ok_or_else(|| {
+        let advice = "frames of a dataset or a video have times (photinus convert makes one of images); or leave --track out";
+        refused("the frame has no time, and who is followed depends on it".to_owned(), advice)
+    })?;
+    let look = Look {
+        time_s,
+        turned: None,
+        gravity: entry.gravity,
+        located: locator.located(),
+        signals: &[],
+        lit: &[],
+    };
+    let tracked = tracker
+        .track(&look)
+        .map_err(|error| refused(error.to_string(), "see the times of the frames, or leave --track out"))?;
+    entry.record.put_tracked(tracked, airframe);
     Ok(())
 }
 

@@ -90,6 +90,7 @@ pub(crate) fn record(frame: u64, spots: Vec<SpotRecord>, neighbours: Vec<Neighbo
         camera: None,
         time_s: Some(frame as f64 / 10.0),
         latency_s: None,
+        tracks: Vec::new(),
         source: String::new(),
         spots,
         rejected: vec![],

@@ -66,6 +66,7 @@ fn record() -> FrameRecord {
         camera: None,
         time_s: Some(0.283),
         latency_s: None,
+        tracks: Vec::new(),
         source: "images/000017.png".to_owned(),
         spots: vec![
             spot(280.0, 231.0),

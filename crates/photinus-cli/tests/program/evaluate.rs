@@ -67,6 +67,7 @@ fn result(frame: u64) -> FrameRecord {
         spots: vec![],
         rejected: vec![],
         neighbours: vec![neighbour],
+        tracks: vec![],
     }
 }
 

@@ -33,3 +33,4 @@ mod simulate;
 mod soak;
 mod stage;
 mod stopped;
+mod track;

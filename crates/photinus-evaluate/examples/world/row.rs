@@ -143,6 +143,7 @@ fn record_of(frame: &Frame) -> FrameRecord {
         camera: None,
         time_s: frame.time_s,
         latency_s: None,
+        tracks: Vec::new(),
         source: String::new(),
         spots: Vec::new(),
         rejected: Vec::new(),

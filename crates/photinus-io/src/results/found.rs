@@ -7,9 +7,12 @@ use photinus::locator::{self, Located, Neighbour, Sighting};
 use photinus::optics::Measured;
 use photinus::pose::Mode;
 use photinus::spots::{Extent, Rejected, Spot};
+use photinus::tracking::{Track, Tracked};
 
 use super::record::Mode as ModeRecord;
-use super::{Distance, FrameRecord, Misfit, NeighbourRecord, RejectedRecord, RunnerUp, SpotRecord};
+use super::{
+    Distance, FrameRecord, Misfit, NeighbourRecord, RejectedRecord, RunnerUp, SpotRecord, TrackRecord,
+};
 
 impl FrameRecord {
     /// Puts what was located in the place of the spots and neighbours that the record holds; what was rejected joins what
@@ -19,6 +22,36 @@ impl FrameRecord {
         self.rejected.extend(located.rejected.iter().map(RejectedRecord::from));
         let record = |neighbour| NeighbourRecord::new(neighbour, located, airframe);
         self.neighbours = located.neighbours.iter().map(record).collect();
+    }
+
+    /// Puts in who is followed, and for each neighbour which of them it is: the one that was seen by most of its spots.
+    pub fn put_tracked(&mut self, tracked: &Tracked, airframe: &str) {
+        self.tracks = tracked.tracks.iter().map(|track| TrackRecord::new(track, tracked, airframe)).collect();
+        for neighbour in &mut self.neighbours {
+            let common = |track: &TrackRecord| {
+                track.spots.iter().filter(|spot| neighbour.spots.contains(spot)).count()
+            };
+            let most = self.tracks.iter().filter(|track| common(track) > 0).max_by_key(|track| common(track));
+            neighbour.track = most.map(|track| track.track);
+        }
+    }
+}
+
+impl TrackRecord {
+    fn new(track: &Track, tracked: &Tracked, airframe: &str) -> Self {
+        Self {
+            track: track.id,
+            airframe: airframe.to_owned(),
+            probability: track.existence,
+            predicted: track.is_predicted,
+            spots: tracked.members(track).to_vec(),
+            position_m: track.position_m.into(),
+            position_covariance_m2: rows(&track.position_covariance_m2),
+            velocity_m_s: track.velocity_m_s.into(),
+            velocity_covariance_m2_s2: rows(&track.velocity_covariance_m2_s2),
+            orientation_xyzw: xyzw(&track.camera_from_body),
+            orientation_covariance_rad2: rows(&track.orientation_covariance_rad2),
+        }
     }
 }
 

@@ -12,7 +12,9 @@ mod spot;
 
 pub use csv::CsvWriter;
 pub use json::{ResultsReader, ResultsWriter, read_results};
-pub use record::{Distance, FrameRecord, Misfit, Mode, NeighbourRecord, RejectedRecord, RunnerUp};
+pub use record::{
+    Distance, FrameRecord, Misfit, Mode, NeighbourRecord, RejectedRecord, RunnerUp, TrackRecord,
+};
 pub use spot::{DEFAULT_SIGMA_PX, SpotRecord};
 
 #[cfg(test)]

@@ -32,6 +32,37 @@ pub struct FrameRecord {
     /// Who is there.
     #[serde(default)]
     pub neighbours: Vec<NeighbourRecord>,
+    /// Who is followed, where frames are followed: also those that are not seen in this one.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub tracks: Vec<TrackRecord>,
+}
+
+/// A vehicle that is followed from frame to frame, as it is at the time of the frame: relative to the camera, in axes that do not rotate and are the
+/// camera's at that time.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct TrackRecord {
+    /// The same as long as it is followed.
+    pub track: u64,
+    /// Name of its airframe.
+    pub airframe: String,
+    /// How likely it exists, 0 to 1.
+    pub probability: f64,
+    /// Whether none of its LEDs was seen in this frame.
+    pub predicted: bool,
+    /// Indices of the spots that it was seen by.
+    pub spots: Vec<usize>,
+    /// Its origin, m.
+    pub position_m: [f64; 3],
+    /// Covariance of the position, m^2.
+    pub position_covariance_m2: [[f64; 3]; 3],
+    /// How that changes, m/s.
+    pub velocity_m_s: [f64; 3],
+    /// Covariance of the velocity, m^2/s^2.
+    pub velocity_covariance_m2_s2: [[f64; 3]; 3],
+    /// Its attitude, camera_from_body as x, y, z, w.
+    pub orientation_xyzw: [f64; 4],
+    /// Covariance of the attitude as a small rotation in the body frame, rad^2.
+    pub orientation_covariance_rad2: [[f64; 3]; 3],
 }
 
 /// Something bright that is not taken for a marker.

@@ -61,6 +61,7 @@ fn record() -> FrameRecord {
         camera: None,
         time_s: Some(0.283),
         latency_s: None,
+        tracks: Vec::new(),
         source: "images/000017.png".to_owned(),
         spots: vec![spot()],
         rejected: vec![rejected],

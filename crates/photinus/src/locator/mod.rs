@@ -121,6 +121,12 @@ impl Locator {
         self.inference.forget();
     }
 
+    /// What it told of the frame that it was handed last.
+    #[must_use]
+    pub fn located(&self) -> &Located {
+        &self.located
+    }
+
     /// The camera in use.
     pub fn camera(&self) -> &Camera {
         &self.camera

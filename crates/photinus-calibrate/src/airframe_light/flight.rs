@@ -102,10 +102,10 @@ impl Flight {
         Self { tracks, ..Self::new(airframe) }
     }
 
-    /// Settings to locate with, when lobes and powers are not known: brightness hardly counts.
+    /// Settings to locate with, when lobes and powers are not known: brightness hardly counts, and an airframe that is not as it is told is told as well.
     pub fn settings(settings: Settings) -> Settings {
         let pose = pose::Settings { unit_sigma: UNKNOWN_UNIT_SIGMA, ..settings.pose };
-        Settings { pose, ..settings }
+        Settings { pose, min_probability: 0.0, ..settings }
     }
 
     /// The airframe as it was located.

@@ -1,5 +1,6 @@
 //! The fault table: one thing wrong at a time, on two airframes.
 
+use photinus::airframe::Airframe;
 use photinus_sim::faults::{Fault, Lamp};
 
 use crate::priors::Build;
@@ -34,8 +35,18 @@ pub(crate) fn rows(eye: &Eye) -> Vec<Row> {
     let mut blinking = Row::plain("three that blink", eye, 4);
     blinking.vehicles = 3;
     blinking.build.blinks = true;
+    blinking.airframe = signalled(&blinking.airframe);
     rows.push(blinking);
     rows
+}
+
+/// An airframe of which each arm has a signal of its own.
+fn signalled(airframe: &Airframe) -> Airframe {
+    let mut leds = airframe.leds().to_vec();
+    for (signal, marker) in (0..).zip(airframe.markers()) {
+        marker.leds.iter().for_each(|&led| leds[led].signal = Some(signal));
+    }
+    Airframe::new(airframe.name(), leds).expect("the same markers")
 }
 
 fn injected() -> [(&'static str, Fault); 14] {

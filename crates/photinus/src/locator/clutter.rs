@@ -43,7 +43,8 @@ impl Surroundings<'_> {
     fn with_fixture(&self, log_of_others: f64, observation: usize) -> f64 {
         let sighting = &self.sightings[observation];
         let there = self.fixtures.density(sighting, observation) / rad2_per_px2(sighting);
-        libm::log(libm::exp(log_of_others) + there) + log_of_look(sighting)
+        let gain = libm::log(libm::exp(log_of_others) + there) - log_of_others;
+        log_of_others + gain.min(self.fixtures.log_odds(observation).max(0.0)) + log_of_look(sighting)
     }
 }
 

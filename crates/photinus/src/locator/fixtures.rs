@@ -15,6 +15,8 @@ const SAME_PX: f64 = 1.5;
 /// ... off by this standard deviation, px, and as bright within this of its logarithm.
 const SIGMA_PX: f64 = 0.5;
 const LIGHT_SIGMA: f64 = 0.5;
+/// What stays is a neighbour at least so likely.
+const LEAST_DOUBT: f64 = 1e-4;
 
 /// A place in the image where clutter was.
 #[derive(Clone, Copy, Debug)]
@@ -22,7 +24,8 @@ struct Fixture {
     u: f64,
     v: f64,
     log_light: Option<f64>,
-    /// How often it was there, of the frames that are remembered.
+    /// How often something was there, of the frames that are remembered, and how often that was clutter.
+    seen: f64,
     times: f64,
 }
 
@@ -62,6 +65,16 @@ impl Fixtures {
         self.nearest[observation].map_or(0.0, |index| self.list[index].times / (self.frames + 1.0))
     }
 
+    /// Logarithm of the odds that what was at an observation's place before is clutter. A neighbour that hovers before a camera that hovers stays where it is,
+    /// too: that something is there again makes it no more likely clutter than it was.
+    pub(super) fn log_odds(&self, observation: usize) -> f64 {
+        self.nearest[observation].map_or(0.0, |index| {
+            let Fixture { seen, times, .. } = self.list[index];
+            let clutter = (times / seen.max(f64::MIN_POSITIVE)).clamp(0.0, 1.0 - LEAST_DOUBT);
+            libm::log(clutter.max(f64::MIN_POSITIVE) / (1.0 - clutter))
+        })
+    }
+
     /// How dense clutter is at an observation for having been there before, per px^2 and per unit of the logarithm of light.
     pub(super) fn density(&self, sighting: &Sighting, observation: usize) -> f64 {
         let Some(index) = self.nearest[observation] else { return 0.0 };
@@ -81,7 +94,10 @@ impl Fixtures {
     pub(super) fn remember(&mut self, sightings: &[Sighting], clutter: impl Fn(usize) -> f64) {
         let kept = 1.0 - 1.0 / Memory::FRAMES as f64;
         self.frames = self.frames * kept + 1.0;
-        self.list.iter_mut().for_each(|fixture| fixture.times *= kept);
+        for fixture in &mut self.list {
+            fixture.seen *= kept;
+            fixture.times *= kept;
+        }
         for (index, sighting) in sightings.iter().enumerate() {
             let share = clutter(index);
             match self.nearest[index] {
@@ -96,6 +112,7 @@ impl Fixtures {
             u: sighting.spot.centre.u,
             v: sighting.spot.centre.v,
             log_light: sighting.log_light.map(|light| light.value),
+            seen: 1.0,
             times,
         };
         if self.list.len() < MOST {
@@ -116,6 +133,7 @@ impl Fixture {
 
     /// Is there once more: its place and light are the means of all times.
     fn see(&mut self, sighting: &Sighting, share: f64) {
+        self.seen += 1.0;
         self.times += share;
         if self.times <= 0.0 {
             return;

@@ -13,6 +13,7 @@
 //! is; the bounds are strict and come from [`crate::ranging::DistanceBounds`] and spot sizes alone.
 
 mod alternatives;
+mod blinking;
 mod brightness;
 mod candidates;
 mod cells;

@@ -8,6 +8,7 @@ use core::f64::consts::TAU;
 use nalgebra::{Matrix3, Unit, Vector3};
 
 use super::Sighting;
+use super::blinking::lit;
 use super::candidates::{Candidates, Told};
 use super::context::Context;
 use super::grouping::CLEAR_SPOTS;
@@ -45,6 +46,7 @@ pub(super) struct Poser {
     pairs: Pairs,
     scale_sigma: f64,
     visible: Visible<'static>,
+    lit: Vec<f64>,
     within: Vec<usize>,
     others: Vec<Bearing>,
 }
@@ -63,6 +65,7 @@ impl Poser {
             pairs: Pairs::new(airframe),
             scale_sigma: settings.scale_sigma,
             visible: Visible { faintest_light: faintest_light(spots), watched: None, others: &[], lit: &[] },
+            lit: lit(airframe),
             within: Vec::with_capacity(airframe.markers().len()),
             others: Vec::with_capacity(512),
         })
@@ -119,7 +122,8 @@ impl Poser {
         self.gather_others(context, group, matcher);
         // Who tells the light of the frame's LEDs is not told by it.
         let power = if group.len() < CLEAR_SPOTS { context.power } else { None };
-        let visible = Visible { watched: Some(context.watched), others: &self.others, ..self.visible };
+        let visible =
+            Visible { watched: Some(context.watched), others: &self.others, lit: &self.lit, ..self.visible };
         let believed = told_apart(sightings, group, matcher.reach_m(), &bounds);
         let known = Known { up, bounds: believed, size, power, visible };
         let posterior = self.estimator.estimate(&self.observations, &mut self.hypotheses, &known);

@@ -149,8 +149,8 @@ struct Seen {
 }
 
 impl Views {
-    /// What `airframe` can look like, where a bright marker that is not seen costs `unseen_nats`.
-    pub(super) fn of(airframe: &Airframe, symmetry: &Symmetry, unseen_nats: f64) -> Self {
+    /// What `airframe` can look like, where a bright marker that is not seen costs `unseen_nats`, by marker.
+    pub(super) fn of(airframe: &Airframe, symmetry: &Symmetry, unseen_nats: &[f64]) -> Self {
         let sector_rad = TAU / symmetry.turns() as f64;
         let yaws = (sector_rad / YAW_STEP_RAD).ceil().max(1.0) as usize;
         let mut views =
@@ -185,9 +185,9 @@ impl Views {
         symmetry: &Symmetry,
         towards: [f64; 2],
         log_prior: f64,
-        unseen_nats: f64,
+        unseen_nats: &[f64],
     ) {
-        let cost_of_unseen = |seen: &Seen| unseen_nats * (seen.intensity / BRIGHT).min(1.0);
+        let cost_of_unseen = |seen: &Seen| unseen_nats[seen.marker] * (seen.intensity / BRIGHT).min(1.0);
         self.most_visible = self.most_visible.max(seen.len());
         let all_unseen_nats: f64 = seen.iter().map(cost_of_unseen).sum();
         let brightest = seen.iter().map(cost_of_unseen).fold(0.0, f64::max);

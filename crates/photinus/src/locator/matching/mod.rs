@@ -15,6 +15,7 @@ use core::f64::consts::TAU;
 use nalgebra::Vector2;
 
 use super::Sighting;
+use super::blinking::lit;
 use super::context::Context;
 use super::posing::LOG_RANGE;
 use super::views::{Arrangement, ELEVATION_STEP_RAD, Spread, Views};
@@ -67,18 +68,19 @@ impl Matcher {
         believed: &pose::Settings,
         faintest_light: f64,
     ) -> Self {
-        let unseen_nats = -libm::log(believed.missed);
+        let unseen_nats: Vec<f64> =
+            lit(airframe).iter().map(|lit| -libm::log(1.0 - lit * (1.0 - believed.missed))).collect();
         let grid_rad = ELEVATION_STEP_RAD / 2.0;
         let symmetry = Symmetry::of(airframe);
         Self {
-            views: Views::of(airframe, &symmetry, unseen_nats),
+            views: Views::of(airframe, &symmetry, &unseen_nats),
             triples: Triples::of(airframe, &symmetry),
             symmetry,
             bounds: DistanceBounds::new(airframe, max_tilt_rad),
             // The grid of views adds half a step.
             tilt_sigma_rad: libm::hypot(believed.tilt_sigma_rad, grid_rad),
             log_flux_sigma: libm::hypot(LOG_FLUX_GRID, believed.unit_sigma),
-            unseen_nats,
+            unseen_nats: unseen_nats.iter().copied().fold(0.0, f64::max),
             log_faintest: libm::log(faintest_light),
             bearings: Vec::new(),
             places: Vec::new(),

@@ -3,6 +3,8 @@
 //! In: the observations of a frame. Out: of each, those near it, with how dense clutter is at it if the other one is clutter. Clumps have no scale of
 //! their own: a companion is as likely at any logarithm of distance, and about as bright.
 
+use core::f64::consts::{PI, TAU};
+
 use super::Sighting;
 use super::cells::Cells;
 
@@ -48,7 +50,7 @@ impl Companions {
     /// Finds them in an image of `size` (width, height) px. Without `with_light` the density is one of places alone.
     pub(super) fn find(&mut self, sightings: &[Sighting], size: [usize; 2], with_light: bool) {
         let per_px2 = sightings.len() as f64 / (size[0] * size[1]) as f64;
-        let reach_px = (MOST_NEAR / (core::f64::consts::PI * per_px2)).sqrt().clamp(NEAREST_PX, FARTHEST_PX);
+        let reach_px = (MOST_NEAR / (PI * per_px2)).sqrt().clamp(NEAREST_PX, FARTHEST_PX);
         let cells = Cells::new(size, reach_px);
         self.sort_into(&cells, sightings);
         self.list.clear();
@@ -102,14 +104,16 @@ fn apart_px(a: &Sighting, b: &Sighting) -> f64 {
 
 /// Even over the logarithm of distance, and log-normal in light.
 fn density(gap_px: f64, own: &Sighting, other: &Sighting, with_light: bool) -> f64 {
-    use core::f64::consts::TAU;
     let gap_px = gap_px.max(NEAREST_PX);
     let place = COMPANIONS / (TAU * libm::log(FARTHEST_PX / NEAREST_PX) * gap_px * gap_px);
-    match own.log_light.zip(other.log_light).filter(|_| with_light) {
-        None => place,
-        Some((own, other)) => {
-            let off = (own.value - other.value) / LIGHT_SIGMA;
-            place * libm::exp(-0.5 * off * off) / (LIGHT_SIGMA * TAU.sqrt())
-        }
-    }
+    let lights = own.log_light.zip(other.log_light).filter(|_| with_light);
+    about_as_bright(place, lights.map(|(own, other)| own.value - other.value), LIGHT_SIGMA)
+}
+
+/// A density of places, of clutter about as bright as something: log-normal where it is known how much brighter it is.
+pub(super) fn about_as_bright(place: f64, brighter: Option<f64>, sigma: f64) -> f64 {
+    brighter.map_or(place, |brighter| {
+        let off = brighter / sigma;
+        place * libm::exp(-0.5 * off * off) / (sigma * TAU.sqrt())
+    })
 }

@@ -6,6 +6,7 @@
 use core::f64::consts::TAU;
 
 use super::Sighting;
+use super::companions::about_as_bright;
 use super::memory::Memory;
 
 /// Most places that are remembered: the rarest gives way.
@@ -81,13 +82,8 @@ impl Fixtures {
         let fixture = &self.list[index];
         let off = fixture.gap_px(sighting) / SIGMA_PX;
         let place = self.share(observation) * libm::exp(-0.5 * off * off) / (TAU * SIGMA_PX * SIGMA_PX);
-        match fixture.log_light.zip(sighting.log_light) {
-            None => place,
-            Some((before, now)) => {
-                let off = (now.value - before) / LIGHT_SIGMA;
-                place * libm::exp(-0.5 * off * off) / (LIGHT_SIGMA * TAU.sqrt())
-            }
-        }
+        let lights = fixture.log_light.zip(sighting.log_light);
+        about_as_bright(place, lights.map(|(before, now)| now.value - before), LIGHT_SIGMA)
     }
 
     /// Remembers where a frame had clutter.

@@ -4,6 +4,8 @@ use std::fmt;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
+use crate::content::ContentError;
+
 /// Shorthand for a result with this crate's [`Error`].
 pub type Result<T> = std::result::Result<T, Error>;
 
@@ -25,6 +27,9 @@ pub struct Error {
 pub enum Place {
     /// A line, counted from 1.
     Line(usize),
+    /// A byte of a line, both counted from 1.
+    #[expect(missing_docs, reason = "the names say it")]
+    Column { line: usize, column: usize },
     /// A key of a structured file, such as `led[3].axis`.
     Key(String),
     /// A frame of a stream, counted from 0.
@@ -44,6 +49,9 @@ pub enum Cause {
     /// The text or bytes do not follow the format.
     #[error("{0}")]
     Format(String),
+    /// The text is of the format, and its keys or values are not those that belong there.
+    #[error("{0}")]
+    Content(#[from] ContentError),
     /// The pixels do not make a frame.
     #[error("{0}")]
     Frame(#[from] photinus::frame::FrameError),
@@ -99,6 +107,7 @@ impl fmt::Display for Place {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Place::Line(line) => write!(f, "line {line}"),
+            Place::Column { line, column } => write!(f, "line {line}: column {column}"),
             Place::Key(key) => write!(f, "`{key}`"),
             Place::Frame(frame) => write!(f, "frame {frame}"),
         }
@@ -126,30 +135,4 @@ impl std::error::Error for Error {
     fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
         Some(&self.cause)
     }
-}
-
-/// What is wrong with JSON, without the place that the message ends in.
-pub(crate) fn json_reason(error: &serde_json::Error) -> String {
-    in_plain_words(error.to_string().split(" at line ").next().unwrap_or_default())
-}
-
-/// What a deserializer says, in the words of a file rather than of Rust.
-pub(crate) fn in_plain_words(reason: &str) -> String {
-    let mut words = reason.trim().replace('\n', ", ").replace(" field `", " key `");
-    for (rust, plain) in [
-        ("EOF while parsing", "it ends inside"),
-        ("non-finite float", "no finite number:"),
-        (" rejected by the configured policy", ""),
-        (", set DuplicateKeyPolicy in Options if acceptable", ""),
-        ("invalid floating point", "no number where one is expected"),
-        ("invalid u64", "no whole number, 0 or more, where one is expected"),
-        ("expected f64", "expected a number"),
-        ("expected u8", "expected a whole number of 0 to 255"),
-        ("expected u32", "expected a whole number, 0 or more"),
-        ("expected u64", "expected a whole number, 0 or more"),
-        ("expected usize", "expected a whole number, 0 or more"),
-    ] {
-        words = words.replace(rust, plain);
-    }
-    words
 }

@@ -16,6 +16,7 @@ pub mod airframe;
 pub mod calibration;
 pub mod camera;
 pub mod codes;
+mod content;
 pub mod corners;
 pub mod dataset;
 mod error;
@@ -34,4 +35,5 @@ pub mod video;
 pub mod whole;
 
 pub use camera::{CameraFile, CameraFormat, read_camera};
+pub use content::{ContentError, Found, Wanted};
 pub use error::{Cause, Error, Place, Result};

@@ -7,8 +7,7 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use crate::error::json_reason;
-use crate::{Cause, Error, Place, Result};
+use crate::{Cause, ContentError, Error, Place, Result};
 
 /// Longest line: thousands of spots.
 const MAX_LINE_BYTES: usize = 16 << 20;
@@ -63,7 +62,7 @@ impl<R: Read, T: DeserializeOwned> Iterator for JsonLines<R, T> {
                 let record = serde_json::from_slice(&line);
                 return Some(record.map_err(|error| match error.is_eof() && !line.ends_with(b"\n") {
                     true => self.cut(),
-                    false => self.refuse(&error),
+                    false => self.refuse::<T>(&line, &error),
                 }));
             }
         }
@@ -76,13 +75,13 @@ impl<R, T> JsonLines<R, T> {
         Error::new(&self.name, Cause::Cut).at(Place::Line(self.line)).advise("remove it, or run again")
     }
 
-    fn refuse(&self, error: &serde_json::Error) -> Error {
-        let advice = match error.classify() {
-            serde_json::error::Category::Eof => "the line is cut: remove it, or run again",
-            _ => "see docs/file-formats.md for an example",
+    fn refuse<Record: DeserializeOwned>(&self, line: &[u8], error: &serde_json::Error) -> Error {
+        let advice = match error.is_eof() {
+            true => "the line is cut: remove it, or run again",
+            false => "see docs/file-formats.md for an example",
         };
-        Error::format(&self.name, format!("column {}: {}", error.column(), json_reason(error)))
-            .at(Place::Line(self.line))
+        Error::new(&self.name, ContentError::of_json::<Record>(line, error))
+            .at(Place::Column { line: self.line, column: error.column() })
             .advise(advice)
     }
 }

@@ -158,7 +158,7 @@ mod tests {
             (format!("threshold = 0\n{UPPER}"), "`threshold`: every pixel reaches 0"),
             (
                 format!("threshold = 300\n{UPPER}"),
-                "line 1: invalid value: integer `300`, expected a whole number of 0 to 255",
+                "line 1: `300` where a whole number of 0 to 255 is expected",
             ),
             (LOWER.to_owned(), "line 1: missing key `upper`; add it"),
             (UPPER.replace("shift_m", "shift"), "line 1: unknown key `shift`"),

@@ -4,8 +4,7 @@ use std::path::Path;
 
 use serde::de::DeserializeOwned;
 
-use crate::error::in_plain_words;
-use crate::{Error, Place, Result};
+use crate::{ContentError, Error, Place, Result};
 
 /// Reads TOML into `T`, which lists the keys it knows and refuses others; `path` is for the messages.
 ///
@@ -13,15 +12,9 @@ use crate::{Error, Place, Result};
 /// [`Error`] with the line for what is no TOML, for unknown and missing keys, and for values of another kind.
 pub fn parse<T: DeserializeOwned>(text: &str, path: &Path) -> Result<T> {
     toml::from_str(text).map_err(|error| {
-        let reason = in_plain_words(error.message());
-        let advice = if reason.starts_with("unknown key") {
-            "correct its name or remove it"
-        } else if reason.starts_with("missing key") {
-            "add it"
-        } else {
-            "correct it there; docs/file-formats.md has an example"
-        };
-        let error_at = Error::format(path, reason).advise(advice);
+        let cause = ContentError::of::<T>(toml::from_str(text).ok(), || error.message().to_owned());
+        let advice = cause.advice().unwrap_or("correct it there; docs/file-formats.md has an example");
+        let error_at = Error::new(path, cause).advise(advice);
         match error.span() {
             Some(span) => error_at.at(Place::Line(line_of(text, span.start))),
             None => error_at,
@@ -58,7 +51,7 @@ mod tests {
         assert_eq!(message("\nname = \"a\"\n"), "t.toml, line 1: missing key `width`; add it");
         assert!(
             message("width = -1")
-                .contains("line 1: invalid value: integer `-1`, expected a whole number, 0 or more")
+                .contains("line 1: `-1` where a whole number, 0 or more, is expected; correct")
         );
         assert!(message("width = 1\nwidth = 2").starts_with("t.toml, line 2: duplicate key"));
         assert!(message("width = [[[").starts_with("t.toml, line 1: "));

@@ -7,9 +7,9 @@ use super::Calibration;
 use crate::adjust::Cholesky;
 use crate::lens::{AFFINE, CENTRE, Lens, MOST_PARAMETERS, RADIAL};
 
-/// A camera of model OCam that agrees with the calibrated one over its field.
+/// A camera of another model that agrees with the given one over its field.
 #[derive(Clone, Debug)]
-pub struct OcamExport {
+pub struct Export {
     /// The camera.
     pub camera: Camera,
     /// Largest angle between the two, rad.
@@ -25,9 +25,12 @@ pub enum ExportError {
         /// Field limit, rad.
         limit_rad: f64,
     },
-    /// The polynomial makes no camera.
-    #[error("the polynomial that follows this lens makes no camera: {0}")]
-    Camera(#[from] CameraError),
+    /// No Kannala-Brandt lens without shear follows the camera.
+    #[error("no Kannala-Brandt lens follows this camera: the nearest is {:.1} mrad off", 1e3 * max_off_rad)]
+    NoKannalaBrandt {
+        /// How far off the nearest is, rad; infinite where there is none at all.
+        max_off_rad: f64,
+    },
 }
 
 /// The model of `photinus`, and how its parameters (rows) follow from those of the lens (columns).
@@ -77,7 +80,7 @@ impl Calibration {
     ///
     /// # Errors
     /// As [`ocam_of`].
-    pub fn ocam(&self) -> Result<OcamExport, ExportError> {
+    pub fn ocam(&self) -> Result<Export, ExportError> {
         ocam_of(self.camera())
     }
 }
@@ -87,9 +90,9 @@ impl Calibration {
 ///
 /// # Errors
 /// [`ExportError`] when no polynomial follows the lens over its field.
-pub fn ocam_of(camera: &Camera) -> Result<OcamExport, ExportError> {
+pub fn ocam_of(camera: &Camera) -> Result<Export, ExportError> {
     if let Model::OCam(_) = camera.model() {
-        return Ok(OcamExport { camera: camera.clone(), max_off_rad: 0.0 });
+        return Ok(Export { camera: camera.clone(), max_off_rad: 0.0 });
     }
     let limit_rad = camera.field_limit_rad();
     let nothing = ExportError::NoPolynomial { limit_rad };
@@ -114,7 +117,7 @@ pub fn ocam_of(camera: &Camera) -> Result<OcamExport, ExportError> {
         .collect();
     curve.sort_by(|a, b| a.0.total_cmp(&b.0));
     let radius_px = curve.last().ok_or(nothing.clone())?.0;
-    let mut best: Option<OcamExport> = None;
+    let mut best: Option<Export> = None;
     for degree in DEGREES {
         let Some(direct) = even_polynomial(&curve, radius_px, degree) else { continue };
         let Ok(lens) = OCam::new(&direct, centre, stretch) else { continue };
@@ -124,7 +127,7 @@ pub fn ocam_of(camera: &Camera) -> Result<OcamExport, ExportError> {
         };
         let max_off_rad = largest_off_rad(&seen, &export);
         if best.as_ref().is_none_or(|best| max_off_rad < best.max_off_rad) {
-            best = Some(OcamExport { camera: export, max_off_rad });
+            best = Some(Export { camera: export, max_off_rad });
         }
         if max_off_rad < GOOD_ENOUGH_RAD {
             break;
@@ -134,7 +137,7 @@ pub fn ocam_of(camera: &Camera) -> Result<OcamExport, ExportError> {
 }
 
 /// Places all over the image that have a bearing.
-fn places(camera: &Camera) -> impl Iterator<Item = (Pixel, Bearing)> {
+pub(super) fn places(camera: &Camera) -> impl Iterator<Item = (Pixel, Bearing)> {
     let along = |side: usize, step: usize, steps: usize| (side - 1) as f64 * step as f64 / (steps - 1) as f64;
     let [columns, rows] = PLACES;
     (0..columns * rows).filter_map(move |place| {
@@ -147,7 +150,7 @@ fn places(camera: &Camera) -> impl Iterator<Item = (Pixel, Bearing)> {
 }
 
 /// The largest angle between what two cameras see at a place; a place where one is blind tells nothing.
-fn largest_off_rad(seen: &[(Pixel, Bearing)], other: &Camera) -> f64 {
+pub(super) fn largest_off_rad(seen: &[(Pixel, Bearing)], other: &Camera) -> f64 {
     let off = |(pixel, bearing): &(Pixel, Bearing)| {
         let apart = bearing.vector() - other.bearing(*pixel)?.vector();
         // The chord of a small angle, without the loss of digits of its cosine.

@@ -119,7 +119,7 @@ fn lobes_and_powers_that_cannot_be_are_refused_with_their_key() {
         ),
         ("0.002", "-1", "quad, `position_sigma_m`: -1 is no standard deviation that can be; give metres"),
         ("0.03", "nan", "quad, `power_sigma`: NaN is no standard deviation that can be; give a share"),
-        ("{ cosine_power = 3.0 }", "3", "quad, line 8: invalid type: integer `3`, expected a name of a lobe"),
+        ("{ cosine_power = 3.0 }", "3", "quad, line 8: `3` where a name of a lobe"),
     ] {
         let message = message(&SHINING.replace(from, to));
         assert!(message.starts_with(reason), "{message}");
@@ -183,11 +183,11 @@ fn errors_of_a_toml_name_the_key() {
             "sginal",
             "quad, line 11: unknown key `sginal`, expected one of `position_m`, `axis`, `lobe`, `signal`",
         ),
-        ("signal = 3", "signal = -3", "quad, line 11: invalid value: integer `-3`"),
-        ("\"omni\"", "\"ring\"", "quad, line 10: unknown variant `ring`, expected `lambertian` or `omni`"),
+        ("signal = 3", "signal = -3", "quad, line 11: `-3` where a whole number, 0 or more, is expected"),
+        ("\"omni\"", "\"ring\"", "quad, line 10: unknown name `ring`, expected `lambertian` or `omni`"),
         ("lobe = \"omni\"", "", "quad, line 7: missing key `lobe`; add it"),
         ("name = \"pair\"", "name = \"\"", "quad, `name`: the name is empty; name the airframe"),
-        ("[0.4, 0.0, 0]", "[0.4, 0.0]", "quad, line 4: invalid length 2"),
+        ("[0.4, 0.0, 0]", "[0.4, 0.0]", "quad, line 4: a list of 2 where a list of 3 is expected"),
         (
             "name = \"pair\"",
             "name = \"a\"\nring = {arms=3,radius_m=1,leds_per_arm=1,splay_deg=0}",

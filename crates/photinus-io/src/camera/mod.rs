@@ -1,7 +1,7 @@
 //! Camera calibrations: every format that users have, told apart by content.
 //!
-//! A file enters; a checked [`Camera`] leaves, with what is odd about the file. OCamCalib text and Photinus's own TOML
-//! are written, too. Every format may carry a field limit, `field_limit_deg` (in OCamCalib text inside a comment): without
+//! A file enters; a checked [`Camera`] leaves, with what is odd about the file. Photinus's own TOML, OCamCalib
+//! text and the YAML formats are written, too. Every format may carry a field limit, `field_limit_deg` (in OCamCalib text inside a comment): without
 //! one the field ends at the farthest corner of the image.
 //!
 //! Photinus TOML, one table of plain keys:
@@ -32,6 +32,7 @@ mod own_toml;
 mod pyocamcalib;
 mod uvdar_yaml;
 mod yaml;
+mod yaml_write;
 
 use std::path::Path;
 
@@ -47,6 +48,7 @@ pub use ocam_write::write_ocam_text;
 pub use own_toml::{parse_camera_toml, write_calibrated_camera_toml, write_camera_toml};
 pub use pyocamcalib::parse_pyocamcalib;
 pub use uvdar_yaml::parse_uvdar_yaml;
+pub use yaml_write::{CameraYaml, write_camera_yaml};
 
 /// A camera as a file gave it.
 #[derive(Clone, Debug)]
@@ -165,11 +167,6 @@ impl CameraFile {
 
 /// What to do about a value that no calibration has.
 const RENEW: &str = "correct it there, or export the calibration again";
-
-/// What to do about a text that a parser refused.
-fn advice_for(reason: &str) -> &'static str {
-    if reason.starts_with("missing key") { "add it" } else { RENEW }
-}
 
 /// A camera error in a file, with what to do about it.
 fn camera_error(path: &Path, error: CameraError) -> Error {

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::io::Write;
 use std::path::Path;
 
-use photinus::camera::{Camera, Model};
+use photinus::camera::{Camera, Model, OCam};
 
 use super::inverse::{Curve, InverseReport};
 use super::numbers::degrees;
@@ -29,17 +29,7 @@ pub fn write_ocam_text(camera: &Camera, to: &mut impl Write, path: &Path) -> Res
         return Err(Error::format(path, "only a camera of model ocam can be written as OCamCalib text")
             .advise(INSTEAD));
     };
-    let stretch = lens.stretch();
-    let scale = stretch.m22;
-    if scale <= 0.0 {
-        return Err(Error::format(path, "the stretch matrix turns the image over: c, d, e cannot hold it")
-            .advise(INSTEAD));
-    }
-    let (inverse, report) = Curve::of(camera, lens).fit(GOOD_ENOUGH_PX / scale);
-    let report = InverseReport { max_px: report.max_px * scale, rms_px: report.rms_px * scale, ..report };
-    // radii grow by `scale`: z(r) keeps its shape when term k shrinks by scale^(k-1)
-    let direct: Vec<f64> = lens.direct().iter().zip(-1..).map(|(a, power)| a / scale.powi(power)).collect();
-    let inverse: Vec<f64> = inverse.iter().map(|a| a * scale).collect();
+    let Numbers { direct, inverse, affine, report } = Numbers::of(camera, lens, path)?;
     let centre = lens.centre();
     let limit = camera
         .stated_limit_rad()
@@ -57,14 +47,48 @@ pub fn write_ocam_text(camera: &Camera, to: &mut impl Write, path: &Path) -> Res
         counted(&inverse),
         centre.v,
         centre.u,
-        stretch.m11 / scale,
-        stretch.m12 / scale,
-        stretch.m21 / scale,
+        affine[0],
+        affine[1],
+        affine[2],
         camera.height(),
         camera.width(),
     );
     to.write_all(text.as_bytes()).map_err(|error| Error::new(path, error))?;
     Ok(report)
+}
+
+/// The numbers of an OCam lens as OCamCalib has them.
+pub(super) struct Numbers {
+    /// z(r), px, ascending powers of r.
+    pub(super) direct: Vec<f64>,
+    /// rho(theta), px, ascending powers of theta.
+    pub(super) inverse: Vec<f64>,
+    /// c, d, e.
+    pub(super) affine: [f64; 3],
+    /// How far the two polynomials are apart.
+    pub(super) report: InverseReport,
+}
+
+impl Numbers {
+    pub(super) fn of(camera: &Camera, lens: &OCam, path: &Path) -> Result<Self> {
+        let stretch = lens.stretch();
+        let scale = stretch.m22;
+        if scale <= 0.0 {
+            return Err(Error::format(
+                path,
+                "the stretch matrix turns the image over: c, d, e cannot hold it",
+            )
+            .advise(INSTEAD));
+        }
+        let (inverse, report) = Curve::of(camera, lens).fit(GOOD_ENOUGH_PX / scale);
+        Ok(Self {
+            // radii grow by `scale`: z(r) keeps its shape when term k shrinks by scale^(k-1)
+            direct: lens.direct().iter().zip(-1..).map(|(a, power)| a / scale.powi(power)).collect(),
+            inverse: inverse.iter().map(|a| a * scale).collect(),
+            affine: [stretch.m11, stretch.m12, stretch.m21].map(|term| term / scale),
+            report: InverseReport { max_px: report.max_px * scale, rms_px: report.rms_px * scale, ..report },
+        })
+    }
 }
 
 /// A block with its count, every digit kept.
@@ -79,7 +103,7 @@ fn counted(values: &[f64]) -> String {
 #[cfg(test)]
 mod tests {
     use nalgebra::Matrix2;
-    use photinus::camera::{OCam, Pixel};
+    use photinus::camera::Pixel;
 
     use super::super::parse_ocam_text;
     use super::*;

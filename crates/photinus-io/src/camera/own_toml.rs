@@ -286,16 +286,19 @@ mod tests {
         let cases = [
             (FILE.replace("301", "nan"), "cam.toml, line 5: NaN where a finite number is expected"),
             (FILE.replace("301", "1e400"), "cam.toml, line 5: "),
-            (FILE.replace("301", "\"a\""), "cam.toml, line 5: invalid type"),
-            (FILE.replace(", 301]", "]"), "cam.toml, line 5: invalid length"),
+            (FILE.replace("301", "\"a\""), "cam.toml, line 5: the text `a` where a number is expected"),
+            (FILE.replace(", 301]", "]"), "cam.toml, line 5: a list of 1 where a list of 2 is expected"),
             (FILE.replace("k = [", "kay = ["), "cam.toml, line 7: unknown key `kay`"),
             (FILE.replace("k = [", "#k = ["), "cam.toml: missing key `k`, which this model needs; add it"),
             (
                 FILE.replace("k = [", "radial = [1, 2, 3, 4, 5, 6]\nk = ["),
                 "cam.toml, `radial`: a camera of model kannala",
             ),
-            (FILE.replace("kannala_brandt", "fish"), "cam.toml, line 2: unknown variant `fish`"),
-            (FILE.replace("960", "-960"), "cam.toml, line 3: invalid value"),
+            (FILE.replace("kannala_brandt", "fish"), "cam.toml, line 2: unknown name `fish`"),
+            (
+                FILE.replace("960", "-960"),
+                "cam.toml, line 3: `-960` where a whole number, 0 or more, is expected",
+            ),
             (FILE.replace("[464.0, 461.0]", "[0, 461.0]"), "cam.toml: a focal length of 0 px"),
             (FILE.replace("-0.03", "-3"), "cam.toml: the angle off the axis stops growing"),
             (format!("{FILE}field_limit_deg = 0"), "cam.toml: a field limit of 0 deg"),

@@ -7,9 +7,8 @@ use photinus::camera::{Model, OCam, Pixel};
 use serde::Deserialize;
 
 use super::numbers::{Finite, values};
-use super::{CameraFile, CameraFormat, advice_for, camera_error};
-use crate::error::json_reason;
-use crate::{Error, Place, Result};
+use super::{CameraFile, CameraFormat, RENEW, camera_error};
+use crate::{ContentError, Error, Place, Result};
 
 #[derive(Deserialize)]
 struct Document {
@@ -34,9 +33,9 @@ struct Document {
 /// not make a camera.
 pub fn parse_pyocamcalib(text: &str, path: &Path) -> Result<CameraFile> {
     let document: Document = serde_json::from_str(text).map_err(|error| {
-        let reason = json_reason(&error);
-        let advice = advice_for(&reason);
-        Error::format(path, reason).at(Place::Line(error.line())).advise(advice)
+        let cause = ContentError::of_json::<Document>(text.as_bytes(), &error);
+        let advice = cause.advice().unwrap_or(RENEW);
+        Error::new(path, cause).at(Place::Line(error.line())).advise(advice)
     })?;
     let [height_px, width_px] = document.image_size.ok_or_else(|| {
         Error::format(path, "the file does not say how large the image is")

@@ -163,7 +163,7 @@ fn what_is_wrong_with_a_rig_is_named() {
     let error = DatasetInfo::parse(RIG, "d/dataset.toml").unwrap_err().to_string();
     assert!(error.starts_with("d/dataset.toml, `camera`: it lists cameras of a rig"), "{error}");
     let error = DatasetToml::parse("camera = 3\n", "d/dataset.toml").unwrap_err().to_string();
-    assert!(error.contains("line 1: ") && error.contains("expected a camera file"), "{error}");
+    assert!(error.contains("line 1: ") && error.contains("where a camera file"), "{error}");
 }
 
 #[test]

@@ -115,7 +115,8 @@ fn values_that_no_camera_has_are_refused_with_their_key() {
             .starts_with("d/dataset.toml, `camera`: the path is empty")
     );
     assert!(
-        info_message(&INFO.replace("1000.0", "\"1 ms\"")).starts_with("d/dataset.toml, line 3: invalid type")
+        info_message(&INFO.replace("1000.0", "\"1 ms\""))
+            .starts_with("d/dataset.toml, line 3: the text `1 ms` where a number is expected")
     );
 }
 

@@ -153,13 +153,13 @@ fn spots_that_are_none_are_refused_with_their_line() {
     for (spot, reason) in [
         ("{\"u_px\":1}", "missing key `v_px`"),
         ("{\"u_px\":-1e9,\"v_px\":2}", "a spot at (-1000000000, 2) px is in no image"),
-        ("{\"u_px\":1e999,\"v_px\":2}", "number out of range"),
-        ("{\"u_px\":null,\"v_px\":2}", "invalid type: null"),
+        ("{\"u_px\":1e999,\"v_px\":2}", "`1e999` is no JSON"),
+        ("{\"u_px\":null,\"v_px\":2}", "null where a number is expected"),
         ("{\"u_px\":1,\"v_px\":2,\"sigma_px\":0}", "sigma_px is not above 0"),
         ("{\"u_px\":1,\"v_px\":2,\"sigma_px\":\"a\"}", "sigma_px must be a number or [u, v]"),
         ("{\"u_px\":1,\"v_px\":2,\"covariance_px2\":[[1,2],[2,1]]}", "is no covariance"),
         ("{\"u_px\":1,\"v_px\":2,\"extent_px\":[3,2,1,2]}", "extent_px is no box"),
-        ("{\"u_px\":1,\"v_px\":2,\"peak\":300}", "invalid value: integer `300`"),
+        ("{\"u_px\":1,\"v_px\":2,\"peak\":300}", "`300` where a whole number of 0 to 255 is expected"),
     ] {
         let frames = read(&format!("{{\"spots\":[]}}\n{{\"spots\":[{spot}]}}\n{{\"spots\":[]}}\n"));
         assert_eq!((frames.len(), frames[2].as_ref().unwrap().frame), (3, Some(2)));

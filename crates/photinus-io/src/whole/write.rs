@@ -52,10 +52,9 @@ impl WholeFile {
             File::options().write(true).open(&target).map(Sink::Direct)
         } else {
             let prefix = prefix_of(&target);
-            let mut builder = Builder::new();
-            builder.prefix(&prefix).suffix(SUFFIX);
-            ordinary(&mut builder, 0o666);
-            builder.tempfile_in(folder_of(&target)).map(Sink::Beside)
+            let create = |path: &Path| File::options().write(true).create_new(true).open(path);
+            let made = Builder::new().prefix(&prefix).suffix(SUFFIX).make_in(folder_of(&target), create);
+            made.map(Sink::Beside)
         };
         let sink = sink.map_err(|error| refuse(path, error))?;
         Ok(Self { sink, target, existing })
@@ -79,14 +78,14 @@ impl WholeFile {
 impl Write for WholeFile {
     fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
         match &mut self.sink {
-            Sink::Beside(file) => file.write(bytes).map_err(plain),
+            Sink::Beside(file) => file.as_file_mut().write(bytes),
             Sink::Direct(file) => file.write(bytes),
         }
     }
 
     fn flush(&mut self) -> std::io::Result<()> {
         match &mut self.sink {
-            Sink::Beside(file) => file.flush().map_err(plain),
+            Sink::Beside(file) => file.as_file_mut().flush(),
             Sink::Direct(file) => file.flush(),
         }
     }
@@ -121,8 +120,11 @@ impl WholeFolder {
         let prefix = prefix_of(&target);
         let mut builder = Builder::new();
         builder.prefix(&prefix).suffix(SUFFIX);
-        ordinary(&mut builder, 0o777);
-        let making = builder.tempdir_in(folder_of(&target));
+        ordinary(&mut builder);
+        let folder = folder_of(&target);
+        // Of a refusal its kind is kept: its text names the temporary folder, which nobody gave.
+        let making = std::fs::metadata(folder)
+            .and_then(|_| builder.tempdir_in(folder).map_err(|error| error.kind().into()));
         Ok(Self { making: making.map_err(|error| refuse(path, error))?, target })
     }
 
@@ -179,15 +181,15 @@ fn prefix_of(target: &Path) -> OsString {
     prefix
 }
 
-/// What anybody may do who may do it to other new files; temporary ones are private otherwise.
+/// What anybody may do who may do it to other new folders; temporary ones are private otherwise.
 #[cfg(unix)]
-fn ordinary(builder: &mut Builder<'_, '_>, mode: u32) {
+fn ordinary(builder: &mut Builder<'_, '_>) {
     use std::os::unix::fs::PermissionsExt;
-    builder.permissions(std::fs::Permissions::from_mode(mode));
+    builder.permissions(std::fs::Permissions::from_mode(0o777));
 }
 
 #[cfg(not(unix))]
-fn ordinary(_: &mut Builder<'_, '_>, _: u32) {}
+fn ordinary(_: &mut Builder<'_, '_>) {}
 
 /// The folder that a target stands in.
 fn folder_of(target: &Path) -> &Path {
@@ -204,15 +206,7 @@ fn refuse(path: &Path, error: std::io::Error) -> Error {
         std::io::ErrorKind::StorageFull => "free some space and run again",
         _ => "write elsewhere, or change the permissions",
     };
-    Error::io(path, plain(error)).advise(advice)
-}
-
-/// What the operating system said, without the temporary name that nobody gave.
-fn plain(error: std::io::Error) -> std::io::Error {
-    match error.to_string().split_once(" at path ") {
-        Some((reason, _)) => std::io::Error::new(error.kind(), reason.to_owned()),
-        None => error,
-    }
+    Error::io(path, error).advise(advice)
 }
 
 #[cfg(test)]

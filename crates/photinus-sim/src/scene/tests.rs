@@ -93,7 +93,7 @@ fn bad_scenes_are_refused_with_file_key_and_reason() {
             "half_height_m = 0",
             "`target[0].solid[0].cylinder.half_height_m`: 0 is not a positive",
         ),
-        ("bluefox-dsl215-bp365", "other", "line 3: unknown variant `other`"),
+        ("bluefox-dsl215-bp365", "other", "line 3: unknown name `other`"),
         ("rate_hz = 60.0", "rate_hz = 1e-308", "`rate_hz`: 1e-308 is out of range; give 0.001 to 1000000"),
         ("exposure_us = 1000.0", "exposure_us = 1e300", "`exposure_us`: 1e300 is out of range"),
         (

@@ -19,6 +19,8 @@ pub(crate) enum Content {
     OcamText,
     /// An airframe as LED layout text.
     Layout,
+    /// A camera in a YAML format.
+    Yaml,
     /// A book of blink words.
     Codes,
     /// A video.
@@ -54,6 +56,7 @@ impl Content {
             Self::Csv => &["csv", "txt"],
             Self::Json => &["json", "txt"],
             Self::Toml => &["toml"],
+            Self::Yaml => &["yaml", "yml"],
             Self::OcamText | Self::Layout | Self::Codes => &["txt"],
             Self::Y4m => &["y4m"],
             Self::Folder => &[],
@@ -66,6 +69,7 @@ impl Content {
             Self::Csv => "a CSV table",
             Self::Json => "a JSON file",
             Self::Toml => "a TOML file",
+            Self::Yaml => "a YAML file",
             Self::OcamText => "OCamCalib text",
             Self::Layout => "an LED layout",
             Self::Codes => "a book of blink words",

@@ -8,6 +8,7 @@
 //! camera, airframe, mask, codes, spot_curve: what the method is told beforehand
 //! calibration: tables that calibrations are made from
 //! kind: which of these a file is, by its content
+//! content: why a well-formed file is not what it should be
 //! whole: files that are read and written whole or not at all
 //! ```
 

@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 
 use photinus_io::airframe::read_airframe;
 use photinus_io::dataset::{
-    Dataset, DatasetCamera, DatasetInfo, DatasetWriter, IMU_FILE, ODOMETRY_FILE, TruthFrame, Vehicle,
-    VehicleInfo, vehicles_text,
+    Dataset, DatasetCamera, DatasetInfo, DatasetWriter, GravityLog, IMU_FILE, ODOMETRY_FILE, TruthFrame,
+    Vehicle, VehicleInfo, vehicles_text,
 };
 use photinus_io::mask::read_mask;
 use photinus_io::spot_curve::read_spot_curve;
@@ -25,6 +25,9 @@ pub(super) struct DatasetSink {
     writer: DatasetWriter,
     rate_hz: f64,
     truth: HashMap<u64, TruthFrame>,
+    gravity: Option<GravityLog>,
+    /// Frames at whose times the log of gravity says nothing.
+    pub(super) without_gravity: u64,
 }
 
 /// The files of a dataset, wherever they lie.
@@ -62,6 +65,7 @@ impl DatasetSink {
         let rate_hz = rate_hz.ok_or_else(|| needed("rate"))?;
 
         parts.check().map_err(Failure::input)?;
+        let gravity = args.gravity.as_ref().map(GravityLog::read).transpose().map_err(Failure::input)?;
         let truth = source.map_or(Ok(None), |(dataset, _)| dataset.truth());
         let truth = truth.map_err(Failure::input)?.unwrap_or_default();
         let name = source.and_then(|(_, camera)| camera.name.clone());
@@ -80,7 +84,7 @@ impl DatasetSink {
             .and_then(|()| kept.write(making.path()))
             .map_err(|error| Failure::running(making.tell(error)))?;
         let truth = truth.map(|truth| (truth.frame, TruthFrame { camera: None, ..truth })).collect();
-        Ok(Self { making, writer, rate_hz, truth })
+        Ok(Self { making, writer, rate_hz, truth, gravity, without_gravity: 0 })
     }
 
     /// Writes a frame, with its number, its time and its truth.
@@ -88,7 +92,12 @@ impl DatasetSink {
         let Some(image) = &entry.image else { return Ok(()) };
         let number = entry.record.frame.unwrap_or_default();
         let time_s = entry.record.time_s.unwrap_or(number as f64 / self.rate_hz);
-        let written = self.writer.numbered_frame(number, &image.view(), time_s, entry.gravity);
+        let gravity = match &self.gravity {
+            Some(log) => log.at(time_s),
+            None => entry.gravity,
+        };
+        self.without_gravity += u64::from(self.gravity.is_some() && gravity.is_none());
+        let written = self.writer.numbered_frame(number, &image.view(), time_s, gravity);
         let truth = self.truth.get(&number);
         let written = written.and_then(|()| truth.map_or(Ok(()), |truth| self.writer.truth(truth)));
         written.map_err(|error| self.making.tell(error))

@@ -32,6 +32,9 @@ pub(super) struct FrameArgs {
     pub(super) airframe: Option<PathBuf>,
     #[command(flatten)]
     pub(super) dataset: DatasetArgs,
+    /// Gravity over time for the frames of a new dataset: a table time_s,gx,gy,gz, down in the camera frame
+    #[arg(long, value_name = "FILE.csv")]
+    pub(super) gravity: Option<PathBuf>,
     /// The exposure of a new dataset, microseconds [default: that of the input, if a dataset]
     #[arg(long, value_name = "US", value_parser = number::positive)]
     pub(super) exposure_us: Option<f64>,
@@ -40,7 +43,7 @@ pub(super) struct FrameArgs {
 impl FrameArgs {
     /// The files that are read beside the frames.
     pub(super) fn files(&self) -> impl Iterator<Item = PathBuf> {
-        [&self.camera, &self.airframe].into_iter().flatten().cloned()
+        [&self.camera, &self.airframe, &self.gravity].into_iter().flatten().cloned()
     }
 }
 
@@ -117,6 +120,9 @@ pub(super) fn convert(
     if good == 0 {
         let none = || Failure::Input(format!("{}: it holds no frame", input.name));
         return Err(if failed > 0 { Failure::Frames { all: true } } else { none() });
+    }
+    if let Sink::Dataset(DatasetSink { without_gravity: without @ 1.., .. }) = &sink {
+        terminal.warning(format_args!("{without} of {good} frames lie outside the times of the gravity"));
     }
     sink.keep().map_err(Failure::running)?;
     if with_gravity > 0 && format == Format::Y4m {

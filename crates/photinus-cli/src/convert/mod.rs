@@ -23,12 +23,19 @@ Examples:
   photinus convert kalibr.yaml camera.toml
   # with an inverse polynomial that fits
   photinus convert camera.toml calib_results.txt
+  # for Kalibr, for ROS, for UVDAR on ROS 2
+  photinus convert camera.toml camchain.yaml --to kalibr
+  photinus convert camera.toml camera_info.yaml --to ros
+  photinus convert camera.toml uvdar.yaml --to uvdar
   # an LED layout to an airframe, and back
   photinus convert quad.txt quad.toml
   # a row per neighbour
   photinus convert results.jsonl results.csv
   photinus convert video.y4m recording --camera camera.txt \\
       --airframe quad.toml --exposure-us 1000
+  # with gravity as an autopilot logged it: time_s,gx,gy,gz
+  photinus convert video.y4m recording --camera camera.txt \\
+      --airframe quad.toml --exposure-us 1000 --gravity gravity.csv
   photinus convert *.png video.y4m --rate 60
   photinus convert recording copy --camera recalibrated.txt
 
@@ -58,6 +65,12 @@ pub(crate) struct Args {
 pub(crate) enum Format {
     /// A camera as OCamCalib text
     Ocam,
+    /// A camera as a camchain of Kalibr
+    Kalibr,
+    /// A camera as CameraInfo of ROS
+    Ros,
+    /// A camera as UVDAR on ROS 2 has it
+    Uvdar,
     /// A camera or an airframe as Photinus TOML
     Toml,
     /// An airframe as LED layout text
@@ -97,6 +110,9 @@ pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> Result<(), Failure> {
     type Convert = fn(&Path, &FileTarget, &Terminal) -> Result<(), Failure>;
     let (convert, content): (Convert, Content) = match (kind, format) {
         (Kind::Camera(_), Format::Ocam) => (text::camera_to_ocam, Content::OcamText),
+        (Kind::Camera(_), Format::Kalibr) => (text::camera_to_kalibr, Content::Yaml),
+        (Kind::Camera(_), Format::Ros) => (text::camera_to_ros, Content::Yaml),
+        (Kind::Camera(_), Format::Uvdar) => (text::camera_to_uvdar, Content::Yaml),
         (Kind::Camera(_), Format::Toml) => (text::camera_to_toml, Content::Toml),
         (Kind::Airframe, Format::Layout) => (text::airframe_to_layout, Content::Layout),
         (Kind::Airframe, Format::Toml) => (text::airframe_to_toml, Content::Toml),
@@ -126,9 +142,13 @@ fn format(args: &Args, kind: Kind) -> Result<Format, Failure> {
         Some("toml") => Ok(Format::Toml),
         Some("csv") => Ok(Format::Csv),
         Some("y4m") => Ok(Format::Y4m),
+        Some("yaml" | "yml") => Err(Failure::Input(format!(
+            "{}: cameras of several programs end in .yaml; choose --to kalibr, --to ros or --to uvdar",
+            args.out.display()
+        ))),
         None => Ok(Format::Dataset),
         Some(other) => Err(Failure::Input(format!(
-            "{}: `.{other}` tells no format that is written; end it in .txt, .toml, .csv or .y4m, or give --to",
+            "{}: `.{other}` tells no format that is written; end it in .txt, .toml, .yaml, .csv or .y4m, or give --to",
             args.out.display()
         ))),
     }
@@ -137,6 +157,9 @@ fn format(args: &Args, kind: Kind) -> Result<Format, Failure> {
 fn name(format: Format) -> &'static str {
     match format {
         Format::Ocam => "OCamCalib text",
+        Format::Kalibr => "a camchain of Kalibr",
+        Format::Ros => "a CameraInfo of ROS",
+        Format::Uvdar => "a camera of UVDAR",
         Format::Toml => "Photinus TOML",
         Format::Layout => "an LED layout",
         Format::Csv => "CSV",
@@ -149,7 +172,7 @@ fn name(format: Format) -> &'static str {
 fn choices(kind: Kind, path: &Path) -> String {
     match kind {
         Kind::Airframe => "choose --to toml or --to layout".to_owned(),
-        Kind::Camera(_) => "choose --to toml or --to ocam".to_owned(),
+        Kind::Camera(_) => "choose --to toml, ocam, kalibr, ros or uvdar".to_owned(),
         Kind::Results => "choose --to csv".to_owned(),
         Kind::DatasetTable => "name its folder instead".to_owned(),
         _ if kind.holds_frames() => "choose --to y4m or --to dataset".to_owned(),

@@ -2,10 +2,12 @@
 
 use std::path::Path;
 
-use photinus_calibrate::camera::ocam_of;
+use photinus_calibrate::camera::{Export, ExportError, kannala_brandt_of, ocam_of};
 use photinus_io::Error;
 use photinus_io::airframe::{AirframeFile, Tolerances, layout_text, toml_text};
-use photinus_io::camera::{write_calibrated_camera_toml, write_ocam_text};
+use photinus_io::camera::{
+    CameraFile, CameraYaml, InverseReport, write_calibrated_camera_toml, write_camera_yaml, write_ocam_text,
+};
 use photinus_io::results::{CsvWriter, read_results};
 
 use crate::beforehand;
@@ -17,36 +19,85 @@ use crate::terminal::Terminal;
 const POOR_INVERSE_PX: f64 = 0.1;
 
 pub(super) fn camera_to_ocam(path: &Path, target: &FileTarget, terminal: &Terminal) -> Result<(), Failure> {
-    let out = target.path();
     let file = beforehand::camera(path, terminal).map_err(Failure::input)?;
+    let export = ocam_of(&file.camera).map_err(|error| no_such_model(path, error))?;
     let mut text = Vec::new();
-    let export = ocam_of(&file.camera).map_err(|error| {
-        Failure::input(Error::format(path, error.to_string()).advise("write it as Photinus TOML"))
-    })?;
-    let inverse = write_ocam_text(&export.camera, &mut text, out).map_err(Failure::input)?;
+    let inverse = write_ocam_text(&export.camera, &mut text, target.path()).map_err(Failure::input)?;
     target.write(&text).map_err(Failure::running)?;
+    tell_loss(&file, &export, Some(inverse), target.path(), terminal);
+    Ok(())
+}
+
+pub(super) fn camera_to_kalibr(path: &Path, target: &FileTarget, terminal: &Terminal) -> Result<(), Failure> {
+    camera_to_yaml(path, CameraYaml::Kalibr, target, terminal)
+}
+
+pub(super) fn camera_to_ros(path: &Path, target: &FileTarget, terminal: &Terminal) -> Result<(), Failure> {
+    camera_to_yaml(path, CameraYaml::CameraInfo, target, terminal)
+}
+
+pub(super) fn camera_to_uvdar(path: &Path, target: &FileTarget, terminal: &Terminal) -> Result<(), Failure> {
+    camera_to_yaml(path, CameraYaml::Uvdar, target, terminal)
+}
+
+/// The camera as it is where the format has its model, else the nearest of the widest model that it has.
+fn camera_to_yaml(
+    path: &Path,
+    format: CameraYaml,
+    target: &FileTarget,
+    terminal: &Terminal,
+) -> Result<(), Failure> {
+    let file = beforehand::camera(path, terminal).map_err(Failure::input)?;
+    let export = match format {
+        _ if format.holds(file.camera.model()) => {
+            Ok(Export { camera: file.camera.clone(), max_off_rad: 0.0 })
+        }
+        CameraYaml::Uvdar => ocam_of(&file.camera),
+        CameraYaml::Kalibr | CameraYaml::CameraInfo => kannala_brandt_of(&file.camera),
+    };
+    let export = export.map_err(|error| no_such_model(path, error))?;
+    let mut text = Vec::new();
+    let inverse =
+        write_camera_yaml(&export.camera, format, &mut text, target.path()).map_err(Failure::input)?;
+    target.write(&text).map_err(Failure::running)?;
+    tell_loss(&file, &export, inverse, target.path(), terminal);
+    Ok(())
+}
+
+fn no_such_model(path: &Path, error: ExportError) -> Failure {
+    Failure::input(Error::format(path, error.to_string()).advise("write it as Photinus TOML"))
+}
+
+/// What the new file does not say as the old one did.
+fn tell_loss(
+    file: &CameraFile,
+    export: &Export,
+    inverse: Option<InverseReport>,
+    out: &Path,
+    terminal: &Terminal,
+) {
+    let out = out.display();
     if export.max_off_rad > 0.0 {
+        let off_mrad = 1e3 * export.max_off_rad;
         terminal.note(format_args!(
-            "{}: the model is another one: bearings differ by {:.3} mrad at most",
-            out.display(),
-            1e3 * export.max_off_rad
+            "{out}: the model is another one: bearings differ by {off_mrad:.3} mrad at most"
         ));
     }
-    let told = format!(
-        "{}: the inverse polynomial is a new one of degree {}, within {:.2e} px of the direct one",
-        out.display(),
-        inverse.degree,
-        inverse.max_px
-    );
     if file.camera.parameter_covariance().is_some() {
-        terminal.note(format_args!("{}: the covariance of the calibration is not kept", out.display()));
+        terminal.note(format_args!("{out}: the covariance of the calibration is not kept"));
     }
-    if inverse.max_px > POOR_INVERSE_PX {
+    if file.camera.optics().is_some() {
+        terminal.note(format_args!("{out}: the optics are not kept"));
+    }
+    let Some(InverseReport { degree, max_px, .. }) = inverse else { return };
+    let told = format!(
+        "{out}: the inverse polynomial is a new one of degree {degree}, within {max_px:.2e} px of the direct one"
+    );
+    if max_px > POOR_INVERSE_PX {
         terminal.warning(format_args!("{told}; use the direct one where you can"));
     } else {
         terminal.note(told);
     }
-    Ok(())
 }
 
 pub(super) fn camera_to_toml(path: &Path, target: &FileTarget, terminal: &Terminal) -> Result<(), Failure> {

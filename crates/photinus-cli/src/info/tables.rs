@@ -29,7 +29,7 @@ pub(super) fn report(path: &Path, table: Table) -> Result<Report> {
         Table::SpotSizes => read_spot_sizes(path)?.len(),
         Table::LedSightings => read_led_sightings(path)?.len(),
         Table::KnownSightings => read_known_sightings(path)?.len(),
-        Table::Results | Table::Poses | Table::Figure | Table::Summary => {
+        Table::Results | Table::Poses | Table::Gravity | Table::Figure | Table::Summary => {
             text(path)?.lines().skip(1).filter(|line| !line.trim().is_empty()).count()
         }
         Table::Unknown => {

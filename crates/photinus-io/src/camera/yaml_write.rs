@@ -48,18 +48,20 @@ pub fn write_camera_yaml(
     to: &mut impl Write,
     path: &Path,
 ) -> Result<Option<InverseReport>> {
-    if !format.holds(camera.model()) {
-        let reason = "the model of this camera is none that the format has";
-        return Err(Error::format(path, reason).advise("write it as Photinus TOML: end the output in .toml"));
-    }
-    let (text, report) = match (format, camera.model()) {
-        (CameraYaml::Uvdar, Model::OCam(lens)) => {
+    let lens = Lens::of(camera.model()).filter(|_| format.holds(camera.model()));
+    let (text, report) = match (format, camera.model(), lens) {
+        (CameraYaml::Uvdar, Model::OCam(lens), _) => {
             let numbers = Numbers::of(camera, lens, path)?;
             (ocam(camera, &numbers), Some(numbers.report))
         }
-        (CameraYaml::Uvdar, _) => (uvdar(camera), None),
-        (CameraYaml::Kalibr, _) => (kalibr(camera), None),
-        (CameraYaml::CameraInfo, _) => (camera_info(camera), None),
+        (CameraYaml::Uvdar, _, Some(lens)) => (uvdar(camera, lens), None),
+        (CameraYaml::Kalibr, _, Some(lens)) => (kalibr(camera, lens), None),
+        (CameraYaml::CameraInfo, _, Some(lens)) => (camera_info(camera, lens), None),
+        (_, _, None) => {
+            let reason = "the model of this camera is none that the format has";
+            let advice = "write it as Photinus TOML: end the output in .toml";
+            return Err(Error::format(path, reason).advise(advice));
+        }
     };
     to.write_all(text.as_bytes()).map_err(|error| Error::new(path, error))?;
     Ok(report)
@@ -74,20 +76,20 @@ struct Lens {
 }
 
 impl Lens {
-    fn of(model: &Model) -> Self {
+    /// Nothing of an OCam lens, which has no focal length.
+    fn of(model: &Model) -> Option<Self> {
         let centre = model.centre();
         let (focal_px, kalibr, ros, distortion) = match model {
+            Model::OCam(_) => return None,
             Model::KannalaBrandt(lens) => (lens.focal_px(), "equidistant", "equidistant", lens.k().to_vec()),
             Model::Ideal(lens) => (lens.focal_px(), "equidistant", "equidistant", vec![0.0; 4]),
             Model::Pinhole(lens) => {
                 let ros = if is_rational(lens) { "rational_polynomial" } else { "plumb_bob" };
                 (lens.focal_px(), "radtan", ros, brown_conrady(lens))
             }
-            // Its focal length is that of no pinhole; no caller has one here.
-            Model::OCam(lens) => ([-lens.direct()[0]; 2], "none", "", Vec::new()),
         };
         let [fx, fy] = focal_px;
-        Self { intrinsics: [fx, fy, centre.u, centre.v], kalibr, ros, distortion }
+        Some(Self { intrinsics: [fx, fy, centre.u, centre.v], kalibr, ros, distortion })
     }
 }
 
@@ -105,8 +107,8 @@ fn brown_conrady(lens: &Pinhole) -> Vec<f64> {
     numbers
 }
 
-fn kalibr(camera: &Camera) -> String {
-    let Lens { intrinsics, kalibr, mut distortion, .. } = Lens::of(camera.model());
+fn kalibr(camera: &Camera, lens: Lens) -> String {
+    let Lens { intrinsics, kalibr, mut distortion, .. } = lens;
     distortion.truncate(4);
     format!(
         "cam0:\n  camera_model: pinhole\n  distortion_model: {kalibr}\n  distortion_coeffs: {}\n  intrinsics: {}\n  \
@@ -119,8 +121,8 @@ fn kalibr(camera: &Camera) -> String {
     )
 }
 
-fn camera_info(camera: &Camera) -> String {
-    let Lens { intrinsics: [fx, fy, cx, cy], ros, distortion, .. } = Lens::of(camera.model());
+fn camera_info(camera: &Camera, lens: Lens) -> String {
+    let Lens { intrinsics: [fx, fy, cx, cy], ros, distortion, .. } = lens;
     let matrix = |name: &str, columns: usize, data: &[f64]| {
         let rows = data.len() / columns;
         format!("{name}:\n  rows: {rows}\n  cols: {columns}\n  data: {}\n", list(data))
@@ -137,8 +139,8 @@ fn camera_info(camera: &Camera) -> String {
     .concat()
 }
 
-fn uvdar(camera: &Camera) -> String {
-    let Lens { intrinsics, distortion, .. } = Lens::of(camera.model());
+fn uvdar(camera: &Camera, lens: Lens) -> String {
+    let Lens { intrinsics, distortion, .. } = lens;
     let (name, distortion) = match camera.model() {
         Model::Ideal(lens) => match lens.law() {
             IdealLaw::Equidistant => ("equidistant", distortion),

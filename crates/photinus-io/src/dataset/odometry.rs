@@ -50,20 +50,60 @@ pub fn parse_odometry(text: &str, path: impl AsRef<Path>) -> Result<Vec<Odometry
     let path = path.as_ref();
     let row = |(line, row): (usize, [f64; 11])| {
         let [time_s, x, y, z, qx, qy, qz, qw, vx, vy, vz] = row;
-        let quaternion = Quaternion::new(qw, qx, qy, qz);
-        if !physics::is_unit(quaternion.norm()) {
-            let reason = format!("the quaternion has length {}, not 1", quaternion.norm());
-            return Err(Error::format(path, reason).at(Place::Line(line)).advise("give qx, qy, qz, qw"));
-        }
-        // What is a unit quaternion to the last digits stays as it is written.
-        let rotation = match (quaternion.norm() - 1.0).abs() < 1e-12 {
-            true => UnitQuaternion::new_unchecked(quaternion),
-            false => UnitQuaternion::new_normalize(quaternion),
-        };
-        let pose = Isometry3::from_parts(Translation3::new(x, y, z), rotation);
+        let pose = pose_of([x, y, z, qx, qy, qz, qw], path, line)?;
         Ok(OdometryRow { time_s, pose, velocity_m_s: Vector3::new(vx, vy, vz) })
     };
     timed::rows(text, path, &COLUMNS)?.into_iter().map(row).collect()
+}
+
+/// Where a vehicle was at a time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TimedPose {
+    /// When, s.
+    pub time_s: f64,
+    /// The pose world_from_body.
+    pub pose: Isometry3<f64>,
+}
+
+/// Reads a log of poses: an odometry.csv, or the same without velocities.
+///
+/// # Errors
+/// As [`parse_odometry`], and when the file cannot be read.
+pub fn read_poses(path: impl AsRef<Path>) -> Result<Vec<TimedPose>> {
+    let path = path.as_ref();
+    parse_poses(&whole::read_text(path)?, path)
+}
+
+/// Reads the text of a log of poses; `path` is for the messages.
+///
+/// # Errors
+/// As [`parse_odometry`].
+pub fn parse_poses(text: &str, path: impl AsRef<Path>) -> Result<Vec<TimedPose>> {
+    let path = path.as_ref();
+    if text.lines().next().is_some_and(|first| first.contains(COLUMNS[8].0)) {
+        let rows = parse_odometry(text, path)?;
+        return Ok(rows.into_iter().map(|row| TimedPose { time_s: row.time_s, pose: row.pose }).collect());
+    }
+    let columns: &[Column; 8] = COLUMNS.first_chunk().expect("a pose has 8 of the 11 columns");
+    let row = |(line, [time_s, pose @ ..]): (usize, [f64; 8])| {
+        Ok(TimedPose { time_s, pose: pose_of(pose, path, line)? })
+    };
+    timed::rows(text, path, columns)?.into_iter().map(row).collect()
+}
+
+/// A place and a quaternion as a pose.
+fn pose_of([x, y, z, qx, qy, qz, qw]: [f64; 7], path: &Path, line: usize) -> Result<Isometry3<f64>> {
+    let quaternion = Quaternion::new(qw, qx, qy, qz);
+    if !physics::is_unit(quaternion.norm()) {
+        let reason = format!("the quaternion has length {}, not 1", quaternion.norm());
+        return Err(Error::format(path, reason).at(Place::Line(line)).advise("give qx, qy, qz, qw"));
+    }
+    // What is a unit quaternion to the last digits stays as it is written.
+    let rotation = match (quaternion.norm() - 1.0).abs() < 1e-12 {
+        true => UnitQuaternion::new_unchecked(quaternion),
+        false => UnitQuaternion::new_normalize(quaternion),
+    };
+    Ok(Isometry3::from_parts(Translation3::new(x, y, z), rotation))
 }
 
 /// The first line of an odometry.csv.

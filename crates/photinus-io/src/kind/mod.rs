@@ -114,9 +114,11 @@ pub enum Table {
     Frames,
     /// The imu.csv of a dataset.
     Gyro,
+    /// The direction of gravity over time.
+    Gravity,
     /// The odometry.csv of a dataset.
     Odometry,
-    /// Poses that a scene plays back.
+    /// Poses over time.
     Poses,
     /// Results, a row per neighbour.
     Results,
@@ -309,6 +311,7 @@ impl Table {
         match self {
             Self::Frames => "the frames.csv of a dataset",
             Self::Gyro => "the imu.csv of a dataset",
+            Self::Gravity => "a table of gravity over time",
             Self::Odometry => "the odometry.csv of a dataset",
             Self::Poses => "a table of poses",
             Self::Results => "results as a table",

@@ -51,6 +51,7 @@ fn each_kind_is_told_by_its_content() {
         (b"detector: 3\ntracking: 4\n", Kind::Keys(Syntax::Yaml)),
         (b"frame,time_s,image,gx,gy,gz\n", Kind::Table(Table::Frames)),
         (b"time_s,wx_rad_s,wy_rad_s,wz_rad_s\n", Kind::Table(Table::Gyro)),
+        (b"time_s,gx,gy,gz\n", Kind::Table(Table::Gravity)),
         (b"photo,led,u_px,v_px\n", Kind::Table(Table::LedSightings)),
         (b"a,b,c\n1,2,3\n", Kind::Table(Table::Unknown)),
     ] {

@@ -113,6 +113,7 @@ fn of_columns(first: &str) -> Table {
     match () {
         () if has(&["frame", "time_s", "image"]) => Table::Frames,
         () if has(&["time_s", "wx_rad_s"]) => Table::Gyro,
+        () if has(&["time_s", "gx", "gy", "gz"]) => Table::Gravity,
         () if has(&["time_s", "x_m", "qw", "vx_m_s"]) => Table::Odometry,
         () if has(&["frame", "bearing_x", "distance_m"]) => Table::Results,
         () if has(&["time_s", "x_m", "qw"]) => Table::Poses,

@@ -11,6 +11,7 @@
 //! truth lists no LED in any frame (truth of a flight, from GNSS), every neighbour counts as visible and spots have no
 //! score.
 
+pub mod alignment;
 mod frames;
 #[cfg(test)]
 mod hand_made;

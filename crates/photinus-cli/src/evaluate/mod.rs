@@ -1,8 +1,9 @@
-//! `photinus evaluate`: a dataset's truth and results -> tables, JSON, plots.
+//! `photinus evaluate`: truth (of a dataset, of a file, or of two logs) and results -> tables, JSON, plots.
 //!
 //! What is counted and how stands in [`photinus_evaluate`]; here it is read, refused in words, and shown.
 
 mod bins;
+mod logs;
 pub(crate) mod plots;
 mod tables;
 mod truth;
@@ -19,6 +20,7 @@ use crate::failure::Failure;
 use crate::number;
 use crate::targets::{FileTarget, Targets, WriteArgs};
 use crate::terminal::Terminal;
+use logs::AlignmentReport;
 use plots::plot;
 use truth::GroundTruth;
 
@@ -31,6 +33,8 @@ Examples:
   photinus evaluate photinus-demo/truth.jsonl photinus-demo/results.jsonl
   photinus evaluate flight results.jsonl --plots figures --json s.json
   photinus evaluate flight results.jsonl -q --json - | jq .distance.overall
+  # truth from the poses that two vehicles logged
+  photinus evaluate observer.csv results.jsonl --target target.csv
 
 Frames of truth that the results do not hold count as missed.";
 
@@ -41,12 +45,19 @@ const REPORTED_LINES: usize = 5;
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Args {
-    /// The folder of a dataset with truth.jsonl, or such a file alone
+    /// The folder of a dataset with truth.jsonl, or such a file alone; with --target, the log of the vehicle that carries the camera
     #[arg(value_name = "TRUTH")]
     dataset: PathBuf,
     /// What `photinus locate --out` wrote for it
     #[arg(value_name = "RESULTS")]
     results: PathBuf,
+    /// The log of the vehicle that is seen: a CSV of poses, in the world frame and on the clock of the log given as TRUTH. Clock offset
+    /// and lever arms are estimated and told
+    #[arg(long, value_name = "FILE.csv")]
+    target: Option<PathBuf>,
+    /// With --target: about how much to add to the times of frames to get those of the logs; looked for within 2 s of it
+    #[arg(long, value_name = "S", default_value_t = 0.0, allow_hyphen_values = true, requires = "target")]
+    clock_offset: f64,
     /// Write every number as JSON, described in docs/file-formats.md; - is standard output, in place of the tables
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
@@ -56,10 +67,10 @@ pub(crate) struct Args {
     /// Edges between bins of true distance [default: 1,2,3,4,6,8,10,12,15,20,30,50]
     #[arg(long, value_name = "M,M,...", value_parser = bins::parse)]
     bins: Option<RangeBins>,
-    /// A spot is no farther than this from its LED, or than its own radius where that is more
+    /// How far a spot may be from its LED, or its own radius where that is more
     #[arg(long, value_name = "PX", default_value_t = 3.0, value_parser = number::positive)]
     spot_gate: f64,
-    /// A neighbour's bearing is no farther than this from truth, but for near ones, which may be 0.6 m aside
+    /// How far a neighbour's bearing may be from truth; near neighbours may be 0.6 m aside
     #[arg(long, value_name = "DEG", default_value_t = 3.0, value_parser = number::positive)]
     bearing_gate: f64,
     /// Which camera, of a dataset with several
@@ -78,6 +89,8 @@ struct Report<'a> {
     dataset: &'a Path,
     results: &'a Path,
     settings: &'a Settings,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    alignment: Option<AlignmentReport>,
     #[serde(flatten)]
     scores: &'a Scores,
 }
@@ -116,11 +129,21 @@ impl Args {
 
 /// Runs the command.
 pub(crate) fn run(args: &Args, terminal: &Terminal) -> Result<(), Failure> {
-    let truth = GroundTruth::read(&args.dataset, args.only.as_ref())?;
+    let (truth, mut results, bad_lines) = match &args.target {
+        Some(target) => {
+            let (records, bad_lines) = read_records(args, terminal)?;
+            (logs::truth(&args.dataset, target, &records, args.clock_offset)?, records, bad_lines)
+        }
+        None => {
+            let truth = GroundTruth::read(&args.dataset, args.only.as_ref())?;
+            let (records, bad_lines) = read_records(args, terminal)?;
+            check_frames(args, &truth, &records)?;
+            (truth, records, bad_lines)
+        }
+    };
     let mut targets = Targets::new(args.write, truth.files.iter().cloned().chain([args.results.clone()]));
     let json = args.json.as_deref().map(|path| targets.file(path, Content::Json)).transpose()?;
     let plots = args.plots.as_deref().map(|path| targets.folder(path)).transpose()?;
-    let (mut results, bad_lines) = read_records(args, &truth, terminal)?;
     results.retain(|record| record.camera == truth.camera);
     let settings = args.settings(&truth);
     let evaluation =
@@ -129,11 +152,12 @@ pub(crate) fn run(args: &Args, terminal: &Terminal) -> Result<(), Failure> {
     let is_for_people = !args.quiet && !json.as_ref().is_some_and(FileTarget::is_standard);
     if let Some(json) = json {
         let (dataset, results, scores) = (&args.dataset, &args.results, &evaluation.scores);
-        write_json(&json, &Report { dataset, results, settings: &settings, scores }, terminal)?;
+        let alignment = truth.alignment.as_ref().map(AlignmentReport::of);
+        write_json(&json, &Report { dataset, results, settings: &settings, alignment, scores }, terminal)?;
     }
     if let Some(plots) = plots {
         let folder = plots.whole().map_err(Failure::running)?;
-        let tables = tables::Tables(&evaluation.scores).to_string();
+        let tables = told(&truth, &evaluation.scores);
         let drawn = plot(folder.path(), &evaluation, &truth.frames).and_then(|figures| {
             plots::page::write(folder.path(), &args.results, tables.trim_end(), &figures)
         });
@@ -141,17 +165,19 @@ pub(crate) fn run(args: &Args, terminal: &Terminal) -> Result<(), Failure> {
     }
     warn(&evaluation.scores, args, terminal);
     if is_for_people {
-        terminal.result(tables::Tables(&evaluation.scores).to_string().trim_end())?;
+        terminal.result(told(&truth, &evaluation.scores).trim_end())?;
     }
     if bad_lines > 0 { Err(Failure::Frames { all: results.is_empty() }) } else { Ok(()) }
 }
 
+/// All tables, and before them what was estimated to have a truth.
+fn told(truth: &GroundTruth, scores: &Scores) -> String {
+    let alignment = truth.alignment.as_ref().map_or_else(String::new, logs::table);
+    format!("{alignment}{}", tables::Tables(scores))
+}
+
 /// The records that can be read, and how many lines cannot: their frames count as missed.
-fn read_records(
-    args: &Args,
-    truth: &GroundTruth,
-    terminal: &Terminal,
-) -> Result<(Vec<FrameRecord>, usize), Failure> {
+fn read_records(args: &Args, terminal: &Terminal) -> Result<(Vec<FrameRecord>, usize), Failure> {
     let (mut records, mut bad_lines) = (Vec::new(), 0);
     for record in read_results(&args.results).map_err(Failure::input)? {
         match record {
@@ -175,10 +201,15 @@ fn read_records(
             refused.advise("give what `photinus locate --out` wrote for this dataset"),
         ));
     }
+    Ok((records, bad_lines))
+}
+
+/// Refuses results of frames that the truth does not have.
+fn check_frames(args: &Args, truth: &GroundTruth, records: &[FrameRecord]) -> Result<(), Failure> {
     let (listed, frames) = &truth.listed;
     let of_camera = records.iter().filter(|record| record.camera == truth.camera);
     match of_camera.filter_map(|record| record.frame).find(|frame| !frames.contains(frame)) {
-        None => Ok((records, bad_lines)),
+        None => Ok(()),
         Some(frame) => {
             let reason = format!("{} lists no such frame", listed.display());
             let refused = Error::format(&args.results, reason).at(Place::Frame(frame));

@@ -3,8 +3,9 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
+use photinus_evaluate::alignment::Alignment;
 use photinus_io::dataset::{Dataset, TRUTH_FILE, TruthFrame, read_truth};
-use photinus_io::kind::Kind;
+use photinus_io::kind::{Kind, Table};
 use photinus_io::{Error, Result};
 
 use crate::failure::Failure;
@@ -24,6 +25,8 @@ pub(super) struct GroundTruth {
     pub(super) path: PathBuf,
     /// The file that lists the frames, and their numbers: results of others belong to something else.
     pub(super) listed: (PathBuf, BTreeSet<u64>),
+    /// What was estimated to have it, where it comes from logs.
+    pub(super) alignment: Option<Alignment>,
 }
 
 impl GroundTruth {
@@ -32,10 +35,21 @@ impl GroundTruth {
     /// # Errors
     /// [`Failure`] when it is neither, holds no truth, or has several cameras and none is named.
     pub(super) fn read(path: &Path, only: Option<&String>) -> std::result::Result<Self, Failure> {
-        if path.is_file() && Kind::of(path).map_err(Failure::input)? == Kind::Truth {
-            return Self::of_file(path, only);
+        if path.is_dir() {
+            return Self::of_dataset(path, only);
         }
-        Self::of_dataset(path, only)
+        match Kind::of(path).map_err(Failure::input)? {
+            Kind::Truth => Self::of_file(path, only),
+            Kind::Table(table @ (Table::Poses | Table::Odometry)) => {
+                let reason = format!("this is {}", Kind::Table(table));
+                let advice = "give that of the other vehicle, too, as --target FILE";
+                Err(Failure::input(Error::format(path, reason).advise(advice)))
+            }
+            other => {
+                let known = "name the folder of a dataset with truth.jsonl, or such a file";
+                Err(Failure::input(other.refuse(path, "ground truth", known)))
+            }
+        }
     }
 
     fn of_dataset(folder: &Path, only: Option<&String>) -> std::result::Result<Self, Failure> {
@@ -61,6 +75,7 @@ impl GroundTruth {
             files: dataset.files(),
             path: dataset.path(TRUTH_FILE),
             listed: (dataset.path(&camera.frames_file), listed),
+            alignment: None,
         })
     }
 
@@ -87,6 +102,7 @@ impl GroundTruth {
             files: vec![path.to_owned()],
             path: path.to_owned(),
             listed: (path.to_owned(), listed),
+            alignment: None,
         })
     }
 }
@@ -97,7 +113,7 @@ fn of_camera(mut frames: Vec<TruthFrame>, camera: Option<&String>) -> Vec<TruthF
 }
 
 /// Half the usual time between frames, s.
-fn tolerance(frames: &[TruthFrame], path: &Path) -> Result<f64> {
+pub(super) fn tolerance(frames: &[TruthFrame], path: &Path) -> Result<f64> {
     let mut times_s: Vec<f64> = frames.iter().map(|frame| frame.time_s).collect();
     times_s.sort_by(f64::total_cmp);
     let mut steps_s: Vec<f64> =

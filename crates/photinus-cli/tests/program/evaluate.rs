@@ -1,6 +1,6 @@
 //! `photinus evaluate`: what it prints, writes and refuses.
 
-use nalgebra::{Rotation3, UnitQuaternion, Vector3};
+use nalgebra::{Isometry3, Rotation3, UnitQuaternion, Vector3};
 use photinus::airframe::Airframe;
 use photinus::camera::{Bearing, Camera};
 use photinus_io::airframe::read_airframe;
@@ -224,12 +224,14 @@ fn what_cannot_be_compared_is_refused() {
         }
     };
     stage.file("empty.jsonl", "");
+    std::fs::create_dir(stage.path("images")).unwrap();
     stage.file("longer.jsonl", lines([0, 25].into_iter().map(result)));
     stage.file("twice.jsonl", lines([3, 3].into_iter().map(result)));
     let late = FrameRecord { time_s: Some(9.0), ..result(3) };
     stage.file("late.jsonl", lines([late].into_iter()));
 
-    refuses("evaluate no results.jsonl", &["no: the folder holds no dataset.toml"]);
+    refuses("evaluate no results.jsonl", &["no: ", "; check the path"]);
+    refuses("evaluate images results.jsonl", &["images: the folder holds no dataset.toml"]);
     refuses("evaluate flight no.jsonl", &["no.jsonl: ", "; check the path"]);
     refuses(
         "evaluate flight empty.jsonl",
@@ -274,4 +276,65 @@ fn a_truth_file_alone_gives_the_same_scores() {
     assert!(refused.code == 2 && refused.err.contains("it would be replaced"), "{}", refused.err);
     let swapped = stage.run("evaluate results.jsonl alone.jsonl");
     assert_eq!(swapped.code, 2, "{}", swapped.err);
+}
+
+/// Where an observer and its target were, by the clock of their logs.
+fn flown(time_s: f64) -> [Isometry3<f64>; 2] {
+    let pose = |t: f64, far_m: f64| {
+        let place =
+            Vector3::new(far_m + (0.7 * t).sin(), 1.5 * (0.4 * t).cos(), 5.0 + 0.8 * (0.31 * t).sin());
+        let turn = UnitQuaternion::from_euler_angles(
+            0.2 * (1.3 * t).sin(),
+            0.2 * (0.9 * t).cos(),
+            0.8 * (0.5 * t).sin(),
+        );
+        Isometry3::from_parts(place.into(), turn)
+    };
+    [pose(time_s, 0.0), pose(time_s + 11.0, 7.0)]
+}
+
+#[test]
+fn two_logs_are_a_truth() {
+    let stage = Stage::new("evaluate-logs");
+    let (late_s, camera_m) = (0.4, Vector3::new(0.1, 0.0, 0.05));
+    let camera = Isometry3::from_parts(camera_m.into(), UnitQuaternion::from_euler_angles(-1.6, 0.0, -1.5));
+    let mut logs = ["time_s,x_m,y_m,z_m,qx,qy,qz,qw\n"; 2].map(str::to_owned);
+    for step in 0..3500 {
+        let time_s = f64::from(step) / 50.0;
+        for (log, pose) in logs.iter_mut().zip(flown(time_s)) {
+            let (p, q) = (pose.translation, pose.rotation);
+            *log += &format!("{time_s},{},{},{},{},{},{},{}\n", p.x, p.y, p.z, q.i, q.j, q.k, q.w);
+        }
+    }
+    let [observer, target] = &logs;
+    stage.file("observer.csv", observer);
+    stage.file("target.csv", target);
+    let mut records = Vec::new();
+    for frame in 0..1200 {
+        let time_s = f64::from(frame) / 20.0;
+        let [observer, target] = flown(time_s + late_s);
+        let seen = (observer * camera).inv_mul(&target).translation.vector;
+        let mut record = result(u64::from(frame as u32));
+        record.time_s = Some(time_s);
+        // Half a centimetre of what looks like noise.
+        let wobble = 0.005 * (37.0 * time_s).sin();
+        let neighbour = &mut record.neighbours[0];
+        neighbour.position_m = Some((seen * (1.0 + wobble / seen.norm())).into());
+        neighbour.bearing = seen.normalize().into();
+        neighbour.distance_m.estimate = Some(seen.norm() + wobble);
+        (neighbour.distance_m.min, neighbour.distance_m.max) = (seen.norm() - 1.0, Some(seen.norm() + 1.0));
+        records.push(record);
+    }
+    stage.file("results.jsonl", lines(records.into_iter()));
+    let done = stage.run("evaluate observer.csv results.jsonl --target target.csv --json s.json");
+    assert!(done.code == 0 && done.out.contains("clock offset s"), "{}{}", done.out, done.err);
+    let scores: serde_json::Value = serde_json::from_str(&stage.read("s.json")).unwrap();
+    let number = |place: &str| scores.pointer(place).and_then(serde_json::Value::as_f64).unwrap();
+    assert!((number("/alignment/clock_offset_s") - late_s).abs() < 0.005, "{}", done.out);
+    assert!((number("/alignment/camera_m/0") - camera_m.x).abs() < 0.02, "{}", done.out);
+    assert!(number("/neighbours/overall/recall") > 0.999 && number("/distance/overall/error_m/rms") < 0.02);
+    stage.refuses(
+        "evaluate observer.csv results.jsonl --target target.csv --clock-offset 500",
+        &["the logs have 0.000 to 69.980 s in common, the frames 0.000 to 59.950 s; give the logs of this flight"],
+    );
 }

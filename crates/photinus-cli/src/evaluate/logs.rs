@@ -1,0 +1,117 @@
+//! Truth from two logs of poses, and what was estimated for it as a table and as JSON.
+
+use std::collections::BTreeSet;
+use std::path::Path;
+
+use photinus_evaluate::alignment::{AlignError, Alignment, Logs};
+use photinus_io::Error;
+use photinus_io::dataset::read_poses;
+use photinus_io::results::FrameRecord;
+use serde::Serialize;
+
+use super::truth::{GroundTruth, tolerance};
+use crate::aligned::{Aligned, Side};
+use crate::failure::Failure;
+
+/// Truth of the results' frames whose times lie within both logs.
+///
+/// # Errors
+/// [`Failure`] when a log cannot be read, when results come from several cameras, or when the logs do not fit the results.
+pub(super) fn truth(
+    observer_path: &Path,
+    target_path: &Path,
+    results: &[FrameRecord],
+    near_s: f64,
+) -> Result<GroundTruth, Failure> {
+    let cameras: BTreeSet<&Option<String>> = results.iter().map(|record| &record.camera).collect();
+    if cameras.len() > 1 {
+        let told =
+            "results of several cameras: with logs, give those of one, as `locate --only NAME` writes them";
+        return Err(Failure::Input(told.to_owned()));
+    }
+    let [observer, target] =
+        [observer_path, target_path].map(|path| read_poses(path).map_err(Failure::input));
+    let (observer, target) = (observer?, target?);
+    let logs = Logs { observer: &observer, target: &target };
+    let refuse = |error: AlignError| {
+        let advice = match error {
+            AlignError::Times { .. } => {
+                "give the logs of this flight, or about how far the clocks differ as --clock-offset S"
+            }
+            AlignError::Few(_) => "give results of a longer flight, with positions",
+            _ => "check that the logs share one world frame and which vehicle is which",
+        };
+        Failure::input(Error::format(observer_path, error.to_string()).advise(advice))
+    };
+    let alignment = logs.align(results, near_s).map_err(refuse)?;
+    let frames = logs.truth(&alignment, results);
+    let listed = frames.iter().map(|frame| frame.frame).collect();
+    Ok(GroundTruth {
+        time_tolerance_s: tolerance(&frames, observer_path).map_err(Failure::input)?,
+        frames,
+        camera: cameras.first().and_then(|camera| (*camera).clone()),
+        files: vec![observer_path.to_owned(), target_path.to_owned()],
+        path: observer_path.to_owned(),
+        listed: (observer_path.to_owned(), listed),
+        alignment: Some(alignment),
+    })
+}
+
+/// What was estimated, each with its standard error.
+pub(super) fn table(alignment: &Alignment) -> String {
+    let sigma = &alignment.sigma;
+    let mut table = Aligned::new(2, &[Side::Left, Side::Right, Side::Right]);
+    let mut row =
+        |name: &str, value: String, error: String| table.row([name.to_owned(), value, format!("+- {error}")]);
+    let offset = (alignment.clock_offset_s, sigma.clock_offset_s);
+    row("clock offset s", format!("{:.4}", offset.0), format!("{:.4}", offset.1));
+    let places = [
+        ("camera on the observer", &alignment.camera_m, &sigma.camera_m),
+        ("airframe on the target", &alignment.airframe_m, &sigma.airframe_m),
+    ];
+    for (name, place, error) in places {
+        for (axis, (metres, error)) in ["x", "y", "z"].iter().zip(place.iter().zip(error)) {
+            row(&format!("{name}, {axis} m"), format!("{metres:.3}"), format!("{error:.3}"));
+        }
+    }
+    let turn = alignment.body_from_camera.coords;
+    let turned: Vec<String> = turn.iter().map(|part| format!("{part:.4}")).collect();
+    let worst_deg = sigma.rotation_rad.max().to_degrees();
+    row("body_from_camera xyzw", turned.join(" "), format!("{worst_deg:.2} deg"));
+    format!(
+        "alignment of the logs, estimated from {} frames of these results: what is the same in all frames does not show in the \
+         scores\n{table}\n\n",
+        alignment.frames
+    )
+}
+
+/// What `--json` says of it.
+#[derive(Serialize)]
+pub(super) struct AlignmentReport {
+    frames: usize,
+    clock_offset_s: f64,
+    clock_offset_sigma_s: f64,
+    body_from_camera_xyzw: [f64; 4],
+    rotation_sigma_rad: [f64; 3],
+    camera_m: [f64; 3],
+    camera_sigma_m: [f64; 3],
+    airframe_m: [f64; 3],
+    airframe_sigma_m: [f64; 3],
+}
+
+impl AlignmentReport {
+    pub(super) fn of(alignment: &Alignment) -> Self {
+        let sigma = &alignment.sigma;
+        Self {
+            frames: alignment.frames,
+            clock_offset_s: alignment.clock_offset_s,
+            clock_offset_sigma_s: sigma.clock_offset_s,
+            body_from_camera_xyzw: alignment.body_from_camera.coords.into(),
+            rotation_sigma_rad: sigma.rotation_rad.into(),
+            camera_m: alignment.camera_m.into(),
+            camera_sigma_m: sigma.camera_m.into(),
+            airframe_m: alignment.airframe_m.into(),
+            airframe_sigma_m: sigma.airframe_m.into(),
+        }
+    }
+}

@@ -101,7 +101,7 @@ fn page(scene: &Scene, flown: &Flown, told: &str, figures: &[Drawn]) -> Page {
         .iter()
         .map(|&(frame, time_s)| Shot { file: format!("{PICTURES}/{}", overlay::numbered(frame)), time_s });
     let timelines = scene.targets.iter().map(|target| Timeline {
-        title: format!("Distance of neighbour {} over time", target.id),
+        title: "Distance over time".to_owned(),
         moments: moments(flown, target.id),
     });
     let player = Player {

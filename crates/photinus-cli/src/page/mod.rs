@@ -64,28 +64,26 @@ impl Page {
         self
     }
 
-    /// A figure in a file beside the page.
+    /// A figure in a file beside the page, whose title is drawn in it.
     pub(crate) fn figure(self, file: &str, title: &str, caption: &str) -> Self {
         let image = format!(
             "<img class=\"plot\" src=\"{}\" alt=\"{}\" loading=\"lazy\">",
             escaped(file),
             escaped(title)
         );
-        self.drawn(&image, title, caption)
+        self.drawn(&image, caption)
     }
 
     /// A figure whose SVG stands in the page itself; `name` tells it apart from others.
-    pub(crate) fn svg(self, svg: &str, name: &str, title: &str, caption: &str) -> Self {
+    pub(crate) fn svg(self, svg: &str, name: &str, caption: &str) -> Self {
         // Names of clip paths would be the same in every figure of the page.
         let svg = svg.replace("kuva-clip-", &format!("{name}-"));
-        self.drawn(&svg, title, caption)
+        self.drawn(&svg, caption)
     }
 
-    fn drawn(mut self, drawn: &str, title: &str, caption: &str) -> Self {
-        let (title, caption) = (escaped(title), escaped(caption));
-        // A figure whose title is drawn in it needs none above.
-        let head = if title.is_empty() { String::new() } else { format!("<h3>{title}</h3>\n") };
-        self.body += &format!("<figure>\n{head}{drawn}\n<figcaption>{caption}</figcaption>\n</figure>\n");
+    fn drawn(mut self, drawn: &str, caption: &str) -> Self {
+        let caption = escaped(caption);
+        self.body += &format!("<figure>\n{drawn}\n<figcaption>{caption}</figcaption>\n</figure>\n");
         self
     }
 
@@ -146,7 +144,7 @@ mod tests {
     #[test]
     fn figures_of_a_page_keep_their_own_clip_paths() {
         let svg = "<svg><clipPath id=\"kuva-clip-0\"/></svg>";
-        let page = Page::new("t").svg(svg, "one", "", "").svg(svg, "two", "", "").whole();
+        let page = Page::new("t").svg(svg, "one", "").svg(svg, "two", "").whole();
         assert!(
             page.contains("id=\"one-0\"") && page.contains("id=\"two-0\"") && !page.contains("kuva-clip")
         );

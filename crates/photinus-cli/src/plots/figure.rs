@@ -26,12 +26,14 @@ impl FigureFolder {
         Self(folder.to_owned())
     }
 
-    /// Writes a figure as PNG and SVG, and gives the text of the SVG.
+    /// Writes a figure as PNG and SVG, and gives the text of the SVG for a page, where a map of colours is of class `map`.
     ///
     /// # Errors
     /// [`Error`] when it cannot be drawn or written.
     pub(crate) fn write(&self, figure: Figure) -> Result<String> {
+        let is_map = figure.plots.iter().any(|plot| matches!(plot, Plot::Heatmap(_)));
         let scene = kuva::render::render::render_multiple(figure.plots, figure.layout);
-        save(&self.0, &figure.name, &scene)
+        let svg = save(&self.0, &figure.name, &scene)?;
+        Ok(if is_map { svg.replacen("<svg ", "<svg class=\"map\" ", 1) } else { svg })
     }
 }

@@ -24,6 +24,9 @@ pub(crate) fn save(folder: &Path, name: &str, figure: &Scene) -> Result<String> 
         std::fs::write(&path, bytes).map_err(|error| Error::io(&path, error))
     };
     let svg = kuva::backend::svg::SvgBackend::new().render_scene(figure);
+    // With a view box a page can draw it smaller; without, it would cut it off.
+    let view_box = format!("<svg viewBox=\"0 0 {} {}\" ", figure.width, figure.height);
+    let svg = svg.replacen("<svg ", &view_box, 1);
     write(&format!("{name}.svg"), svg.as_bytes())?;
     let name = format!("{name}.png");
     let png = raster::png(&svg, PNG_SCALE);

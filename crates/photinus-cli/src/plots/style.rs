@@ -16,6 +16,9 @@ pub(crate) const INLINE: &str = "#009E73";
 pub(crate) const WRONG: &str = "#D55E00";
 pub(crate) const FAINT: &str = "#666666";
 
+/// The font of the words, as that of the pages: a browser knows some of these.
+const WORDS: &str = "DejaVu Sans, Verdana, Liberation Sans, Arial, sans-serif";
+
 /// Members of a family, in order.
 pub(crate) const FAMILY: [&str; 7] = [TRUTH, BOUNDS, WRONG, ESTIMATE, INLINE, PERPENDICULAR, "#CC79A7"];
 
@@ -28,6 +31,8 @@ pub(crate) fn axes(plots: &[Plot], x_label: &str, y_label: &str) -> Layout {
         .with_width(640.0)
         .with_height(400.0)
         .with_theme(Theme::minimal())
+        .with_font_family(WORDS)
+        .with_tick_font_family(WORDS)
         .with_x_label(x_label)
         .with_y_label(y_label)
         .with_legend_entries(plots.iter().filter_map(entry).collect())

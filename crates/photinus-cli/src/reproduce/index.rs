@@ -41,5 +41,5 @@ fn of_figure(page: Page, report: &Report, player: Option<&Player>) -> Page {
         Some(player) => page.player(player),
         None => page,
     };
-    page.figure(&format!("figure-{name}.svg"), "", report.figure.caption()).html(&tables::html(report))
+    page.figure(&format!("figure-{name}.svg"), &heading, report.figure.caption()).html(&tables::html(report))
 }

@@ -53,7 +53,7 @@ pub(crate) struct Args {
     /// Write a page of plots and numbers, and each plot as PNG and SVG, into this folder, which is made
     #[arg(long, value_name = "DIR")]
     report: Option<PathBuf>,
-    /// An image of the frames' size that is 0 where not to look [default: that of the dataset, if any]
+    /// A mask: an image of the frames' size whose pixels are 0 where nothing is looked for [default: that of the dataset, if any]
     #[arg(long, value_name = "FILE")]
     mask: Option<PathBuf>,
     #[command(flatten)]

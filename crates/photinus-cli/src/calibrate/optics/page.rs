@@ -33,7 +33,7 @@ pub(super) fn write(folder: &Path, learned: &Learned, size_px: [usize; 2]) -> Re
     {
         let name = figure.name.clone();
         figure.layout = figure.layout.with_title(title);
-        page = page.svg(&figures.write(figure)?, &name, "", caption);
+        page = page.svg(&figures.write(figure)?, &name, caption);
     }
     page.write(folder)
 }

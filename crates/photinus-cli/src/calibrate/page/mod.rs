@@ -42,7 +42,7 @@ pub(super) fn write(folder: &Path, report: &CameraReport) -> Result<()> {
     {
         let name = figure.name.clone();
         figure.layout = figure.layout.with_title(title);
-        page = page.svg(&figures.write(figure)?, &name, "", &caption);
+        page = page.svg(&figures.write(figure)?, &name, &caption);
     }
     page.heading("Parameters")
         .text(&format!(

@@ -44,7 +44,9 @@ pub(crate) struct Drawn {
 pub(crate) fn plot(folder: &Path, evaluation: &Evaluation<'_>, truth: &[TruthFrame]) -> Result<Vec<Drawn>> {
     let neighbours: BTreeSet<u32> =
         truth.iter().flat_map(|frame| &frame.neighbours).map(|neighbour| neighbour.id).collect();
-    let over_time = neighbours.into_iter().flat_map(|id| over_time::figures(id, evaluation, truth));
+    let is_only = neighbours.len() == 1;
+    let whose = |id: u32| if is_only { String::new() } else { format!(" of neighbour {id}") };
+    let over_time = neighbours.iter().flat_map(|&id| over_time::figures(id, &whose(id), evaluation, truth));
     let draw = |Figure { name, title, caption, plots, layout }: Figure| {
         let scene = kuva::render::render::render_multiple(
             plots,

@@ -20,8 +20,13 @@ const BELOW: f64 = 0.8;
 /// What was found of a neighbour, by frame.
 type Found<'a> = BTreeMap<u64, &'a Pair<'a>>;
 
-/// The figures of neighbour `id`; none where it was never found.
-pub(super) fn figures(id: u32, evaluation: &Evaluation<'_>, truth: &[TruthFrame]) -> Vec<Figure> {
+/// The figures of neighbour `id`, called `whose` in their titles; none where it was never found.
+pub(super) fn figures(
+    id: u32,
+    whose: &str,
+    evaluation: &Evaluation<'_>,
+    truth: &[TruthFrame],
+) -> Vec<Figure> {
     let found: Found<'_> =
         evaluation.pairs.iter().filter(|pair| pair.truth.id == id).map(|pair| (pair.frame, pair)).collect();
     let mut there: Vec<(u64, f64, f64)> = truth
@@ -35,11 +40,11 @@ pub(super) fn figures(id: u32, evaluation: &Evaluation<'_>, truth: &[TruthFrame]
     if found.is_empty() {
         return Vec::new();
     }
-    [Some(distance(id, &there, &found)), error(id, &found)].into_iter().flatten().collect()
+    [Some(distance(id, whose, &there, &found)), error(id, whose, &found)].into_iter().flatten().collect()
 }
 
 /// Distances on a logarithmic axis, so that far bounds are shown and near ones are not flat. Truth lies beneath, wide and pale.
-fn distance(id: u32, there: &[(u64, f64, f64)], found: &Found<'_>) -> Figure {
+fn distance(id: u32, whose: &str, there: &[(u64, f64, f64)], found: &Found<'_>) -> Figure {
     let (nearest_m, farthest_m) =
         there.iter().fold((f64::INFINITY, 0.0_f64), |(near, far), at| (near.min(at.2), far.max(at.2)));
     let bounds = || found.values().map(|pair| &pair.found.distance_m);
@@ -82,7 +87,7 @@ fn distance(id: u32, there: &[(u64, f64, f64)], found: &Found<'_>) -> Figure {
         .with_y_axis_max(highest_m);
     Figure {
         name: format!("distance-over-time-{id}"),
-        title: format!("Distance of neighbour {id} over time"),
+        title: format!("Distance{whose} over time"),
         caption: "The strict bounds, which truth never leaves, as a band; truth as the wide line beneath; on it the estimate of each \
                   frame by itself, and the two estimates of the founding paper, l_A and l_B.",
         plots,
@@ -91,7 +96,7 @@ fn distance(id: u32, there: &[(u64, f64, f64)], found: &Found<'_>) -> Figure {
 }
 
 /// Estimate minus truth, with what the estimates claim.
-fn error(id: u32, found: &Found<'_>) -> Option<Figure> {
+fn error(id: u32, whose: &str, found: &Found<'_>) -> Option<Figure> {
     let of = |value: fn(&Pair<'_>) -> Option<f64>| -> Vec<(f64, f64)> {
         found.values().filter_map(|pair| Some((pair.time_s, value(pair)?))).collect()
     };
@@ -113,7 +118,7 @@ fn error(id: u32, found: &Found<'_>) -> Option<Figure> {
         .with_reference_line(level(0.0));
     Some(Figure {
         name: format!("distance-error-over-time-{id}"),
-        title: format!("Error of the distance of neighbour {id} over time"),
+        title: format!("Error of the distance{whose} over time"),
         caption: "Of right sigmas, 95 of 100 points lie within the band.",
         plots,
         layout,

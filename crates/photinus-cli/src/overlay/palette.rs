@@ -9,6 +9,8 @@ use super::colours;
 
 /// Levels of grey: every second one.
 const GREYS: u16 = 128;
+/// Pixels that are looked at together: most are grey side by side, and those need no table.
+const SIDE_BY_SIDE: usize = 32;
 /// Bits of each part of a colour by which the nearest one is looked up.
 const BITS: u32 = 5;
 
@@ -48,21 +50,28 @@ impl Palette {
 
     /// The entries of pixels, into a buffer that is used again.
     pub(super) fn entries_of(&self, pixels: &[PremultipliedColorU8], entries: &mut Vec<u8>) {
-        // Most pixels are like the one before.
-        let mut last = (PremultipliedColorU8::TRANSPARENT, 0);
-        entries.clear();
-        entries.extend(pixels.iter().map(|&pixel| {
-            if pixel != last.0 {
-                last = (pixel, self.entry_of(pixel));
+        entries.resize(pixels.len(), 0);
+        for (pixels, entries) in pixels.chunks(SIDE_BY_SIDE).zip(entries.chunks_mut(SIDE_BY_SIDE)) {
+            let coloured = pixels
+                .iter()
+                .fold(0, |sum, pixel| sum | (pixel.red() ^ pixel.green()) | (pixel.green() ^ pixel.blue()));
+            let shown = pixels.iter().zip(entries);
+            match coloured {
+                0 => shown.for_each(|(pixel, entry)| *entry = grey(pixel.red())),
+                _ => shown.for_each(|(&pixel, entry)| *entry = self.entry_of(pixel)),
             }
-            last.1
-        }));
+        }
     }
 
     fn entry_of(&self, pixel: PremultipliedColorU8) -> u8 {
         let [red, green, blue] = [pixel.red(), pixel.green(), pixel.blue()];
-        if red == green && green == blue { red >> 1 } else { self.nearest[place_of([red, green, blue])] }
+        if red == green && green == blue { grey(red) } else { self.nearest[place_of([red, green, blue])] }
     }
+}
+
+/// The entry of a level of grey.
+fn grey(level: u8) -> u8 {
+    level >> 1
 }
 
 /// Three quarters, half or a quarter of the way from one level to another.

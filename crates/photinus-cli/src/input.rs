@@ -36,10 +36,10 @@ pub(crate) struct InputArgs {
 /// What the user says about a dataset.
 #[derive(Clone, Debug, Default, clap::Args)]
 pub(crate) struct DatasetArgs {
-    /// Of a dataset with several cameras, only the one of this name
+    /// Use the camera of this name only, of a dataset with several
     #[arg(long, value_name = "NAME")]
     pub(crate) only: Option<String>,
-    /// Let a dataset name images outside of its folder
+    /// Allow a dataset to name images outside of its folder
     #[arg(long)]
     allow_outside: bool,
 }

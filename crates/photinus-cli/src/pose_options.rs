@@ -8,26 +8,26 @@ use crate::number;
 /// Priors of a neighbour's pose.
 #[derive(Debug, clap::Args)]
 pub(crate) struct PoseArgs {
-    /// How far a neighbour tilts against the vertical as a rule: standard deviation per axis, where gravity is known. The
-    /// error of the known gravity is part of it
+    /// Standard deviation of a neighbour's tilt against the vertical, per axis, where gravity is known; it includes the error of
+    /// gravity
     #[arg(long, value_name = "DEG", default_value_t = 5.0, value_parser = tilt_sigma)]
     tilt_sigma: f64,
-    /// How far the LEDs are from where the airframe's file says: standard deviation per axis, in metres
-    /// [default: what the file says of it, 0.003 where it does not]
+    /// Standard deviation of an LED's place about that in the airframe's file, per axis, in metres
+    /// [default: that in the file, else 0.003]
     #[arg(long, value_name = "METRES", value_parser = marker_sigma)]
     marker_sigma: Option<f64>,
-    /// How much the power of an LED differs from what the airframe's file says: standard deviation, as a share
-    /// [default: what the file says of it, 0.2 where it does not]
+    /// Standard deviation of an LED's power about that in the airframe's file, as a share
+    /// [default: that in the file, else 0.2]
     #[arg(long, value_name = "SHARE", value_parser = power_spread)]
     power_spread: Option<f64>,
-    /// How much larger or smaller the whole airframe is than its file says, or the camera's focal length: standard deviation, as a share. No
-    /// picture tells it: all distances are off by as much
+    /// Standard deviation of the size of the whole airframe, or of the focal length, about that in the file, as a share: no picture tells
+    /// it, and all distances are off by as much
     #[arg(long, value_name = "SHARE", default_value_t = 0.01, value_parser = scale_sigma)]
     scale_sigma: f64,
-    /// How often a marker that must show does not, dead or hidden
+    /// Probability that a marker that faces the camera gives no spot, because it is dead or hidden
     #[arg(long, alias = "missed", value_name = "SHARE", default_value_t = 0.02, value_parser = miss_rate)]
     miss_rate: f64,
-    /// Leave the brightness of spots out of the pose: for LEDs whose power or lobes are not known
+    /// Do not use the brightness of spots for poses: for LEDs whose power or lobes are not known
     #[arg(long)]
     no_brightness: bool,
 }

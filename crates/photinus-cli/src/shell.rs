@@ -14,7 +14,7 @@ Examples:
   photinus completions bash > photinus.bash
   photinus completions fish > ~/.config/fish/completions/photinus.fish";
 
-/// Print what completes commands and options in a shell
+/// Print a script that completes commands and options in a shell
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct CompletionsArgs {

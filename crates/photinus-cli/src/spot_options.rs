@@ -15,16 +15,16 @@ use crate::terminal::Terminal;
 /// What is bright, and where not to look.
 #[derive(Debug, clap::Args)]
 pub(crate) struct SpotArgs {
-    /// A pixel is bright N grey levels above the background around it [default: 20]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..), conflicts_with = "threshold")]
+    /// A pixel is bright if it is N grey levels above the background around it [default: 20]
+    #[arg(long, value_name = "N", value_parser = number::level, conflicts_with = "threshold")]
     contrast: Option<u8>,
-    /// A pixel is bright from the grey level N on: the paper's rule, with 200
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..))]
+    /// A pixel is bright from grey level N on; the paper's rule is 200
+    #[arg(long, value_name = "N", value_parser = number::level)]
     threshold: Option<u8>,
-    /// A spot with less than this share of the light of the brightest is more likely its reflection than a marker; 0: nothing reflects
+    /// A spot with less than this share of the brightest spot's light is more likely its reflection than a marker; with 0 nothing reflects
     #[arg(long, value_name = "SHARE", default_value_t = Shape::default().reflection_ratio, value_parser = share, alias = "faintest")]
     reflection_ratio: f64,
-    /// An image of the frames' size that is 0 where not to look [default: that of the dataset, if any]
+    /// A mask: an image of the frames' size whose pixels are 0 where nothing is looked for [default: that of the dataset, if any]
     #[arg(long, value_name = "FILE")]
     mask: Option<PathBuf>,
 }

@@ -17,7 +17,7 @@ use crate::interrupt;
 /// What the user says about files that are there already.
 #[derive(Clone, Copy, Debug, Default, clap::Args)]
 pub(crate) struct WriteArgs {
-    /// Write over what is there already; files that are read in the same run stay all the same
+    /// Overwrite files that exist already; files that this run reads are never overwritten
     #[arg(long)]
     pub(crate) force: bool,
 }

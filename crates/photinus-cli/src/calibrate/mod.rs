@@ -20,7 +20,7 @@ use crate::terminal::Terminal;
 
 pub(crate) use optics::Width;
 
-/// Calibrate: from photos and recordings to a camera whose errors are known
+/// Calibrate cameras and airframes from photos and recordings, with the error of every number
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
     #[command(subcommand)]

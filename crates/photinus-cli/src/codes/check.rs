@@ -18,7 +18,7 @@ Examples:
 
 Exits with 2 when words cannot be told apart, or what was asked for is not there.";
 
-/// Tell what a book truly has: distances at any shift, runs, duty, frames until a word is known
+/// Tell what a book holds: distances at any shift, runs, duty, and how many frames it takes to know a word
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Args {

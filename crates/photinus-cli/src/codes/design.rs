@@ -9,6 +9,7 @@ use photinus_io::codes::codes_text;
 use super::duty;
 use crate::ending::Content;
 use crate::failure::Failure;
+use crate::number;
 use crate::targets::{Targets, WriteArgs};
 use crate::terminal::Terminal;
 
@@ -43,19 +44,23 @@ pub(crate) struct Args {
     #[arg(long, value_name = "FROM..TO", value_parser = duty)]
     duty: Option<RangeInclusive<f64>>,
     /// How many times longer to search than usual
-    #[arg(long, value_name = "TIMES", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    #[arg(long, value_name = "TIMES", default_value_t = 1, value_parser = times)]
     effort: u32,
-    /// Where the search begins
+    /// Seed of the search
     #[arg(long, value_name = "NUMBER", default_value_t = Effort::default().seed)]
     seed: u64,
     /// Where to write the book; standard output without
     #[arg(long, value_name = "FILE", default_value = "-")]
     out: PathBuf,
-    /// Say nothing but errors and results
+    /// Print errors and results only
     #[arg(short, long)]
     quiet: bool,
     #[command(flatten)]
     write: WriteArgs,
+}
+
+fn times(text: &str) -> Result<u32, String> {
+    number::whole(text, 1..=100_000, "times")
 }
 
 impl Args {

@@ -14,7 +14,7 @@ use crate::terminal::Terminal;
 
 pub(crate) use told::report;
 
-/// Code books: design them, check them, take one that comes with the program
+/// Design and check books of blink words, or write one that comes with the program
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
     #[command(subcommand)]

@@ -29,20 +29,20 @@ Examples:
 Faults happen in the order in which they are given; the same seed gives the same
 bytes. Frames are 8 bit before and after each.";
 
-/// Wrap faults around the frames of a dataset: noise, lamps, dead LEDs, lost frames, ...
+/// Write a dataset again with faults: noise, lamps, dead LEDs, lost frames, ...
 #[derive(Debug, clap::Args)]
 #[command(after_help = help())]
 pub(crate) struct Args {
     /// The dataset folder
     #[arg(value_name = "DATASET")]
     dataset: PathBuf,
-    /// What goes wrong, once for each; the words are below
+    /// A fault, of those below; may be given several times
     #[arg(long = "fault", value_name = "WORD", required = true)]
     faults: Vec<Fault>,
     /// The new dataset folder
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
-    /// Where random numbers start
+    /// Seed of the random numbers
     #[arg(long, value_name = "SEED", default_value_t = 0)]
     seed: u64,
     #[command(flatten)]

@@ -34,3 +34,4 @@ mod soak;
 mod stage;
 mod stopped;
 mod track;
+mod walk;

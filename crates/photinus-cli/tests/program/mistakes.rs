@@ -28,6 +28,7 @@ fn stage(test: &str) -> Stage {
         "{\"dataset\":\"rec\",\"settings\":{},\"frames\":{\"truth\":2,\"evaluated\":2}}\n",
     );
     stage.file("other.csv", "a,b,c\n1,2,3\n");
+    stage.file("poses.csv", "time_s,x_m,y_m,z_m,qx,qy,qz,qw\n0,0,0,1,0,0,0,1\n1,0,0,1,0,0,0,1\n");
     stage.file("keys.yaml", "detector: 3\ntracking: 4\n");
     let levels = |black: usize| (0..96 * 64).map(|px| if px < black { 0 } else { 255 }).collect();
     write_png(stage.path("mask-inverted.png"), &GreyImage::new(levels(5000), 96, 64).unwrap().view())
@@ -111,10 +112,20 @@ const FILES: [Mistake; 27] = [
     ("convert v.mp4 out.y4m", 2, &["this is an MP4 video, which cannot become a Y4M video; decode it"]),
 ];
 
-const OPTIONS: [Mistake; 24] = [
-    ("detect frame.png --contrast 0.1", 2, &["'0.1' for '--contrast <N>'", "give a whole number"]),
-    ("detect frame.png --contrast 300", 2, &["300 is not in 1..=255"]),
-    ("detect frame.png --threshold dark", 2, &["give a whole number"]),
+const OPTIONS: [Mistake; 28] = [
+    (
+        "detect frame.png --contrast 0.1",
+        2,
+        &[
+            "'0.1' for '--contrast <N>': give grey levels, a whole number of 1 to 255: 0.1 of full scale is 26",
+        ],
+    ),
+    (
+        "detect frame.png --contrast 300",
+        2,
+        &["'300' for '--contrast <N>': give grey levels, a whole number of 1 to 255"],
+    ),
+    ("detect frame.png --threshold dark", 2, &["give grey levels, a whole number of 1 to 255"]),
     ("detect frame.png --frames 0", 2, &["give a whole number, 1 or more"]),
     ("detect frame.png --overlay seen --overlay-every 0", 2, &["give a whole number, 1 or more"]),
     ("detect frame.png --overlay-every 5", 2, &["--overlay"]),
@@ -147,7 +158,23 @@ const OPTIONS: [Mistake; 24] = [
         &["give metres, above 0, without the unit"],
     ),
     ("reproduce 9 --out x", 2, &["choose among 4, 7, 8"]),
-    ("convert camera.toml camera", 2, &["cannot become a dataset folder; choose --to toml or --to ocam"]),
+    ("convert camera.toml camera.yaml", 2, &["choose --to kalibr, --to ros or --to uvdar"]),
+    (
+        "evaluate empty.txt missing.jsonl",
+        2,
+        &["empty.txt: this is a file that holds nothing", "not ground truth"],
+    ),
+    ("evaluate missing results.jsonl", 2, &["missing: ", "check the path"]),
+    (
+        "evaluate poses.csv results.jsonl",
+        2,
+        &["poses.csv: this is a table of poses; give that of the other vehicle, too, as --target FILE"],
+    ),
+    (
+        "convert camera.toml camera",
+        2,
+        &["cannot become a dataset folder; choose --to toml, ocam, kalibr, ros or uvdar"],
+    ),
 ];
 
 /// What is done all the same, and what is said about it.

@@ -55,7 +55,7 @@ pub(crate) struct Args {
     /// Draw the areas and the curves, PNG and SVG, into this folder, which is made
     #[arg(long, value_name = "DIR")]
     plots: Option<PathBuf>,
-    /// By what share other LEDs of the fleet may be brighter than this one, in percent
+    /// How much brighter than this one other LEDs of the fleet may be, in percent
     #[arg(long, value_name = "PERCENT", default_value_t = 20.0, value_parser = percent)]
     brighter: f64,
     #[command(flatten)]

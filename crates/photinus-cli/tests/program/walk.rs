@@ -1,0 +1,148 @@
+//! A newcomer's walk: every example of the help, as it stands there, with files of the names that it names.
+
+use std::collections::BTreeSet;
+use std::path::Path;
+
+use photinus_io::image::{GreyImage, read_image, write_png};
+use photinus_io::video::Y4mWriter;
+
+use crate::stage::Stage;
+
+/// Commands whose examples are walked; the others calibrate from photos that cannot be part of the repository, or simulate for minutes,
+/// and have tests of their own.
+const WALKED: [&str; 11] = [
+    "locate",
+    "detect",
+    "info",
+    "doctor",
+    "convert",
+    "inject",
+    "evaluate",
+    "completions",
+    "codes check",
+    "codes preset",
+    "simulate",
+];
+
+/// What an example has that a test cannot: other programs, minutes of simulation, a recording of a robot alone, a home folder, two logs of
+/// a flight (`evaluate::two_logs_are_a_truth` has them).
+const LEFT_OUT: [&str; 7] =
+    ["ffmpeg", "jq", "outdoor-flight.toml", "swarm-12.toml", "morning", "~/", "--target"];
+
+/// Options and commands whose next word is written to.
+const WRITES: [&str; 8] = ["--out", "--csv", "--overlay", "--json", "--plots", "--report", "--ocam", ">"];
+
+/// The example flight of the repository, 4 frames with truth.
+fn flight() -> &'static Path {
+    Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/three-hexarotors"))
+}
+
+fn copy(from: &Path, to: &Path) {
+    std::fs::create_dir_all(to).unwrap();
+    for entry in std::fs::read_dir(from).unwrap() {
+        let (path, name) = entry.map(|entry| (entry.path(), entry.file_name())).unwrap();
+        match path.is_dir() {
+            true => copy(&path, &to.join(name)),
+            false => drop(std::fs::copy(&path, to.join(name)).unwrap()),
+        }
+    }
+}
+
+/// A folder with every file that an example reads, but none of `written`.
+fn provide(stage: &Stage, written: &BTreeSet<String>) {
+    for folder in ["recording", "flight", "bad-day", "other-flight"] {
+        copy(flight(), &stage.path(folder));
+    }
+    copy(&flight().join("images"), &stage.path("frames"));
+    copy(&flight().join("images"), &stage.path("photos"));
+    copy(&flight().join("../../scenes"), &stage.path("scenes"));
+    let frames: Vec<GreyImage> =
+        (0..2).map(|n| read_image(flight().join(format!("images/{n:06}.png"))).unwrap().image).collect();
+    let size = (frames[0].width(), frames[0].height());
+    for (name, frame) in ["photo.png", "a.png"].iter().zip(&frames) {
+        write_png(stage.path(name), &frame.view()).unwrap();
+    }
+    let white = GreyImage::new(vec![255; size.0 * size.1], size.0, size.1).unwrap();
+    let mut mask = white.pixels().to_vec();
+    mask[..1000].fill(0);
+    std::fs::remove_file(stage.path("frame.png")).unwrap();
+    std::fs::create_dir_all(stage.path("photinus-demo")).unwrap();
+    write_png(stage.path("mask.png"), &GreyImage::new(mask, size.0, size.1).unwrap().view()).unwrap();
+    let mut video = Y4mWriter::new(Vec::new(), "video.y4m", size, (5, 1)).unwrap();
+    frames.iter().for_each(|frame| video.write(&frame.view()).unwrap());
+    stage.file("video.y4m", video.finish().unwrap());
+    stage.file("frames.raw", frames.iter().flat_map(|frame| frame.pixels().to_vec()).collect::<Vec<u8>>());
+    stage.file("gravity.csv", "time_s,gx,gy,gz\n0,0,1,0\n10,0,1,0\n");
+    for made in [
+        "convert flight/camera.toml camera.txt --force",
+        "convert flight/camera.toml calib_results.txt",
+        "convert flight/camera.toml calib.txt",
+        "convert flight/camera.toml recalibrated.txt",
+        "convert flight/camera.toml kalibr.yaml --to kalibr",
+        "convert flight/camera.toml camera.toml --force",
+        "convert flight/airframe.toml airframe.toml",
+        "convert flight/airframe.toml quad.toml",
+        "convert flight/airframe.toml quad.txt",
+        "detect flight -q --out spots.jsonl",
+        "locate flight -q --out results.jsonl",
+        "codes preset l18-d3-r2 --out book.txt",
+    ] {
+        let done = stage.run(made);
+        assert_eq!(done.code, 0, "{made}: {}", done.err);
+    }
+    for (from, to) in [
+        ("flight/truth.jsonl", "photinus-demo/truth.jsonl"),
+        ("results.jsonl", "photinus-demo/results.jsonl"),
+        ("camera.toml", "measured.toml"),
+        ("airframe.toml", "learned.toml"),
+    ] {
+        std::fs::copy(stage.path(from), stage.path(to)).unwrap();
+    }
+    for name in written.iter().map(|name| stage.path(name)) {
+        drop(if name.is_dir() { std::fs::remove_dir_all(name) } else { std::fs::remove_file(name) });
+    }
+}
+
+/// The examples of a help, each in one line.
+fn examples(help: &str) -> Vec<String> {
+    let (_, rest) = help.split_once("Examples:\n").unwrap();
+    let block = rest.split("\n\n").next().unwrap();
+    let joined = block.replace(" \\\n", " ").replace(" |\n", " | ");
+    let lines = joined.lines().map(str::trim).filter(|line| !line.starts_with('#'));
+    lines.map(|line| line.split_whitespace().collect::<Vec<_>>().join(" ")).collect()
+}
+
+/// What an example writes.
+fn written(example: &str) -> BTreeSet<String> {
+    let words: Vec<&str> = example.split(' ').collect();
+    let mut written: BTreeSet<String> = words
+        .windows(2)
+        .filter(|pair| WRITES.contains(&pair[0]) && !example.contains("--resume"))
+        .map(|pair| pair[1].to_owned())
+        .collect();
+    if let Some(options) = example.strip_prefix("photinus convert ") {
+        let places = options.split(' ').take_while(|word| !word.starts_with("--"));
+        written.extend(places.last().map(str::to_owned));
+    }
+    written
+}
+
+#[test]
+fn every_example_does_what_it_says() {
+    let help = Stage::new("walk-help");
+    let mut walked = 0;
+    for command in WALKED {
+        let all = examples(&help.run(&format!("{command} --help")).out);
+        for example in all.iter().filter(|example| !LEFT_OUT.iter().any(|part| example.contains(part))) {
+            let stage = Stage::new(&format!("walk-{walked}"));
+            provide(&stage, &written(example));
+            let done = stage.shell(&format!("photinus() {{ \"$photinus\" \"$@\"; }}; {example}"));
+            assert_eq!(done.code, 0, "{example}\n{}{}", done.out, done.err);
+            for name in written(example).iter().filter(|name| *name != "-") {
+                assert!(stage.path(name).exists(), "{example} leaves no {name}");
+            }
+            walked += 1;
+        }
+    }
+    assert!(walked >= 35, "{walked}");
+}

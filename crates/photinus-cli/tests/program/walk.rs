@@ -1,4 +1,4 @@
-//! A newcomer's walk: every example of the help, as it stands there, with files of the names that it names.
+//! A newcomer's walk: every example of the README and of the help, as it stands there, with files of the names that it names.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -50,7 +50,7 @@ fn copy(from: &Path, to: &Path) {
 
 /// A folder with every file that an example reads, but none of `written`.
 fn provide(stage: &Stage, written: &BTreeSet<String>) {
-    for folder in ["recording", "flight", "bad-day", "other-flight"] {
+    for folder in ["recording", "flight", "bad-day", "other-flight", "examples/three-hexarotors"] {
         copy(flight(), &stage.path(folder));
     }
     copy(&flight().join("images"), &stage.path("frames"));
@@ -112,6 +112,14 @@ fn examples(help: &str) -> Vec<String> {
     lines.map(|line| line.split_whitespace().collect::<Vec<_>>().join(" ")).collect()
 }
 
+/// The commands of the README's blocks; the demo has a test of its own.
+fn of_readme() -> Vec<String> {
+    let blocks = include_str!("../../../../README.md").split("```sh\n").skip(1);
+    let lines = blocks.flat_map(|rest| rest.split("```").next().unwrap_or_default().lines());
+    let commands = lines.map(|line| line.replace("cargo run --release -- ", "photinus "));
+    commands.filter(|line| line.starts_with("photinus ") && line != "photinus demo").collect()
+}
+
 /// What an example writes.
 fn written(example: &str) -> BTreeSet<String> {
     let words: Vec<&str> = example.split(' ').collect();
@@ -130,19 +138,17 @@ fn written(example: &str) -> BTreeSet<String> {
 #[test]
 fn every_example_does_what_it_says() {
     let help = Stage::new("walk-help");
-    let mut walked = 0;
-    for command in WALKED {
-        let all = examples(&help.run(&format!("{command} --help")).out);
-        for example in all.iter().filter(|example| !LEFT_OUT.iter().any(|part| example.contains(part))) {
-            let stage = Stage::new(&format!("walk-{walked}"));
-            provide(&stage, &written(example));
-            let done = stage.shell(&format!("photinus() {{ \"$photinus\" \"$@\"; }}; {example}"));
-            assert_eq!(done.code, 0, "{example}\n{}{}", done.out, done.err);
-            for name in written(example).iter().filter(|name| *name != "-") {
-                assert!(stage.path(name).exists(), "{example} leaves no {name}");
-            }
-            walked += 1;
+    let of_help = WALKED.iter().flat_map(|command| examples(&help.run(&format!("{command} --help")).out));
+    let is_walked = |example: &String| !LEFT_OUT.iter().any(|part| example.contains(part));
+    let walked: Vec<String> = of_readme().into_iter().chain(of_help).filter(is_walked).collect();
+    assert!(walked.len() >= 37, "{}", walked.len());
+    for (number, example) in walked.iter().enumerate() {
+        let stage = Stage::new(&format!("walk-{number}"));
+        provide(&stage, &written(example));
+        let done = stage.shell(&format!("photinus() {{ \"$photinus\" \"$@\"; }}; {example}"));
+        assert_eq!(done.code, 0, "{example}\n{}{}", done.out, done.err);
+        for name in written(example).iter().filter(|name| *name != "-") {
+            assert!(stage.path(name).exists(), "{example} leaves no {name}");
         }
     }
-    assert!(walked >= 35, "{walked}");
 }

@@ -14,8 +14,8 @@ use photinus_io::camera::{parse_camera, write_camera_toml};
 use photinus_io::codes::{codes_text, parse_codes};
 use photinus_io::corners::parse_corners;
 use photinus_io::dataset::{
-    DatasetInfo, DatasetToml, ImuRow, OdometryRow, parse_frames_csv, parse_imu, parse_odometry, parse_truth,
-    parse_vehicles, vehicles_text,
+    DatasetInfo, DatasetToml, GravityLog, ImuRow, OdometryRow, parse_frames_csv, parse_imu, parse_odometry,
+    parse_poses, parse_truth, parse_vehicles, vehicles_text,
 };
 use photinus_io::image::decode_image;
 use photinus_io::results::ResultsReader;
@@ -33,6 +33,8 @@ const VEHICLES: &str = "[[vehicle]]\nid = 7\nairframe = \"a.toml\"\nwords = [1, 
 const IMU: &str = "time_s,wx_rad_s,wy_rad_s,wz_rad_s\n0.0,0.1,-0.25,3e-5\n0.005,0,0,1\n";
 const ODOMETRY: &str =
     "time_s,x_m,y_m,z_m,qx,qy,qz,qw,vx_m_s,vy_m_s,vz_m_s\n0.5,1,-2,3,0,0.6,0,0.8,0,0,1.5\n";
+const POSES: &str = "time_s,x_m,y_m,z_m,qx,qy,qz,qw\n0.5,1,-2,3,0,0.6,0,0.8\n";
+const GRAVITY: &str = "time_s,gx,gy,gz\n0,0,0.6,0.8\n1.5,0,1,0\n";
 const FRAMES: &str = "frame,time_s,image,gx,gy,gz\n0,0.0,images/0.png,,,\n1,0.016,images/1.png,0.0,1.0,0.0\n";
 const TRUTH: &str = "{\"frame\":0,\"time_s\":0.5,\"neighbours\":[{\"id\":1,\"position_m\":[1,2,3],\
     \"orientation_xyzw\":[0,0,0,1],\"distance_m\":3.7,\"leds\":[{\"u_px\":1.5,\"v_px\":2}]}]}\n";
@@ -109,6 +111,12 @@ fn parse_all(bytes: &[u8]) {
     if let Ok(rows) = parse_odometry(&text, "t") {
         assert_eq!(parse_odometry(&odometry_text(&rows), "t").expect("what was written is read"), rows);
     }
+    if let Ok(rows) = parse_poses(&text, "t") {
+        assert!(!rows.is_empty());
+    }
+    if let Ok(log) = GravityLog::parse(&text, "t") {
+        let _ = [-1.0, 0.7, f64::NAN].map(|time_s| log.at(time_s));
+    }
     let _ = parse_frames_csv(&text, "t");
     let _ = parse_truth(&text, "t");
     if let Ok(file) = parse_airframe(&text, "t") {
@@ -148,8 +156,8 @@ fn y4m((width, height): (usize, usize), pixels: &[u8], frames: usize) -> Vec<u8>
 fn valid_files() -> Vec<Vec<u8>> {
     use image::ImageFormat::{Bmp, Png, Pnm, Tiff};
     let texts = [
-        DATASET, RIG, VEHICLES, IMU, ODOMETRY, FRAMES, TRUTH, AIRFRAME, RING, LAYOUT, BLINK, SPOT_CURVE,
-        RESULTS,
+        DATASET, RIG, VEHICLES, IMU, ODOMETRY, POSES, GRAVITY, FRAMES, TRUTH, AIRFRAME, RING, LAYOUT, BLINK,
+        SPOT_CURVE, RESULTS,
     ];
     let calibrations = [SPOT_SIZES, KNOWN, LEDS, MOUNTING, CORNERS];
     let texts = texts.into_iter().chain(calibrations).chain(CAMERAS).map(|text| text.as_bytes().to_vec());
@@ -237,6 +245,8 @@ fn the_files_to_damage_are_valid() {
     parse_vehicles(VEHICLES, "t").unwrap();
     parse_imu(IMU, "t").unwrap();
     parse_odometry(ODOMETRY, "t").unwrap();
+    assert_eq!(parse_poses(ODOMETRY, "t").unwrap(), parse_poses(POSES, "t").unwrap());
+    GravityLog::parse(GRAVITY, "t").unwrap();
     parse_frames_csv(FRAMES, "t").unwrap();
     parse_truth(TRUTH, "t").unwrap();
     for text in [AIRFRAME, RING, LAYOUT] {

@@ -129,21 +129,13 @@ impl Args {
 
 /// Runs the command.
 pub(crate) fn run(args: &Args, terminal: &Terminal) -> Result<(), Failure> {
-    let (truth, mut results, bad_lines) = match &args.target {
-        Some(target) => {
-            let (records, bad_lines) = read_records(args, terminal)?;
-            (logs::truth(&args.dataset, target, &records, args.clock_offset)?, records, bad_lines)
-        }
-        None => {
-            let truth = GroundTruth::read(&args.dataset, args.only.as_ref())?;
-            let (records, bad_lines) = read_records(args, terminal)?;
-            check_frames(args, &truth, &records)?;
-            (truth, records, bad_lines)
-        }
-    };
-    let mut targets = Targets::new(args.write, truth.files.iter().cloned().chain([args.results.clone()]));
+    let source = Source::of(args)?;
+    let read = source.files(args).into_iter().chain([args.results.clone()]);
+    let mut targets = Targets::new(args.write, read);
     let json = args.json.as_deref().map(|path| targets.file(path, Content::Json)).transpose()?;
     let plots = args.plots.as_deref().map(|path| targets.folder(path)).transpose()?;
+    let (mut results, bad_lines) = read_records(args, terminal)?;
+    let truth = source.truth(args, &results)?;
     results.retain(|record| record.camera == truth.camera);
     let settings = args.settings(&truth);
     let evaluation =
@@ -168,6 +160,40 @@ pub(crate) fn run(args: &Args, terminal: &Terminal) -> Result<(), Failure> {
         terminal.result(told(&truth, &evaluation.scores).trim_end())?;
     }
     if bad_lines > 0 { Err(Failure::Frames { all: results.is_empty() }) } else { Ok(()) }
+}
+
+/// Where truth comes from.
+enum Source<'a> {
+    /// It is there.
+    Known(Box<GroundTruth>),
+    /// The observer's log, that of the target, and the results make it.
+    Logs { target: &'a Path },
+}
+
+impl<'a> Source<'a> {
+    fn of(args: &'a Args) -> Result<Self, Failure> {
+        match &args.target {
+            Some(target) => Ok(Self::Logs { target }),
+            None => {
+                GroundTruth::read(&args.dataset, args.only.as_ref()).map(|truth| Self::Known(truth.into()))
+            }
+        }
+    }
+
+    /// The files that are read for it.
+    fn files(&self, args: &Args) -> Vec<PathBuf> {
+        match self {
+            Self::Known(truth) => truth.files.clone(),
+            Self::Logs { target } => vec![args.dataset.clone(), target.to_path_buf()],
+        }
+    }
+
+    fn truth(self, args: &Args, results: &[FrameRecord]) -> Result<GroundTruth, Failure> {
+        match self {
+            Self::Known(truth) => check_frames(args, &truth, results).map(|()| *truth),
+            Self::Logs { target } => logs::truth(&args.dataset, target, results, args.clock_offset),
+        }
+    }
 }
 
 /// All tables, and before them what was estimated to have a truth.

@@ -80,7 +80,8 @@ pub fn read_poses(path: impl AsRef<Path>) -> Result<Vec<TimedPose>> {
 /// As [`parse_odometry`].
 pub fn parse_poses(text: &str, path: impl AsRef<Path>) -> Result<Vec<TimedPose>> {
     let path = path.as_ref();
-    if text.lines().next().is_some_and(|first| first.contains(COLUMNS[8].0)) {
+    let header = text.lines().find(|line| !line.trim().is_empty());
+    if header.is_some_and(|names| names.contains(COLUMNS[8].0)) {
         let rows = parse_odometry(text, path)?;
         return Ok(rows.into_iter().map(|row| TimedPose { time_s: row.time_s, pose: row.pose }).collect());
     }

@@ -5,7 +5,7 @@ use std::fs::File;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use tempfile::{Builder, NamedTempFile, TempDir};
+use tempfile::{Builder, NamedTempFile};
 
 use crate::{Error, Result};
 
@@ -105,8 +105,19 @@ pub fn write_whole(path: impl AsRef<Path>, bytes: &[u8], existing: Existing) -> 
 /// A folder in the making; unless it is kept, nothing of it stays.
 #[derive(Debug)]
 pub struct WholeFolder {
-    making: TempDir,
+    making: Making,
     target: PathBuf,
+}
+
+/// A folder that goes with what is in it, unless it has got another name by then.
+#[derive(Debug)]
+struct Making(PathBuf);
+
+impl Drop for Making {
+    fn drop(&mut self) {
+        // What cannot be removed has a name that says whose it is.
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
 }
 
 impl WholeFolder {
@@ -118,19 +129,17 @@ impl WholeFolder {
         let path = path.as_ref();
         let target = path.canonicalize().unwrap_or_else(|_| path.to_owned());
         let prefix = prefix_of(&target);
-        let mut builder = Builder::new();
-        builder.prefix(&prefix).suffix(SUFFIX);
-        ordinary(&mut builder);
-        let folder = folder_of(&target);
-        // Of a refusal its kind is kept: its text names the temporary folder, which nobody gave.
-        let making = std::fs::metadata(folder)
-            .and_then(|_| builder.tempdir_in(folder).map_err(|error| error.kind().into()));
-        Ok(Self { making: making.map_err(|error| refuse(path, error))?, target })
+        let create = |path: &Path| std::fs::create_dir(path);
+        let made = Builder::new().prefix(&prefix).suffix(SUFFIX).make_in(folder_of(&target), create);
+        let (_, making) = made
+            .and_then(|made| made.keep().map_err(|error| error.error))
+            .map_err(|error| refuse(path, error))?;
+        Ok(Self { making: Making(making), target })
     }
 
     /// Where to write what belongs into it.
     pub fn path(&self) -> &Path {
-        self.making.path()
+        &self.making.0
     }
 
     /// It is whole: gives it its name. Of a folder that is there already, files of the same names are replaced and the others
@@ -140,8 +149,8 @@ impl WholeFolder {
     /// [`Error`] when the operating system refuses.
     pub fn keep(self) -> Result<()> {
         let moved = match self.target.is_dir() {
-            true => merge(self.making.path(), &self.target),
-            false => std::fs::rename(self.making.path(), &self.target),
+            true => merge(&self.making.0, &self.target),
+            false => std::fs::rename(&self.making.0, &self.target),
         };
         moved.map_err(|error| refuse(&self.target, error))?;
         // After a rename there is nothing left to remove, after a merge empty folders only.
@@ -152,7 +161,7 @@ impl WholeFolder {
     /// The same error, told of the folder's name to be in place of its temporary one.
     #[must_use]
     pub fn tell(&self, mut error: Error) -> Error {
-        if let Ok(inside) = error.file.strip_prefix(self.making.path()) {
+        if let Ok(inside) = error.file.strip_prefix(&self.making.0) {
             error.file = self.target.join(inside);
         }
         error
@@ -180,16 +189,6 @@ fn prefix_of(target: &Path) -> OsString {
     prefix.push(".");
     prefix
 }
-
-/// What anybody may do who may do it to other new folders; temporary ones are private otherwise.
-#[cfg(unix)]
-fn ordinary(builder: &mut Builder<'_, '_>) {
-    use std::os::unix::fs::PermissionsExt;
-    builder.permissions(std::fs::Permissions::from_mode(0o777));
-}
-
-#[cfg(not(unix))]
-fn ordinary(_: &mut Builder<'_, '_>) {}
 
 /// The folder that a target stands in.
 fn folder_of(target: &Path) -> &Path {

@@ -51,7 +51,7 @@ pub enum Cause {
     Format(String),
     /// The text is of the format, and its keys or values are not those that belong there.
     #[error("{0}")]
-    Content(#[from] ContentError),
+    Content(Box<ContentError>),
     /// The pixels do not make a frame.
     #[error("{0}")]
     Frame(#[from] photinus::frame::FrameError),
@@ -61,6 +61,12 @@ pub enum Cause {
     /// The numbers do not make a camera.
     #[error("{0}")]
     Camera(#[from] photinus::camera::CameraError),
+}
+
+impl From<ContentError> for Cause {
+    fn from(error: ContentError) -> Self {
+        Self::Content(Box::new(error))
+    }
 }
 
 impl Error {

@@ -74,14 +74,13 @@ pub(super) fn table(alignment: &Alignment) -> String {
             row(&format!("{name}, {axis} m"), format!("{metres:.3}"), format!("{error:.3}"));
         }
     }
-    let turn = alignment.body_from_camera.coords;
-    let turned: Vec<String> = turn.iter().map(|part| format!("{part:.4}")).collect();
+    let turn = alignment.body_from_camera.coords.map(|part| format!("{part:.4}"));
     let worst_deg = sigma.rotation_rad.max().to_degrees();
-    row("body_from_camera xyzw", turned.join(" "), format!("{worst_deg:.2} deg"));
     format!(
-        "alignment of the logs, estimated from {} frames of these results: what is the same in all frames does not show in the \
-         scores\n{table}\n\n",
-        alignment.frames
+        "alignment of the logs, estimated from {} frames\n{table}\n  body_from_camera xyzw  {}  +- {worst_deg:.2} deg\n  \
+         what is the same in all frames hides in it and not in the scores\n\n",
+        alignment.frames,
+        turn.as_slice().join(" ")
     )
 }
 

@@ -281,12 +281,15 @@ fn a_truth_file_alone_gives_the_same_scores() {
 /// Where an observer and its target were, by the clock of their logs.
 fn flown(time_s: f64) -> [Isometry3<f64>; 2] {
     let pose = |t: f64, far_m: f64| {
-        let place =
-            Vector3::new(far_m + (0.7 * t).sin(), 1.5 * (0.4 * t).cos(), 5.0 + 0.8 * (0.31 * t).sin());
+        let place = Vector3::new(
+            far_m + libm::sin(0.7 * t),
+            1.5 * libm::cos(0.4 * t),
+            5.0 + 0.8 * libm::sin(0.31 * t),
+        );
         let turn = UnitQuaternion::from_euler_angles(
-            0.2 * (1.3 * t).sin(),
-            0.2 * (0.9 * t).cos(),
-            0.8 * (0.5 * t).sin(),
+            0.2 * libm::sin(1.3 * t),
+            0.2 * libm::cos(0.9 * t),
+            0.8 * libm::sin(0.5 * t),
         );
         Isometry3::from_parts(place.into(), turn)
     };
@@ -317,7 +320,7 @@ fn two_logs_are_a_truth() {
         let mut record = result(u64::from(frame as u32));
         record.time_s = Some(time_s);
         // Half a centimetre of what looks like noise.
-        let wobble = 0.005 * (37.0 * time_s).sin();
+        let wobble = 0.005 * libm::sin(37.0 * time_s);
         let neighbour = &mut record.neighbours[0];
         neighbour.position_m = Some((seen * (1.0 + wobble / seen.norm())).into());
         neighbour.bearing = seen.normalize().into();

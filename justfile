@@ -1,7 +1,7 @@
 # One command for each chore; `.ci/run` takes the same steps as `check`.
 
 # Formatting, lints, documentation, tests: what must be green before a change lands.
-check: format-check lint doc test
+check: format-check lint doc test python
 
 test:
     cargo test --workspace --locked
@@ -17,6 +17,11 @@ format-check:
 
 doc:
     RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --locked
+
+# The Python wheel, built and tried in a virtual environment; arguments go to pytest.
+python *arguments:
+    cargo build -p photinus-cli --locked
+    crates/photinus-py/try-wheel {{arguments}}
 
 # Times beside floors measured in the same run.
 bench:

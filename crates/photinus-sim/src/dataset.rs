@@ -15,9 +15,9 @@ use photinus_io::dataset::{
 };
 use photinus_io::{Error, Result};
 
+use crate::recording::Taken;
 use crate::render::Rendered;
 use crate::scene::{MountedCamera, Scene, Target};
-use crate::sensor::hash;
 
 const CAMERA_FILE: &str = "camera.toml";
 const MOUNTING_FILE: &str = "mounting.toml";
@@ -74,22 +74,14 @@ impl<'a> SceneDataset<'a> {
     /// # Errors
     /// As [`DatasetWriter::row`] and [`DatasetWriter::truth`].
     pub fn add(&mut self, camera: usize, rendered: &Rendered) -> Result<()> {
-        let (number, seed) = (rendered.truth.frame, self.scene.seed);
         let Some(place) = self.cameras.iter().position(|recorded| *recorded == camera) else { return Ok(()) };
-        let of_camera = hash(seed ^ hash(camera as u64));
-        let Some(recorded) = self.scene.recording.of(number, self.frames, of_camera) else { return Ok(()) };
-        let mounted = &self.scene.cameras[camera];
-        let true_time_s = rendered.truth.time_s;
-        let time_s = mounted.clock.reading_s(true_time_s) + recorded.late_s;
-        let gravity = self.scene.instruments.gravity.map_or(rendered.gravity, |gravity| {
-            gravity.measure(&rendered.gravity, &mounted.body_from_camera, (camera as u64, number), seed)
-        });
+        let Some(Taken { mut truth, gravity, shown }) = self.scene.take(camera, self.frames, rendered) else {
+            return Ok(());
+        };
+        let number = truth.frame;
         self.writer.image(place, number, &rendered.image.view())?;
-        self.writer.row(place, number, time_s, Some(gravity), recorded.shown)?;
-        let mut truth = rendered.truth.clone();
-        truth.camera = (self.cameras.len() > 1).then(|| mounted.name.clone());
-        truth.true_time_s = (time_s.to_bits() != true_time_s.to_bits()).then_some(true_time_s);
-        truth.time_s = time_s;
+        self.writer.row(place, number, truth.time_s, Some(gravity), shown)?;
+        truth.camera = (self.cameras.len() > 1).then(|| self.scene.cameras[camera].name.clone());
         self.writer.truth(&truth)
     }
 }

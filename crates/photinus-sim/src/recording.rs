@@ -1,6 +1,13 @@
-//! What goes wrong while frames are recorded: some are lost, some get a late time, some pairs have their images swapped.
+//! What a recording says of frames, and what goes wrong with it: some are lost, some get a late time, some pairs have their images
+//! swapped.
+
+use nalgebra::{Unit, Vector3};
+use photinus_io::dataset::TruthFrame;
 
 use crate::draw::{self, Use};
+use crate::render::Rendered;
+use crate::scene::Scene;
+use crate::sensor::hash;
 
 /// How often what goes wrong.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -22,6 +29,35 @@ pub struct Recorded {
     pub late_s: f64,
     /// Number of the frame whose image it carries.
     pub shown: u64,
+}
+
+/// What a recording says of a frame.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Taken {
+    /// Where everything was; its time is what the camera's clock said.
+    pub truth: TruthFrame,
+    /// Direction of gravity (down) in the camera frame, as it was measured.
+    pub gravity: Unit<Vector3<f64>>,
+    /// Number of the frame whose image it carries.
+    pub shown: u64,
+}
+
+impl Scene {
+    /// What a recording of `frames` frames says of a rendered one of camera number `camera`; `None` when it is lost.
+    pub fn take(&self, camera: usize, frames: u64, rendered: &Rendered) -> Option<Taken> {
+        let (number, of_camera) = (rendered.truth.frame, hash(self.seed ^ hash(camera as u64)));
+        let recorded = self.recording.of(number, frames, of_camera)?;
+        let mounted = self.cameras.get(camera)?;
+        let true_time_s = rendered.truth.time_s;
+        let time_s = mounted.clock.reading_s(true_time_s) + recorded.late_s;
+        let gravity = self.instruments.gravity.map_or(rendered.gravity, |gravity| {
+            gravity.measure(&rendered.gravity, &mounted.body_from_camera, (camera as u64, number), self.seed)
+        });
+        let mut truth = rendered.truth.clone();
+        truth.true_time_s = (time_s.to_bits() != true_time_s.to_bits()).then_some(true_time_s);
+        truth.time_s = time_s;
+        Some(Taken { truth, gravity, shown: recorded.shown })
+    }
 }
 
 impl Recording {

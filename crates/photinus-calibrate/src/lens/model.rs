@@ -27,6 +27,22 @@ impl LensModel {
         (4..=10).contains(&degree).then_some(Self(Law::OCam { degree }))
     }
 
+    /// The models that a name stands for: `auto` all of them, `kannala-brandt` those with 1 to 4 terms, `ocam` those of degree 4 to
+    /// 10, any other that one.
+    ///
+    /// # Errors
+    /// [`UnknownModel`] when no model has that name.
+    pub fn candidates(name: &str) -> Result<Vec<Self>, UnknownModel> {
+        let kannala_brandt = || (1..=4).filter_map(Self::kannala_brandt);
+        let ocam = || (4..=10).filter_map(Self::ocam);
+        Ok(match name {
+            "auto" => [Self::EQUIDISTANT].into_iter().chain(kannala_brandt()).chain(ocam()).collect(),
+            "kannala-brandt" => kannala_brandt().collect(),
+            "ocam" => ocam().collect(),
+            _ => vec![name.parse()?],
+        })
+    }
+
     /// The degree of an OCam polynomial; `None` for Kannala-Brandt.
     pub fn ocam_degree(self) -> Option<usize> {
         match self.0 {

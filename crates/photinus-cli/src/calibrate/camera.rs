@@ -80,14 +80,7 @@ enum BoardArg {
 struct Models(Vec<LensModel>);
 
 fn models(name: &str) -> Result<Models, String> {
-    let kannala_brandt = || (1..=4).filter_map(LensModel::kannala_brandt);
-    let ocam = || (4..=10).filter_map(LensModel::ocam);
-    Ok(Models(match name {
-        "auto" => [LensModel::EQUIDISTANT].into_iter().chain(kannala_brandt()).chain(ocam()).collect(),
-        "kannala-brandt" => kannala_brandt().collect(),
-        "ocam" => ocam().collect(),
-        _ => vec![name.parse::<LensModel>().map_err(|error| error.to_string())?],
-    }))
+    LensModel::candidates(name).map(Models).map_err(|error| error.to_string())
 }
 
 impl Args {

@@ -1,0 +1,118 @@
+//! A column in Arrow's layout: values side by side, and a bit per row that says whether it is known.
+
+/// What a column holds.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Kind {
+    Number,
+    Count,
+    Text,
+}
+
+/// The values of a column.
+#[derive(Clone, Debug)]
+pub(super) enum Cells {
+    /// Numbers.
+    Number(Vec<f64>),
+    /// Counts and names that are numbers.
+    Count(Vec<u64>),
+    /// Texts one after the other, and where each begins; the last number is where the last ends.
+    Text { offsets: Vec<i32>, bytes: Vec<u8> },
+}
+
+/// The value of a cell; `None` is null.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Cell<'a> {
+    Number(Option<f64>),
+    Count(Option<u64>),
+    Text(Option<&'a str>),
+}
+
+/// A number that is known.
+pub(super) fn number<'a>(value: f64) -> Cell<'a> {
+    Cell::Number(Some(value))
+}
+
+/// Numbers of a vector, all known or none.
+pub(super) fn numbers<'a, const N: usize>(values: Option<[f64; N]>) -> [Cell<'a>; N] {
+    values.map_or([Cell::Number(None); N], |values| values.map(number))
+}
+
+/// A count that is known.
+pub(super) fn count<'a>(value: usize) -> Cell<'a> {
+    Cell::Count(Some(value as u64))
+}
+
+/// A column of a table.
+#[derive(Clone, Debug)]
+pub(super) struct Column {
+    name: &'static str,
+    cells: Cells,
+    known: Vec<u8>,
+    rows: usize,
+    nulls: usize,
+}
+
+impl Column {
+    /// A column without rows.
+    pub(super) fn new(name: &'static str, kind: Kind) -> Self {
+        let cells = match kind {
+            Kind::Number => Cells::Number(Vec::new()),
+            Kind::Count => Cells::Count(Vec::new()),
+            Kind::Text => Cells::Text { offsets: vec![0], bytes: Vec::new() },
+        };
+        Self { name, cells, known: Vec::new(), rows: 0, nulls: 0 }
+    }
+
+    /// Adds a row. A number that is not finite is not known, as in the other tables; a cell of another kind is not, either.
+    pub(super) fn push(&mut self, cell: Cell<'_>) {
+        let is_known = match (&mut self.cells, cell) {
+            (Cells::Number(values), Cell::Number(value)) => {
+                let value = value.filter(|value| value.is_finite());
+                values.push(value.unwrap_or(f64::NAN));
+                value.is_some()
+            }
+            (Cells::Count(values), Cell::Count(value)) => {
+                values.push(value.unwrap_or(0));
+                value.is_some()
+            }
+            (Cells::Text { offsets, bytes }, Cell::Text(value)) => {
+                bytes.extend_from_slice(value.unwrap_or_default().as_bytes());
+                offsets.push(i32::try_from(bytes.len()).unwrap_or(i32::MAX));
+                value.is_some()
+            }
+            (cells, cell) => unreachable!("{}: {cell:?} among {cells:?}", self.name),
+        };
+        if self.rows.is_multiple_of(8) {
+            self.known.push(0);
+        }
+        self.known[self.rows / 8] |= u8::from(is_known) << (self.rows % 8);
+        self.nulls += usize::from(!is_known);
+        self.rows += 1;
+    }
+
+    pub(super) fn name(&self) -> &'static str {
+        self.name
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.rows
+    }
+
+    pub(super) fn nulls(&self) -> usize {
+        self.nulls
+    }
+
+    pub(super) fn cells(&self) -> &Cells {
+        &self.cells
+    }
+
+    /// A bit per row, the first one the lowest of the first byte.
+    pub(super) fn known(&self) -> &[u8] {
+        &self.known
+    }
+
+    /// Whether its text has more bytes than an offset can count.
+    pub(super) fn is_too_long(&self) -> bool {
+        matches!(&self.cells, Cells::Text { bytes, .. } if i32::try_from(bytes.len()).is_err())
+    }
+}

@@ -3,10 +3,12 @@
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use photinus::locator::{self, Settings};
+use photinus::locator::{self, Located, Settings};
 use photinus::pose;
 use photinus::spots::Spot;
 use photinus_io::airframe::Tolerances;
+use photinus_io::calibration::{MountingFile, read_mounting};
+use photinus_io::results::FrameRecord;
 use pyo3::prelude::*;
 
 use crate::airframe::Airframe;
@@ -20,7 +22,8 @@ use crate::record::{Record, empty};
 /// and clutter are learnt from the frames that came before. Making one takes up to a second. May be shared by threads, which then
 /// wait for each other.
 ///
-/// Options: `contrast`, `threshold`, `reflection_ratio` and `mask` as for Detector; `spot_curve`, a TOML file, or "paper";
+/// Options: `contrast`, `threshold`, `reflection_ratio` and `mask` as for Detector; `mounting`, a TOML file that says how the camera sits on
+/// its vehicle: neighbours are told in the body frame, too; `spot_curve`, a TOML file, or "paper";
 /// `max_tilt`, deg, that the bounds allow for where gravity is known; `min_probability`, neighbours less likely are left out; `budget`,
 /// most looks at a handful of spots per frame; `tilt_sigma`, deg, how far neighbours tilt; `marker_sigma`, m, how far LEDs are from
 /// where the airframe says (what its file says, else 0.003); `power_spread`, a share, of the power of LEDs (what the file says, else
@@ -31,13 +34,14 @@ pub(crate) struct Locator {
     locator: Mutex<locator::Locator>,
     camera: Py<Camera>,
     airframe: Py<Airframe>,
+    mounting: Option<MountingFile>,
 }
 
 #[pymethods]
 impl Locator {
     #[new]
     #[pyo3(signature = (
-        camera, airframe, *, contrast = None, threshold = None, reflection_ratio = 0.22, mask = None, spot_curve = None,
+        camera, airframe, *, contrast = None, threshold = None, reflection_ratio = 0.22, mask = None, mounting = None, spot_curve = None,
         max_tilt = 15.0, min_probability = 0.5, budget = 12000, tilt_sigma = 5.0, marker_sigma = None, power_spread = None,
         scale_sigma = 0.01, miss_rate = 0.02, no_brightness = false
     ))]
@@ -50,6 +54,7 @@ impl Locator {
         threshold: Option<u8>,
         reflection_ratio: f64,
         mask: Option<MaskOption<'_>>,
+        mounting: Option<PathBuf>,
         spot_curve: Option<PathBuf>,
         max_tilt: f64,
         min_probability: f64,
@@ -80,6 +85,7 @@ impl Locator {
         };
         let curve =
             spot_curve.map(|path| self::spot_curve(py, &path, settings.spots.brightness)).transpose()?;
+        let mounting = mounting.map(|path| detached(py, || read_mounting(&path).map_err(error::file))).transpose()?;
         let mask = mask.map(|mask| mask.read(py)).transpose()?;
         let (seen_by, seen) = (&camera.get().camera, &airframe.get().0.airframe);
         let locator = detached(py, || {
@@ -88,7 +94,7 @@ impl Locator {
             locator.set_mask(mask).map_err(|error| ImageError::new_err(error.to_string()))?;
             Ok(Mutex::new(locator))
         })?;
-        Ok(Self { locator, camera, airframe })
+        Ok(Self { locator, camera, airframe, mounting })
     }
 
     /// The neighbours in an image: uint8, (rows, columns) of the camera's size, rows may be padded; it is borrowed, not copied, and
@@ -107,7 +113,7 @@ impl Locator {
     ) -> PyResult<Record> {
         let image = Image::borrow(image)?;
         let (view, gravity) = (image.view()?, gravity.map(direction).transpose()?);
-        let (mut record, airframe) = (empty(frame, time)?, self.airframe.get().0.airframe.name());
+        let record = empty(frame, time)?;
         detached(py, || {
             // Whatever a fault left is made anew by the frame.
             let mut locator = self.locator.lock().unwrap_or_else(PoisonError::into_inner);
@@ -116,8 +122,7 @@ impl Locator {
                     "{error}; give the calibration of this camera at this resolution"
                 ))
             })?;
-            record.put_located(located, airframe);
-            Ok(Record(Arc::new(record)))
+            Ok(self.told(record, located))
         })
     }
 
@@ -130,20 +135,18 @@ impl Locator {
         gravity: Option<[f64; 3]>,
     ) -> PyResult<Record> {
         let gravity = gravity.map(direction).transpose()?;
-        let (mut record, airframe) = (record.get().0.as_ref().clone(), self.airframe.get().0.airframe.name());
+        let record = record.get().0.as_ref().clone();
         detached(py, || {
             let spots: Vec<(Spot, Option<u32>)> =
                 record.spots.iter().map(|spot| (Spot::from(spot), spot.signal)).collect();
             let mut locator = self.locator.lock().unwrap_or_else(PoisonError::into_inner);
-            record
-                .put_located(locator.locate_signalled(&spots, gravity.as_ref(), &mut |_stage| ()), airframe);
-            Ok(Record(Arc::new(record)))
+            Ok(self.told(record, locator.locate_signalled(&spots, gravity.as_ref(), &mut |_stage| ())))
         })
     }
 
     /// Forgets what frames told of the power of LEDs and of clutter: for frames that do not follow on those before.
-    fn forget(&self) {
-        self.locator.lock().unwrap_or_else(PoisonError::into_inner).forget();
+    fn forget(&self, py: Python<'_>) {
+        py.detach(|| self.locator.lock().unwrap_or_else(PoisonError::into_inner).forget());
     }
 
     /// The camera that it looks through.
@@ -156,5 +159,16 @@ impl Locator {
     #[getter]
     fn airframe(&self, py: Python<'_>) -> Py<Airframe> {
         self.airframe.clone_ref(py)
+    }
+}
+
+impl Locator {
+    /// The record with what was located in its frame.
+    fn told(&self, mut record: FrameRecord, located: &Located) -> Record {
+        record.put_located(located, self.airframe.get().0.airframe.name());
+        if let Some(mounting) = &self.mounting {
+            record.put_mounting(mounting);
+        }
+        Record(Arc::new(record))
     }
 }

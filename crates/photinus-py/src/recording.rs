@@ -167,6 +167,12 @@ impl Dataset {
         self.of_camera().mask.as_ref().map(|named| self.dataset.path(named))
     }
 
+    /// The file that says how the camera sits on its vehicle, if there is one.
+    #[getter]
+    fn mounting(&self) -> Option<PathBuf> {
+        self.of_camera().mounting_file.as_ref().map(|named| self.dataset.path(named))
+    }
+
     /// The file of the spot curve, if there is one.
     #[getter]
     fn spot_curve(&self) -> Option<PathBuf> {

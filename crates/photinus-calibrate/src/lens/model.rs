@@ -111,6 +111,13 @@ mod tests {
     use super::*;
 
     #[test]
+    fn a_name_may_stand_for_several() {
+        let count = |name: &str| LensModel::candidates(name).map(|models| models.len());
+        assert_eq!(["auto", "kannala-brandt", "ocam", "ocam:4"].map(count), [Ok(12), Ok(4), Ok(7), Ok(1)]);
+        assert_eq!(count("fish"), Err(UnknownModel("fish".to_owned())));
+    }
+
+    #[test]
     fn names_are_read_as_they_are_written() {
         let mut models = vec![LensModel::EQUIDISTANT];
         models.extend((0..=12).filter_map(LensModel::kannala_brandt));

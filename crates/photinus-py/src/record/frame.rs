@@ -81,6 +81,12 @@ impl Record {
         self.0.time_s
     }
 
+    /// From the end of the exposure until the result stood, s, where that was measured.
+    #[getter]
+    fn latency_s(&self) -> Option<f64> {
+        self.0.latency_s
+    }
+
     /// The image file or stream; empty where it is not known.
     #[getter]
     fn source(&self) -> &str {

@@ -72,6 +72,21 @@ impl Neighbour {
         self.told().position_covariance_m2.map(|covariance| matrix(py, covariance)).transpose()
     }
 
+    /// Its origin in the body frame of the vehicle that carries the camera, (3,), m, where the mounting is known.
+    #[getter]
+    fn position_body_m<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
+        self.told().position_body_m.map(|position_m| vector(py, position_m))
+    }
+
+    /// Covariance of that position, (3, 3), m^2, the mounting's own errors among it.
+    #[getter]
+    fn position_body_covariance_m2<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
+        self.told().position_body_covariance_m2.map(|covariance| matrix(py, covariance)).transpose()
+    }
+
     /// Its mean attitude, (4,): camera_from_body as x, y, z, w; one of those that the airframe's symmetry makes equal.
     #[getter]
     fn orientation_xyzw<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {

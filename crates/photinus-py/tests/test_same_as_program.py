@@ -130,7 +130,7 @@ def test_a_mounting(program: Program, tmp_path: Path, example: photinus.Dataset)
     assert neighbour.position_m is not None and neighbour.position_body_m is not None
     x, y, z = neighbour.position_m
     assert np.allclose(neighbour.position_body_m, [z + 0.1, -x, -y + 0.05])
-    assert neighbour.position_body_covariance_m2 is not None
+    assert neighbour.position_body_covariance_m2 is not None and neighbour.position_covariance_m2 is not None
     assert np.trace(neighbour.position_body_covariance_m2) > np.trace(neighbour.position_covariance_m2)
 
 

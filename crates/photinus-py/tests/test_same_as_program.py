@@ -16,6 +16,14 @@ def lines(path: Path) -> list[str]:
     return [without_source(line) for line in path.read_text().splitlines()]
 
 
+def crossing(folder: Path, more: str) -> Path:
+    """A scene of the repository with more in it."""
+    text = (ROOT / "scenes" / "crossing.toml").read_text()
+    scene = folder / "scene.toml"
+    scene.write_text(re.sub(r'"(cameras|airframes|codes)/', rf'"{ROOT}/scenes/\1/', text) + f"\n{more}\n")
+    return scene
+
+
 def test_a_dataset(program: Program, records: list[photinus.Record], tmp_path: Path) -> None:
     program("locate", EXAMPLE, "--out", tmp_path / "r.jsonl", "-q")
     assert [record.to_json() for record in records] == lines(tmp_path / "r.jsonl")
@@ -46,9 +54,7 @@ def test_a_simulation(program: Program, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("faults", ["lost = 0.4", "late = 0.5\nlate_by_s = 0.005\nswapped = 0.5"])
 def test_what_goes_wrong_with_a_recording(program: Program, tmp_path: Path, faults: str) -> None:
-    text = (ROOT / "scenes" / "crossing.toml").read_text()
-    scene, whole = tmp_path / "scene.toml", re.sub(r'"(cameras|airframes|codes)/', rf'"{ROOT}/scenes/\1/', text)
-    scene.write_text(f"{whole}\n[recording]\n{faults}\n")
+    scene = crossing(tmp_path, f"[recording]\n{faults}")
     program("simulate", scene, "--frames", 8, "--out", tmp_path / "flight", "-q")
 
     frames = list(photinus.simulate(scene, frames=8))
@@ -57,6 +63,30 @@ def test_what_goes_wrong_with_a_recording(program: Program, tmp_path: Path, faul
     assert all(np.array_equal(ours.image, theirs.image) for ours, theirs in zip(frames, recorded, strict=True))
     shown = [f"images/{f.frame:06}.png" == f.source for f in recorded]
     assert len(frames) < 8 or not all(shown), "nothing went wrong"
+
+
+def test_one_of_several_cameras(program: Program, tmp_path: Path) -> None:
+    left = f'name = "left"\nfile = "{ROOT}/scenes/cameras/bluefox-dsl215.toml"\nposition_m = [0, 0.1, 0]\nyaw_deg = 20'
+    scene = crossing(tmp_path, f"[[camera]]\n{left}\nclock = {{ offset_s = 0.002, ppm = 20.0 }}")
+    program("simulate", scene, "--frames", 3, "--out", tmp_path / "flight", "-q")
+    program("locate", tmp_path / "flight", "--out", tmp_path / "r.jsonl", "-q")
+    theirs = [line for line in lines(tmp_path / "r.jsonl") if '"camera":"left"' in line]
+
+    with pytest.raises(photinus.SettingError, match="front, left"):
+        photinus.simulate(scene)
+    with pytest.raises(photinus.SettingError, match="front, left"):
+        photinus.Dataset.read(tmp_path / "flight")
+    dataset = photinus.Dataset.read(tmp_path / "flight", camera="left")
+    simulation = photinus.simulate(scene, frames=3, camera="left")
+    assert dataset.mounting is not None and dataset.truth is not None and len(dataset) == 3
+    locator = photinus.Locator(dataset.camera, dataset.airframe, mounting=dataset.mounting)
+    ours = []
+    for frame, simulated, truth in zip(dataset, simulation, dataset.truth, strict=True):
+        assert np.array_equal(frame.image, simulated.image) and frame.time_s == simulated.time_s == truth.time_s
+        record = locator.locate(frame.image, gravity=frame.gravity, time=frame.time_s, frame=frame.frame)
+        ours.append(record.to_json())
+    assert ours == [line.replace('"camera":"left",', "") for line in theirs]
+    assert len(ours) == 3
 
 
 def test_real_photos(program: Program, data: Path, tmp_path: Path) -> None:

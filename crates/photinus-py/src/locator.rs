@@ -85,7 +85,8 @@ impl Locator {
         };
         let curve =
             spot_curve.map(|path| self::spot_curve(py, &path, settings.spots.brightness)).transpose()?;
-        let mounting = mounting.map(|path| detached(py, || read_mounting(&path).map_err(error::file))).transpose()?;
+        let mounting =
+            mounting.map(|path| detached(py, || read_mounting(&path).map_err(error::file))).transpose()?;
         let mask = mask.map(|mask| mask.read(py)).transpose()?;
         let (seen_by, seen) = (&camera.get().camera, &airframe.get().0.airframe);
         let locator = detached(py, || {

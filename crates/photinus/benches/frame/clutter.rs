@@ -46,7 +46,7 @@ pub(crate) fn run() {
 }
 
 /// Spots anywhere, as bright as markers at 1 to 30 m.
-fn clutter(count: usize) -> Vec<Spot> {
+pub(crate) fn clutter(count: usize) -> Vec<Spot> {
     let mut rng = Pcg64::new(count as u128, 11);
     let uniform = |low: f64, high: f64| Uniform::new(low, high).expect("a range");
     let (across, down) = (uniform(2.0, PAPER.width as f64 - 3.0), uniform(2.0, PAPER.height as f64 - 3.0));
@@ -72,7 +72,7 @@ fn clutter(count: usize) -> Vec<Spot> {
 }
 
 /// An airframe whose LEDs shine outwards, by the golden angle.
-fn many_leds() -> Airframe {
+pub(crate) fn many_leds() -> Airframe {
     let golden_rad = std::f64::consts::PI * (3.0 - 5f64.sqrt());
     let led = |index: usize| {
         let height = 1.0 - (2 * index + 1) as f64 / LEDS as f64;

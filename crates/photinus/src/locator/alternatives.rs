@@ -2,7 +2,10 @@
 //!
 //! In: an observation that may be clutter, or is of a group that fits poorly. Out: handfuls of it and those next to it, the likeliest by a first
 //! look, each to be weighed in full. What they leave is clutter, or another neighbour's. One that stands alone is put to the nearest group too,
-//! whatever that looks like at first: what hardly shows is hardly told from afar.
+//! whatever that looks like at first: what hardly shows is hardly told from afar. A look is taken once a frame; what it is worth changes as clutter
+//! is known better.
+
+use core::ops::Range;
 
 use super::context::Context;
 use super::grouping::Groups;
@@ -12,8 +15,8 @@ use super::matching::Matcher;
 const NEAREST: usize = 6;
 /// Most handfuls that are weighed in full.
 const MOST_WEIGHED: usize = 8;
-/// A handful that is so much less likely than clutter by a first look, nats, is not weighed: first looks are as good.
-const POOR_GAIN: f64 = -8.0;
+/// A handful that is so much less likely by a first look than what its observations are already, nats, is not weighed: first looks are as good.
+pub(super) const POOR_GAIN: f64 = -8.0;
 
 /// An observation and those next to it.
 type Window = [Option<usize>; 1 + NEAREST];
@@ -31,51 +34,69 @@ impl Seen {
     }
 }
 
-/// Room to look for other handfuls in.
+/// A handful by a first look.
+#[derive(Clone, Copy, Debug)]
+struct Look {
+    /// Logarithm of its density as one neighbour.
+    log_density: f64,
+    first: usize,
+    spots: usize,
+}
+
+/// The handfuls of a frame that were looked at.
 #[derive(Debug)]
 pub(super) struct Alternatives {
     /// The observation, and the nearest others.
     window: Vec<usize>,
     nearest: Vec<(f64, usize)>,
     handful: Vec<usize>,
-    /// The windows of those whose turn has been in this round.
+    /// By observation, where its turn has been: its window, and its looks.
     windows: Vec<Option<Window>>,
-    /// Gain over clutter by a first look, and which of the window.
-    looked_at: Vec<(f64, usize)>,
+    /// By observation, where its turn has been: the nearest other, however far.
+    beside: Vec<Option<usize>>,
+    turns: Vec<Range<usize>>,
+    looks: Vec<Look>,
+    members: Vec<usize>,
+    /// Gain over clutter, and which look.
+    chosen: Vec<(f64, usize)>,
 }
 
 impl Alternatives {
-    /// Room for the handfuls of one observation.
+    /// Room for the handfuls of a few observations.
     pub(super) fn with_room() -> Self {
         Self {
             window: Vec::with_capacity(1 + NEAREST),
-            nearest: Vec::with_capacity(512),
+            nearest: Vec::with_capacity(2 + NEAREST),
             handful: Vec::with_capacity(64),
             windows: Vec::new(),
-            looked_at: Vec::with_capacity(1 << NEAREST),
+            beside: Vec::new(),
+            turns: Vec::new(),
+            looks: Vec::with_capacity(64 << NEAREST),
+            members: Vec::with_capacity(64 << NEAREST),
+            chosen: Vec::with_capacity(1 << NEAREST),
         }
     }
 
-    /// Begins a round with a frame of so many observations.
+    /// Begins a frame of so many observations.
     pub(super) fn begin(&mut self, observations: usize) {
         self.windows.clear();
         self.windows.resize(observations, None);
+        self.beside.clear();
+        self.beside.resize(observations, None);
+        self.turns.clear();
+        self.turns.resize(observations, 0..0);
+        self.looks.clear();
+        self.members.clear();
     }
 
-    /// Looks at the handfuls of an observation, but those that were looked at in the turn of another; hands on the likeliest, each ascending. Returns
-    /// how many it looked at.
-    pub(super) fn around(
-        &mut self,
-        context: &Context<'_>,
-        groups: &Groups,
-        observation: usize,
-        matcher: &mut Matcher,
-        mut with: impl FnMut(&[usize], &mut Matcher),
-    ) -> u32 {
-        let nearest = self.open_window(context, observation, matcher);
-        self.looked_at.clear();
+    /// Looks at the handfuls of an observation, but those that were looked at before. Returns how many it looked at.
+    pub(super) fn look(&mut self, context: &Context<'_>, observation: usize, matcher: &mut Matcher) -> u32 {
+        if self.windows[observation].is_some() {
+            return 0;
+        }
+        self.open_window(context, observation, matcher);
         let most = matcher.most_visible().max(1) as u32;
-        let seen = self.seen_before();
+        let (seen, first) = (self.seen_before(), self.looks.len());
         let mut looks = 0;
         for mask in (1usize..1 << self.window.len()).step_by(2) {
             if mask.count_ones() > most || seen.iter().any(|before| before.has(mask)) {
@@ -83,47 +104,64 @@ impl Alternatives {
             }
             looks += 1;
             self.gather(mask);
-            let Some(log_density) = matcher.log_density(context, &self.handful) else { continue };
-            let clutter: f64 = self.handful.iter().map(|&spot| context.clutter[spot]).sum();
-            let gain = log_density + context.log_neighbours - clutter;
-            if gain > POOR_GAIN {
-                self.looked_at.push((gain, mask));
+            if let Some(log_density) = matcher.log_density(context, &self.handful) {
+                self.looks.push(Look { log_density, first: self.members.len(), spots: self.handful.len() });
+                self.members.extend_from_slice(&self.handful);
             }
         }
-        self.looked_at.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
-        for index in 0..self.looked_at.len().min(MOST_WEIGHED) {
-            self.gather(self.looked_at[index].1);
-            with(&self.handful, matcher);
-        }
-        if let (&[_], Some(nearest)) = (groups.group_of(observation), nearest) {
-            self.handful.clear();
-            self.handful.push(observation);
-            self.handful.extend_from_slice(groups.group_of(nearest));
-            self.handful.sort_unstable();
-            if self.handful.len() <= most as usize {
-                with(&self.handful, matcher);
-            }
-        }
+        self.turns[observation] = first..self.looks.len();
         looks
     }
 
-    /// Opens the window around an observation; returns the one nearest to it.
-    fn open_window(&mut self, context: &Context<'_>, observation: usize, matcher: &Matcher) -> Option<usize> {
+    /// Chooses the likeliest handfuls of an observation that was looked at: those that are not much less likely than what their observations are already,
+    /// which gains as much over clutter as `held` tells.
+    pub(super) fn choose(
+        &mut self,
+        context: &Context<'_>,
+        groups: &Groups,
+        observation: usize,
+        held: impl Fn(&[usize]) -> f64,
+    ) {
+        self.chosen.clear();
+        for index in self.turns[observation].clone() {
+            let look = self.looks[index];
+            let members = &self.members[look.first..look.first + look.spots];
+            let clutter: f64 = members.iter().map(|&spot| context.clutter[spot]).sum();
+            let gain = look.log_density + context.log_neighbours - clutter;
+            if gain > held(members) + POOR_GAIN {
+                self.chosen.push((gain, index));
+            }
+        }
+        self.chosen.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+        self.chosen.truncate(MOST_WEIGHED);
+        self.handful.clear();
+        if let (&[_], Some(nearest)) = (groups.group_of(observation), self.beside[observation]) {
+            self.handful.push(observation);
+            self.handful.extend_from_slice(groups.group_of(nearest));
+            self.handful.sort_unstable();
+        }
+    }
+
+    /// Those that were chosen, each ascending.
+    pub(super) fn chosen(&self) -> impl Iterator<Item = &[usize]> {
+        let members = |look: Look| &self.members[look.first..look.first + look.spots];
+        let looked_at = self.chosen.iter().map(move |&(_, index)| members(self.looks[index]));
+        looked_at.chain((!self.handful.is_empty()).then_some(&self.handful[..]))
+    }
+
+    /// Opens the window around an observation.
+    fn open_window(&mut self, context: &Context<'_>, observation: usize, matcher: &Matcher) {
         let own = &context.sightings[observation];
-        let reach_rad = matcher.widest_rad(own);
         let Self { window, nearest, .. } = self;
-        let others = context.sightings.iter().enumerate().filter(|(index, _)| *index != observation);
-        let gaps =
-            others.map(|(index, other)| ((other.bearing.vector() - own.bearing.vector()).norm(), index));
-        let first = gaps.clone().min_by(|a, b| a.0.total_cmp(&b.0));
-        nearest.clear();
-        nearest.extend(gaps.filter(|(gap, _)| *gap < reach_rad));
-        nearest.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        context.near.nearest(own.bearing.vector(), 1 + NEAREST, f64::INFINITY, |_| 1.0, nearest);
+        nearest.retain(|&(_, index)| index != observation);
+        self.beside[observation] = nearest.first().map(|&(_, index)| index);
+        let reach_rad = matcher.widest_rad(own);
+        let within = nearest.iter().filter(|(gap2, _)| *gap2 < reach_rad * reach_rad);
         window.clear();
         window.push(observation);
-        window.extend(nearest.iter().take(NEAREST).map(|&(_, index)| index));
+        window.extend(within.map(|&(_, index)| index));
         self.windows[observation] = Some(core::array::from_fn(|place| window.get(place).copied()));
-        first.map(|(_, index)| index)
     }
 
     /// What the turns of others in the window have looked at.

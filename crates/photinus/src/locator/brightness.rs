@@ -5,7 +5,10 @@
 //! the light in the window stands for it: its variance was fitted to rendered frames of one camera (eight ranges, two airframes, 39 000
 //! spots): a part that all have, one that falls with the light, the light of others in the window, and what they cut off it.
 
+use core::cmp::Ordering;
+
 use super::Sighting;
+use super::cells::{ByCell, Cells};
 use crate::pose::LogLight;
 use crate::spots::Spot;
 
@@ -26,30 +29,41 @@ const NARROWED_PX: f64 = 4.2;
 const HIDDEN_LOG: f64 = 0.3;
 const HIDDEN_SIGMA: f64 = 0.6;
 
-/// Tells the light of all sightings. `order` is room to work in.
-pub(super) fn tell(sightings: &mut [Sighting], order: &mut Vec<usize>) {
-    order.clear();
-    order.extend(0..sightings.len());
-    order.sort_unstable_by(|&a, &b| {
-        sightings[a].spot.centre.v.total_cmp(&sightings[b].spot.centre.v).then(a.cmp(&b))
-    });
+/// Tells the light of all sightings in an image of `size` (width, height) px; of more than `most` the brightest come first, and of the others no
+/// more is told than by themselves. `by_cell` is room to work in.
+pub(super) fn tell(sightings: &mut [Sighting], most: usize, size: [usize; 2], by_cell: &mut ByCell) {
     for sighting in sightings.iter_mut() {
         sighting.log_light = alone(&sighting.spot);
     }
-    for (place, &own) in order.iter().enumerate() {
-        for &other in &order[place + 1..] {
-            let [here, there] = [own, other].map(|index| sightings[index].spot.centre);
-            if there.v - here.v > FAR_PX {
-                break;
-            }
-            let gap_px = libm::hypot(there.u - here.u, there.v - here.v);
-            if gap_px < FAR_PX {
-                let [own_light, other_light] = [own, other].map(|index| sightings[index].log_light);
-                disturb(&mut sightings[own], other_light, gap_px);
-                disturb(&mut sightings[other], own_light, gap_px);
+    if sightings.len() > most {
+        sightings.sort_unstable_by(brightest_first);
+    }
+    let cells = Cells::new(size, FAR_PX);
+    by_cell.sort(&cells, sightings);
+    for own in 0..sightings.len().min(most) {
+        if sightings[own].spot.light.is_some() {
+            continue;
+        }
+        let here = sightings[own].spot.centre;
+        for cell in cells.around(cells.of_observation(&sightings[own])) {
+            for &other in by_cell.of_cell(cell).iter().filter(|&&other| other != own) {
+                let Sighting { spot, log_light, .. } = &sightings[other];
+                let gap_px = libm::hypot(spot.centre.u - here.u, spot.centre.v - here.v);
+                if gap_px < FAR_PX {
+                    let light = *log_light;
+                    disturb(&mut sightings[own], light, gap_px);
+                }
             }
         }
     }
+}
+
+/// The order of light; of light that is not known, that of places.
+fn brightest_first(a: &Sighting, b: &Sighting) -> Ordering {
+    let light = |sighting: &Sighting| sighting.log_light.map_or(f64::NEG_INFINITY, |light| light.value);
+    let Spot { centre: a_at, .. } = a.spot;
+    let Spot { centre: b_at, .. } = b.spot;
+    light(b).total_cmp(&light(a)).then(a_at.v.total_cmp(&b_at.v)).then(a_at.u.total_cmp(&b_at.u))
 }
 
 /// A spot by itself; `None` where a detector measures no light.
@@ -67,9 +81,6 @@ fn alone(spot: &Spot) -> Option<LogLight> {
 /// What another spot of this light adds to the error of one.
 fn disturb(own: &mut Sighting, other: Option<LogLight>, gap_px: f64) {
     let Some(LogLight { value, sigma }) = &mut own.log_light else { return };
-    if own.spot.light.is_some() {
-        return;
-    }
     let share = gap_px / NARROWED_PX;
     let narrowed = NARROWED * libm::exp(-(share * share) * (share * share));
     let within = other.map_or(0.0, |other| OTHERS * libm::exp(other.value - *value - gap_px / FALL_PX));

@@ -29,6 +29,8 @@ pub(super) struct Candidate {
     members: usize,
     first_mode: usize,
     modes: usize,
+    /// The one before it with the same first observation.
+    before: Option<usize>,
 }
 
 /// What is told of a candidate besides which observations it is of.
@@ -48,6 +50,8 @@ pub(super) struct Candidates {
     all: Vec<Candidate>,
     members: Vec<usize>,
     modes: Vec<Mode>,
+    /// By observation: the last candidate of which it is the first.
+    last: Vec<Option<usize>>,
 }
 
 impl Candidates {
@@ -57,6 +61,7 @@ impl Candidates {
             all: Vec::with_capacity(count),
             members: Vec::with_capacity(8 * count),
             modes: Vec::with_capacity(MODES_EACH * count),
+            last: Vec::new(),
         }
     }
 
@@ -64,6 +69,7 @@ impl Candidates {
         self.all.clear();
         self.members.clear();
         self.modes.clear();
+        self.last.clear();
     }
 
     pub(super) fn len(&self) -> usize {
@@ -88,7 +94,11 @@ impl Candidates {
 
     /// The candidate of just these observations, ascending.
     pub(super) fn find(&self, group: &[usize]) -> Option<usize> {
-        (0..self.all.len()).find(|&index| self.members(index) == group)
+        let mut candidate = self.last.get(*group.first()?).copied().flatten();
+        while let Some(index) = candidate.filter(|&index| self.members(index) != group) {
+            candidate = self.all[index].before;
+        }
+        candidate
     }
 
     /// Whether these observations may be something else than one neighbour, for all that is known.
@@ -111,6 +121,8 @@ impl Candidates {
     /// Adds a candidate.
     pub(super) fn push(&mut self, group: &[usize], modes: &[Mode], told: Told) {
         let Told { bearing, distance, position, orientation, misfit, worst_sigma, log_density } = told;
+        self.last.resize(self.last.len().max(group[0] + 1), None);
+        let before = self.last[group[0]].replace(self.all.len());
         self.all.push(Candidate {
             bearing,
             distance,
@@ -123,6 +135,7 @@ impl Candidates {
             members: group.len(),
             first_mode: self.modes.len(),
             modes: modes.len(),
+            before,
         });
         self.members.extend_from_slice(group);
         self.modes.extend_from_slice(modes);

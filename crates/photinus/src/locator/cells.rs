@@ -43,3 +43,41 @@ impl Cells {
         down.flat_map(move |row| across.clone().map(move |column| row * self.columns + column))
     }
 }
+
+/// The observations of a frame by cell.
+#[derive(Debug, Default)]
+pub(super) struct ByCell {
+    /// Observations, those of a cell together.
+    order: Vec<usize>,
+    starts: Vec<usize>,
+}
+
+impl ByCell {
+    /// Sorts the observations of a frame.
+    pub(super) fn sort(&mut self, cells: &Cells, sightings: &[Sighting]) {
+        let cell = |sighting: &Sighting| cells.index(cells.of_observation(sighting));
+        self.starts.clear();
+        self.starts.resize(cells.count() + 1, 0);
+        for sighting in sightings {
+            self.starts[cell(sighting)] += 1;
+        }
+        let mut sum = 0;
+        for start in &mut self.starts {
+            sum += *start;
+            *start = sum;
+        }
+        self.order.clear();
+        self.order.resize(sightings.len(), 0);
+        // From the last to the first, so that those of a cell are in their order.
+        for (index, sighting) in sightings.iter().enumerate().rev() {
+            let start = &mut self.starts[cell(sighting)];
+            *start -= 1;
+            self.order[*start] = index;
+        }
+    }
+
+    /// Those in a cell, ascending.
+    pub(super) fn of_cell(&self, cell: usize) -> &[usize] {
+        &self.order[self.starts[cell]..self.starts[cell + 1]]
+    }
+}

@@ -33,6 +33,8 @@ const LIGHT_STEPS: usize = 32;
 #[derive(Clone, Copy)]
 pub(super) struct Surroundings<'a> {
     pub(super) sightings: &'a [Sighting],
+    /// Clutter of the frame besides.
+    pub(super) besides: &'a Counts,
     pub(super) companions: &'a Companions,
     pub(super) fixtures: &'a Fixtures,
     pub(super) memory: &'a Memory,
@@ -43,6 +45,9 @@ impl Surroundings<'_> {
     fn with_fixture(&self, log_of_others: f64, observation: usize) -> f64 {
         let sighting = &self.sightings[observation];
         let there = self.fixtures.density(sighting, observation) / rad2_per_px2(sighting);
+        if there == 0.0 {
+            return log_of_others + log_of_look(sighting);
+        }
         let gain = libm::log(libm::exp(log_of_others) + there) - log_of_others;
         log_of_others + gain.min(self.fixtures.log_odds(observation).max(0.0)) + log_of_look(sighting)
     }
@@ -93,10 +98,10 @@ impl Clutter {
         groups: &Groups,
         share: impl Fn(usize) -> f64,
     ) {
-        let Surroundings { sightings, companions, fixtures, .. } = *frame;
+        let Surroundings { sightings, besides, companions, fixtures, .. } = *frame;
         // What stays where it is tells nothing of other places.
         let share = |index: usize| share(index) * (1.0 - fixtures.share(index));
-        self.counts.clear();
+        self.counts.list.copy_from_slice(&besides.list);
         for (index, sighting) in sightings.iter().enumerate() {
             self.counts.add(sighting, share(index));
         }
@@ -128,9 +133,9 @@ impl Clutter {
     /// How much less likely it is that all observations are clutter, as likely as `share` tells, than the densities measured have it: each of those is
     /// after all others, but a frame is drawn one after the other (chain rule).
     pub(super) fn excess(&mut self, frame: &Surroundings<'_>, share: impl Fn(usize) -> f64) -> f64 {
-        let Surroundings { sightings, companions, fixtures, .. } = *frame;
+        let Surroundings { sightings, besides, companions, fixtures, .. } = *frame;
         let comes_and_goes = |index: usize| share(index) * (1.0 - fixtures.share(index));
-        self.before.clear();
+        self.before.list.copy_from_slice(&besides.list);
         let mut excess = 0.0;
         for (index, sighting) in sightings.iter().enumerate() {
             let earlier = companions.of(index).iter().filter(|near| near.observation < index);
@@ -190,19 +195,22 @@ fn log_of_look(sighting: &Sighting) -> f64 {
 
 /// Clutter by cell of the image, then by step of light, then in all.
 #[derive(Debug)]
-struct Counts {
+pub(super) struct Counts {
     cells: Cells,
     list: Vec<f64>,
 }
 
 impl Counts {
-    fn of(size: [usize; 2]) -> Self {
+    /// None, in images of `size` (width, height) px.
+    pub(super) fn of(size: [usize; 2]) -> Self {
         let cells = Cells::new(size, CELL_PX);
         Self { cells, list: vec![0.0; cells.count() + LIGHT_STEPS + 1] }
     }
 
-    fn clear(&mut self) {
+    /// Counts these observations and no others.
+    pub(super) fn count(&mut self, clutter: &[Sighting]) {
         self.list.fill(0.0);
+        clutter.iter().for_each(|sighting| self.add(sighting, 1.0));
     }
 
     /// All of it, with what is remembered.

@@ -6,7 +6,7 @@
 use core::f64::consts::{PI, TAU};
 
 use super::Sighting;
-use super::cells::Cells;
+use super::cells::{ByCell, Cells};
 
 /// A point of clutter has so many companions.
 const COMPANIONS: f64 = 0.2;
@@ -21,9 +21,7 @@ const MOST_NEAR: f64 = 16.0;
 /// The companions of each observation of a frame.
 #[derive(Debug)]
 pub(super) struct Companions {
-    /// Observations by cell, those of a cell together.
-    order: Vec<usize>,
-    starts: Vec<usize>,
+    by_cell: ByCell,
     list: Vec<Companion>,
     ends: Vec<usize>,
 }
@@ -40,8 +38,7 @@ impl Companions {
     /// None yet, with room for those of a frame of a thousand observations.
     pub(super) fn new() -> Self {
         Self {
-            order: Vec::with_capacity(1024),
-            starts: Vec::new(),
+            by_cell: ByCell::default(),
             list: Vec::with_capacity(1024 * MOST_NEAR as usize),
             ends: Vec::with_capacity(1024),
         }
@@ -52,12 +49,12 @@ impl Companions {
         let per_px2 = sightings.len() as f64 / (size[0] * size[1]) as f64;
         let reach_px = (MOST_NEAR / (PI * per_px2)).sqrt().clamp(NEAREST_PX, FARTHEST_PX);
         let cells = Cells::new(size, reach_px);
-        self.sort_into(&cells, sightings);
+        self.by_cell.sort(&cells, sightings);
         self.list.clear();
         self.ends.clear();
         for (index, own) in sightings.iter().enumerate() {
             for cell in cells.around(cells.of_observation(own)) {
-                for &other in &self.order[self.starts[cell]..self.starts[cell + 1]] {
+                for &other in self.by_cell.of_cell(cell) {
                     let gap_px = apart_px(own, &sightings[other]);
                     if other != index && gap_px < reach_px {
                         let density = density(gap_px, own, &sightings[other], with_light);
@@ -73,28 +70,6 @@ impl Companions {
     pub(super) fn of(&self, observation: usize) -> &[Companion] {
         let start = if observation == 0 { 0 } else { self.ends[observation - 1] };
         &self.list[start..self.ends[observation]]
-    }
-
-    fn sort_into(&mut self, cells: &Cells, sightings: &[Sighting]) {
-        let cell = |sighting: &Sighting| cells.index(cells.of_observation(sighting));
-        self.starts.clear();
-        self.starts.resize(cells.count() + 1, 0);
-        for sighting in sightings {
-            self.starts[cell(sighting)] += 1;
-        }
-        let mut sum = 0;
-        for start in &mut self.starts {
-            sum += *start;
-            *start = sum;
-        }
-        self.order.clear();
-        self.order.resize(sightings.len(), 0);
-        // From the last to the first, so that those of a cell are in their order.
-        for (index, sighting) in sightings.iter().enumerate().rev() {
-            let start = &mut self.starts[cell(sighting)];
-            *start -= 1;
-            self.order[*start] = index;
-        }
     }
 }
 

@@ -3,6 +3,7 @@
 use nalgebra::{Unit, Vector3};
 
 use super::Sighting;
+use super::near::Near;
 use crate::camera::Watched;
 use crate::pose::LogLight;
 
@@ -10,6 +11,8 @@ use crate::pose::LogLight;
 #[derive(Clone, Copy)]
 pub(super) struct Context<'a> {
     pub(super) sightings: &'a [Sighting],
+    /// The same by direction.
+    pub(super) near: &'a Near,
     /// Down in the camera frame, where it is known.
     pub(super) gravity: Option<&'a Unit<Vector3<f64>>>,
     /// Where the camera looks.

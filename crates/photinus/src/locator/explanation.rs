@@ -31,6 +31,8 @@ pub(super) struct Explanation {
     sums: Vec<f64>,
     ways: Vec<f64>,
     done: Vec<bool>,
+    /// By observation: the candidate that has it, better than clutter, which gains most for each of its members, and that gain.
+    held: Vec<Option<(f64, usize)>>,
     log_gain: f64,
 }
 
@@ -57,6 +59,7 @@ impl Explanation {
             sums: Vec::with_capacity(1 << MOST_TOGETHER),
             ways: Vec::with_capacity(1 << MOST_TOGETHER),
             done: Vec::new(),
+            held: Vec::new(),
             log_gain: 0.0,
         }
     }
@@ -69,6 +72,24 @@ impl Explanation {
     /// How likely an observation is clutter.
     pub(super) fn clutter(&self, observation: usize) -> f64 {
         self.clutter[observation]
+    }
+
+    /// What the best candidates of a handful's observations gain over clutter, nats, less what the observations that they would lose to it may gain without
+    /// them: at most as much each as before, and one that is left alone nothing.
+    pub(super) fn held(&self, candidates: &Candidates, handful: &[usize]) -> f64 {
+        let mut held = 0.0;
+        for (place, &spot) in handful.iter().enumerate() {
+            let Some((each, holder)) = self.held[spot] else { continue };
+            let is_same = |before: &usize| self.held[*before].is_some_and(|(_, other)| other == holder);
+            if handful[..place].iter().any(is_same) {
+                continue;
+            }
+            let members = candidates.members(holder);
+            let taken = members.iter().filter(|member| handful.contains(member)).count();
+            let lost = if members.len() - taken == 1 { members.len() } else { taken };
+            held += each * lost as f64;
+        }
+        held
     }
 
     /// Logarithm of the density of all observations, where each has this one as clutter.
@@ -99,18 +120,34 @@ impl Explanation {
             let gain = candidates.get(index).log_density + log_neighbours - clutter;
             if gain.is_nan() { f64::NEG_INFINITY } else { gain.min(LARGEST_GAIN) }
         }));
+        self.held.clear();
+        self.held.resize(count, None);
+        for (index, &gain) in self.gains.iter().enumerate() {
+            let members = candidates.members(index);
+            let each = gain / members.len() as f64;
+            for &spot in members {
+                if each > self.held[spot].map_or(0.0, |(most, _)| most) {
+                    self.held[spot] = Some((each, index));
+                }
+            }
+        }
         self.log_gain = 0.0;
         self.done.clear();
         self.done.resize(count, false);
         for (round, &hopeless) in HOPELESS.iter().enumerate() {
             self.leave_out(candidates, count, hopeless);
             self.join(candidates, count);
+            self.sort_into_parts(candidates);
             let last = round + 1 == HOPELESS.len();
-            for root in 0..count {
-                if self.roots[root] == root && !self.done[root] {
-                    self.explain_part(candidates, root, last);
-                }
+            let spots = std::mem::take(&mut self.spots);
+            let mut rest = &spots[..];
+            while let Some(&first) = rest.first() {
+                let of_part = |&spot: &usize| self.roots[spot] == self.roots[first];
+                let (part, others) = rest.split_at(rest.partition_point(of_part));
+                self.explain_part(candidates, part, last);
+                rest = others;
             }
+            self.spots = spots;
         }
     }
 
@@ -148,63 +185,76 @@ impl Explanation {
         }
     }
 
-    /// Explains the part of a frame whose first observation is `first`; if it is too large, only what is certain to be the `last` try.
-    fn explain_part(&mut self, candidates: &Candidates, first: usize, last: bool) {
-        self.spots.clear();
-        self.spots.extend((first..self.roots.len()).filter(|&spot| self.roots[spot] == first));
-        if self.spots.len() > MOST_TOGETHER && !last {
+    /// Sorts what is not done yet, so that what hangs together is together.
+    fn sort_into_parts(&mut self, candidates: &Candidates) {
+        let Self { spots, left, roots, done, .. } = self;
+        spots.clear();
+        spots.extend((0..roots.len()).filter(|&spot| !done[spot]));
+        spots.sort_unstable_by_key(|&spot| (roots[spot], spot));
+        left.sort_unstable_by_key(|&index| (roots[candidates.members(index)[0]], index));
+    }
+
+    /// Explains a part of a frame; if it is too large, only what is certain to be the `last` try.
+    fn explain_part(&mut self, candidates: &Candidates, spots: &[usize], last: bool) {
+        if spots.len() > MOST_TOGETHER && !last {
             return;
         }
-        self.options.clear();
-        let Self { options, spots, left, gains, roots, .. } = self;
-        options.extend(
-            left.iter()
-                .filter(|&&index| roots[candidates.members(index)[0]] == first)
-                .map(|&candidate| Choice { candidate, mask: 0, odds: libm::exp(gains[candidate]) }),
-        );
+        let Self { options, left, gains, roots, .. } = self;
+        let part = |index: usize| roots[candidates.members(index)[0]];
+        let first = left.partition_point(|&index| part(index) < roots[spots[0]]);
+        let own = left[first..].iter().take_while(|&&index| part(index) == roots[spots[0]]);
+        options.clear();
+        options.extend(own.map(|&candidate| Choice { candidate, mask: 0, odds: libm::exp(gains[candidate]) }));
         if spots.len() > MOST_TOGETHER {
             self.take_the_best(candidates);
             return;
         }
         for choice in options.iter_mut() {
-            let bit = |spot: &usize| spots.iter().position(|own| own == spot).map_or(0, |bit| 1 << bit);
+            let bit = |spot: &usize| spots.binary_search(spot).map_or(0, |bit| 1 << bit);
             choice.mask = candidates.members(choice.candidate).iter().map(bit).sum();
         }
-        self.add_up();
+        options.sort_unstable_by_key(|choice| (choice.mask.trailing_zeros(), choice.candidate));
+        self.add_up(spots);
     }
 
-    /// Adds up the weights of all explanations of a part: forwards the weight of what is left, backwards the ways to come there.
-    fn add_up(&mut self) {
-        let Self { spots, options, sums, ways, probability, clutter, done, log_gain, .. } = self;
+    /// Adds up the weights of all explanations of a part: forwards the weight of what is left, backwards the ways to come there. What is explained next
+    /// is the first observation that is left.
+    fn add_up(&mut self, spots: &[usize]) {
+        let Self { options, sums, ways, probability, clutter, done, log_gain, .. } = self;
+        let mut of_first = [0; MOST_TOGETHER + 1];
+        for (first, end) in of_first.iter_mut().enumerate() {
+            *end = options.partition_point(|choice| (choice.mask.trailing_zeros() as usize) < first);
+        }
+        let choices = |mask: usize| {
+            let first = mask.trailing_zeros() as usize;
+            options[of_first[first]..of_first[first + 1]].iter().filter(move |choice| choice.mask & !mask == 0)
+        };
         let all = (1usize << spots.len()) - 1;
         sums.clear();
         sums.push(1.0);
         for mask in 1..=all {
-            let first = mask & mask.wrapping_neg();
-            let fits = |choice: &&Choice| choice.mask & first != 0 && choice.mask & !mask == 0;
-            let taken: f64 =
-                options.iter().filter(fits).map(|choice| choice.odds * sums[mask & !choice.mask]).sum();
-            sums.push(sums[mask & !first] + taken);
+            let clutter = mask & (mask - 1);
+            let taken: f64 = choices(mask).map(|choice| choice.odds * sums[mask & !choice.mask]).sum();
+            sums.push(sums[clutter] + taken);
         }
         ways.clear();
         ways.resize(all + 1, 0.0);
         ways[all] = 1.0;
         let total = sums[all];
         *log_gain += libm::log(total);
-        for &spot in spots.iter() {
+        for &spot in spots {
             clutter[spot] = 0.0;
             done[spot] = true;
         }
         for mask in (1..=all).rev() {
-            if ways[mask] == 0.0 {
+            let here = ways[mask];
+            if here == 0.0 {
                 continue;
             }
-            let first = mask & mask.wrapping_neg();
-            let here = ways[mask];
-            ways[mask & !first] += here;
-            clutter[spots[first.trailing_zeros() as usize]] += here * sums[mask & !first] / total;
-            for choice in options.iter().filter(|choice| choice.mask & first != 0 && choice.mask & !mask == 0)
-            {
+            let rest = mask & (mask - 1);
+            ways[rest] += here;
+            clutter[spots[mask.trailing_zeros() as usize]] += here * sums[rest] / total;
+            for choice in choices(mask) {
                 let rest = mask & !choice.mask;
                 ways[rest] += here * choice.odds;
                 probability[choice.candidate] += here * choice.odds * (sums[rest] / total);

@@ -33,6 +33,8 @@ struct Fixture {
 /// What stays where it is.
 #[derive(Debug)]
 pub(super) struct Fixtures {
+    with_light: bool,
+    /// From left to right.
     list: Vec<Fixture>,
     /// Frames, those long ago counting less and less.
     frames: f64,
@@ -41,8 +43,9 @@ pub(super) struct Fixtures {
 }
 
 impl Fixtures {
-    pub(super) fn new() -> Self {
-        Self { list: Vec::with_capacity(MOST), frames: 0.0, nearest: Vec::new() }
+    /// None yet. Without `with_light` the density is one of places alone.
+    pub(super) fn new(with_light: bool) -> Self {
+        Self { with_light, list: Vec::with_capacity(MOST), frames: 0.0, nearest: Vec::new() }
     }
 
     pub(super) fn forget(&mut self) {
@@ -53,9 +56,13 @@ impl Fixtures {
     /// Finds the fixture of each observation of a frame.
     pub(super) fn find(&mut self, sightings: &[Sighting]) {
         let Self { list, nearest, .. } = self;
+        list.sort_unstable_by(|a, b| a.u.total_cmp(&b.u).then(a.v.total_cmp(&b.v)));
         nearest.clear();
         nearest.extend(sightings.iter().map(|sighting| {
-            let gaps = list.iter().enumerate().map(|(index, fixture)| (fixture.gap_px(sighting), index));
+            let from = list.partition_point(|fixture| fixture.u < sighting.spot.centre.u - SAME_PX);
+            let beside = list.iter().enumerate().skip(from);
+            let beside = beside.take_while(|(_, fixture)| fixture.u < sighting.spot.centre.u + SAME_PX);
+            let gaps = beside.map(|(index, fixture)| (fixture.gap_px(sighting), index));
             let (gap_px, index) = gaps.min_by(|a, b| a.0.total_cmp(&b.0))?;
             (gap_px < SAME_PX).then_some(index)
         }));
@@ -82,7 +89,7 @@ impl Fixtures {
         let fixture = &self.list[index];
         let off = fixture.gap_px(sighting) / SIGMA_PX;
         let place = self.share(observation) * libm::exp(-0.5 * off * off) / (TAU * SIGMA_PX * SIGMA_PX);
-        let lights = fixture.log_light.zip(sighting.log_light);
+        let lights = fixture.log_light.zip(sighting.log_light).filter(|_| self.with_light);
         about_as_bright(place, lights.map(|(before, now)| now.value - before), LIGHT_SIGMA)
     }
 

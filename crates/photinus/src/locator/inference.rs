@@ -14,9 +14,9 @@
 
 use nalgebra::{Unit, Vector3};
 
-use super::alternatives::Alternatives;
+use super::alternatives::{Alternatives, POOR_GAIN};
 use super::candidates::Candidates;
-use super::clutter::{Clutter, Surroundings};
+use super::clutter::{Clutter, Counts, Surroundings};
 use super::companions::Companions;
 use super::context::Context;
 use super::explanation::Explanation;
@@ -24,6 +24,7 @@ use super::fixtures::Fixtures;
 use super::grouping::Groups;
 use super::matching::Matcher;
 use super::memory::Memory;
+use super::near::Near;
 use super::neighbour::Located;
 use super::posing::{self, Poser};
 use super::settings::Settings;
@@ -33,7 +34,7 @@ use crate::airframe::Airframe;
 use crate::camera::{Camera, Watched};
 use crate::pose::{self, LogLight};
 
-/// First looks, each at what the one before leaves as clutter.
+/// Most first looks, each at what the one before leaves as clutter.
 const LOOKS: usize = 4;
 /// An observation that is likelier than this to be clutter may be another neighbour's.
 const DOUBTFUL: f64 = 0.05;
@@ -43,20 +44,25 @@ const ROUNDS: usize = 2;
 const FEWEST_NEIGHBOURS: f64 = 0.2;
 /// Rounds of telling how dense clutter is from what is explained, and what is explained from that.
 const CLUTTER_ROUNDS: usize = 2;
+/// A look that changes no more than this, nats, is the last.
+const SMALL_GAIN: f64 = 1e-3;
 /// Weighing a candidate in full is as much work as so many first looks.
-const LOOKS_PER_WEIGHING: u32 = 16;
+const LOOKS_PER_WEIGHING: u32 = 32;
 
 /// Explains the frames of one camera. Keeps its room.
 #[derive(Debug)]
 pub(super) struct Inference {
     min_probability: f64,
     budget: u32,
+    near: Near,
     matcher: Matcher,
     poser: Poser,
     groups: Groups,
     memory: Memory,
     size: [usize; 2],
     with_light: bool,
+    /// Clutter of what there is no work for.
+    besides: Counts,
     companions: Companions,
     fixtures: Fixtures,
     /// Clutter after a first look, and with what is explained.
@@ -64,6 +70,7 @@ pub(super) struct Inference {
     clutter: Clutter,
     candidates: Candidates,
     alternatives: Alternatives,
+    promising: Vec<usize>,
     doubtful: Vec<usize>,
     explanation: Explanation,
     telling: Telling,
@@ -84,18 +91,21 @@ impl Inference {
         Ok(Self {
             min_probability: settings.min_probability,
             budget: settings.budget,
+            near: Near::default(),
             poser: Poser::new(airframe, settings.pose, &settings.spots)?,
             matcher: Matcher::new(airframe, settings.max_tilt_rad, &settings.pose, faintest_light),
             groups: Groups::default(),
             memory: Memory::new(clutter.counts().len()),
             size,
             with_light,
+            besides: Counts::of(size),
             companions: Companions::new(),
-            fixtures: Fixtures::new(),
+            fixtures: Fixtures::new(with_light),
             first_clutter: Clutter::new(size, with_light),
             clutter,
             candidates: Candidates::with_room(most),
             alternatives: Alternatives::with_room(),
+            promising: Vec::new(),
             doubtful: Vec::new(),
             explanation: Explanation::with_room(most),
             telling: Telling::with_room(most),
@@ -108,6 +118,11 @@ impl Inference {
         self.fixtures.forget();
     }
 
+    /// So many observations of a frame are explained, its first.
+    pub(super) fn most(&self) -> usize {
+        (self.budget / 2) as usize
+    }
+
     /// Tells the neighbours behind the observations of `located`.
     pub(super) fn explain(
         &mut self,
@@ -116,9 +131,14 @@ impl Inference {
         watched: Watched<'_>,
         finished: &mut dyn FnMut(Stage),
     ) {
-        let sightings = std::mem::take(&mut located.sightings);
+        let all = std::mem::take(&mut located.sightings);
+        let (sightings, besides) = all.split_at(all.len().min(self.most()));
+        self.besides.count(besides);
+        let mut near = std::mem::take(&mut self.near);
+        near.sort(sightings);
         let context = Context {
-            sightings: &sightings,
+            sightings,
+            near: &near,
             gravity,
             watched,
             power: None,
@@ -126,41 +146,47 @@ impl Inference {
             log_neighbours: 0.0,
         };
         let of_frame = self.groups.sort_out(&context, &mut self.matcher);
-        self.companions.find(&sightings, self.size, self.with_light);
-        self.fixtures.find(&sightings);
+        self.companions.find(sightings, self.size, self.with_light);
+        self.fixtures.find(sightings);
         self.look(&context);
         let clear_power = self.groups.clear_log_power(&context, &mut self.matcher);
         finished(Stage::Grouping);
         let context = Context { power: self.memory.power().or(of_frame), ..context };
         let mut work = Work { left: self.budget };
         self.weigh_groups(&context, &mut work);
+        self.alternatives.begin(sightings.len());
+        self.doubtful.clear();
         for round in 0..ROUNDS {
-            self.doubt(&sightings, round);
-            self.alternatives.begin(sightings.len());
+            self.doubt(sightings, round);
             self.look_for_others(&context, round, &mut work);
-            self.settle(&sightings);
+            self.settle(sightings);
         }
-        self.fixtures.remember(&sightings, |spot| self.explanation.clutter(spot));
+        self.fixtures.remember(sightings, |spot| self.explanation.clutter(spot));
         self.memory.remember(self.clutter.counts(), self.explanation.neighbours(), clear_power);
-        located.sightings = sightings;
-        located.is_complete = work.left > 0;
+        self.near = near;
+        located.is_complete = work.left > 0 && besides.is_empty();
+        located.sightings = all;
         self.telling.tell(&self.candidates, &self.explanation, self.min_probability, located);
         finished(Stage::Posing);
     }
 
     /// Takes a first look at each group, and tells from that how dense clutter is.
     fn look(&mut self, context: &Context<'_>) {
-        let Self { groups, first_clutter, companions, fixtures, memory, matcher, .. } = self;
-        let frame = Surroundings { sightings: context.sightings, companions, fixtures, memory };
+        let Self { groups, first_clutter, besides, companions, fixtures, memory, matcher, .. } = self;
+        let frame = Surroundings { sightings: context.sightings, besides, companions, fixtures, memory };
         groups.look(context, matcher);
         let mut supposed = |share: f64| {
             groups.suppose(context.sightings.len(), share);
-            let mut gain = 0.0;
+            let mut gain = f64::NAN;
             for _ in 0..LOOKS {
+                let before = gain;
                 first_clutter.measure(&frame, groups, |spot| groups.clutter(spot));
                 let log_neighbours = log_neighbours(groups.neighbours(), memory);
                 let as_measured = groups.weigh_looks(first_clutter.log_density(), log_neighbours);
                 gain = as_measured - excess_of_neighbours(groups.neighbours(), log_neighbours, memory);
+                if (gain - before).abs() < SMALL_GAIN {
+                    break;
+                }
             }
             gain - first_clutter.excess(&frame, |spot| groups.clutter(spot))
         };
@@ -170,22 +196,26 @@ impl Inference {
         }
     }
 
+    /// Weighs the groups that may be neighbours by a first look, the likeliest first.
     fn weigh_groups(&mut self, context: &Context<'_>, work: &mut Work) {
-        let log_neighbours = log_neighbours(self.groups.neighbours(), &self.memory);
-        let context = Context { clutter: self.first_clutter.log_density(), log_neighbours, ..*context };
-        self.candidates.clear();
-        for group in 0..self.groups.len() {
+        let Self { groups, memory, first_clutter, candidates, promising, poser, matcher, .. } = self;
+        let log_neighbours = log_neighbours(groups.neighbours(), memory);
+        let context = Context { clutter: first_clutter.log_density(), log_neighbours, ..*context };
+        candidates.clear();
+        promising.clear();
+        promising.extend((0..groups.len()).filter(|&group| groups.gain(group) > POOR_GAIN));
+        promising.sort_unstable_by(|&a, &b| groups.gain(b).total_cmp(&groups.gain(a)).then(a.cmp(&b)));
+        for &group in promising.iter() {
             if work.weigh() {
-                self.poser.weigh(&context, self.groups.group(group), &mut self.matcher, &mut self.candidates);
+                poser.weigh(&context, groups.group(group), matcher, candidates);
             }
         }
         self.explanation.explain(&self.candidates, context.clutter, log_neighbours);
     }
 
-    /// Finds the observations that may be something else than they seem, the brightest first.
+    /// Finds the observations that may be something else than they seem, or might before, the brightest first.
     fn doubt(&mut self, sightings: &[Sighting], round: usize) {
         let Self { doubtful, explanation, groups, candidates, memory, first_clutter, .. } = self;
-        doubtful.clear();
         doubtful.extend((0..sightings.len()).filter(|&spot| explanation.clutter(spot) > DOUBTFUL));
         if round == 0 {
             let log_neighbours = log_neighbours(groups.neighbours(), memory);
@@ -208,24 +238,27 @@ impl Inference {
         };
         let log_neighbours = log_neighbours(neighbours, &self.memory);
         let context = Context { clutter: clutter.log_density(), log_neighbours, ..*context };
-        let Self { alternatives, doubtful, groups, matcher, poser, candidates, .. } = self;
+        let Self { alternatives, doubtful, groups, matcher, poser, candidates, explanation, .. } = self;
         for &spot in doubtful.iter() {
             if work.left == 0 {
                 break;
             }
-            let looks = alternatives.around(&context, groups, spot, matcher, |handful, matcher| {
-                if candidates.find(handful).is_none() && work.weigh() {
+            work.look(alternatives.look(&context, spot, matcher));
+            let held = |handful: &[usize]| explanation.held(candidates, handful);
+            alternatives.choose(&context, groups, spot, held);
+            for handful in alternatives.chosen() {
+                let can_be = handful.len() <= matcher.most_visible() && candidates.find(handful).is_none();
+                if can_be && work.weigh() {
                     poser.weigh(&context, handful, matcher, candidates);
                 }
-            });
-            work.look(looks);
+            }
         }
     }
 
     /// Explains the frame by its candidates, with clutter and neighbours as dense as the explanation itself has them.
     fn settle(&mut self, sightings: &[Sighting]) {
-        let Self { explanation, clutter, groups, candidates, companions, fixtures, memory, .. } = self;
-        let frame = Surroundings { sightings, companions, fixtures, memory };
+        let Self { explanation, clutter, groups, candidates, besides, companions, fixtures, memory, .. } = self;
+        let frame = Surroundings { sightings, besides, companions, fixtures, memory };
         let mut supposed = |share: Option<f64>| {
             clutter.measure(&frame, groups, |spot| share.unwrap_or(groups.clutter(spot)));
             let mut density = log_neighbours(groups.neighbours(), memory);

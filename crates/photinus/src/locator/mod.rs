@@ -27,6 +27,7 @@ mod grouping;
 mod inference;
 mod matching;
 mod memory;
+mod near;
 mod neighbour;
 mod pairs;
 mod posing;
@@ -42,6 +43,7 @@ use crate::camera::{Camera, Watched};
 use crate::frame::{FrameView, Mask};
 use crate::ranging::SpotCurve;
 use crate::spots::{Detector, Reason, Rejected, Spot};
+use cells::ByCell;
 pub use error::{LocateError, LocatorError};
 use inference::Inference;
 pub use neighbour::{Distance, Located, Neighbour, Orientation, Position, RunnerUp};
@@ -71,7 +73,7 @@ pub struct Locator {
     mask: Option<Mask>,
     detector: Detector,
     inference: Inference,
-    order: Vec<usize>,
+    by_cell: ByCell,
     located: Located,
 }
 
@@ -100,7 +102,7 @@ impl Locator {
             mask: None,
             detector,
             inference,
-            order: Vec::new(),
+            by_cell: ByCell::default(),
             located: Located::with_room(),
         })
     }
@@ -153,7 +155,7 @@ impl Locator {
         finished(Stage::Spots);
         let spots = detections.spots.iter().map(|spot| (spot, None));
         sight_all(&self.camera, self.curve.as_ref(), spots, &mut self.located);
-        brightness::tell(&mut self.located.sightings, &mut self.order);
+        self.tell_light();
         finished(Stage::Bearings);
         Ok(self.tell_neighbours(gravity, finished))
     }
@@ -198,9 +200,14 @@ impl Locator {
         self.located.rejected.clear();
         finished(Stage::Spots);
         sight_all(&self.camera, self.curve.as_ref(), spots, &mut self.located);
-        brightness::tell(&mut self.located.sightings, &mut self.order);
+        self.tell_light();
         finished(Stage::Bearings);
         self.tell_neighbours(gravity, finished)
+    }
+
+    fn tell_light(&mut self) {
+        let size = [self.camera.width(), self.camera.height()];
+        brightness::tell(&mut self.located.sightings, self.inference.most(), size, &mut self.by_cell);
     }
 
     fn tell_neighbours(

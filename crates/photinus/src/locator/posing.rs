@@ -136,15 +136,12 @@ impl Poser {
         let middle = sightings[group[0]].bearing.vector();
         let widest = |&spot: &usize| matcher.widest_rad(&sightings[spot]);
         let reach_rad = group.iter().map(widest).fold(f64::INFINITY, f64::min);
-        let is_near = |sighting: &Sighting| (sighting.bearing.vector() - middle).norm() < reach_rad;
         self.others.clear();
-        self.others.extend(
-            sightings
-                .iter()
-                .enumerate()
-                .filter(|(index, seen)| is_near(seen) && !group.contains(index))
-                .map(|(_, seen)| seen.bearing),
-        );
+        context.near.each_within(middle, reach_rad, |_, index| {
+            if !group.contains(&index) {
+                self.others.push(sightings[index].bearing);
+            }
+        });
     }
 
     /// A lone spot is any of the markers, turned to the camera.

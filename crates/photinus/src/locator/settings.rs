@@ -16,8 +16,8 @@ pub struct Settings {
     pub pose: pose::Settings,
     /// Neighbours less likely than this are not told, 0 to 1. Default [`Self::DEFAULT_MIN_PROBABILITY`].
     pub min_probability: f64,
-    /// Most work on one frame, in first looks at a handful of spots (a few microseconds each): time is bounded, and the most probable comes first.
-    /// Default [`Self::DEFAULT_BUDGET`].
+    /// Most work on one frame, in first looks at a handful of spots (one or two microseconds each): time is bounded, and the most probable comes first.
+    /// Half as many spots are explained, the brightest; the others count as clutter. Default [`Self::DEFAULT_BUDGET`].
     pub budget: u32,
 }
 

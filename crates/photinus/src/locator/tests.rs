@@ -295,3 +295,26 @@ fn any_number_of_spots_anywhere_gives_finite_answers() {
         }
     }
 }
+
+#[test]
+fn of_more_spots_than_there_is_work_for_the_brightest_are_explained_and_that_is_said() {
+    let mut rng = Pcg64::new(5, 1);
+    let airframe = hexarotor();
+    let placed = Placed::new(ahead(4.0, 0.2, 0.0), 0.3, Vector3::zeros());
+    let mut spots = placed.spots(&airframe, &camera(), &mut rng);
+    let (markers, u, v) = (spots.len(), Uniform::new(5.0, 745.0).unwrap(), Uniform::new(5.0, 475.0).unwrap());
+    let faint = |rng: &mut Pcg64| spot(Pixel::new(u.sample(rng), v.sample(rng)), 1.0, 30.0);
+    spots.splice(0..0, (0..3000).map(|_| faint(&mut rng)));
+    for (budget, complete) in [(400, false), (1_000_000, true)] {
+        let settings = Settings { budget, ..Settings::default() };
+        let mut locator = Locator::new(camera(), &airframe, None, settings).unwrap();
+        let located = locator.locate_spots(&spots, Some(&level()), &mut |_| ());
+        assert_eq!(located.is_complete, complete, "budget {budget}");
+        assert_eq!(located.sightings.len(), spots.len(), "every spot is told");
+        let bright: Vec<usize> =
+            (0..spots.len()).filter(|&spot| located.sightings[spot].spot.flux > 1000.0).collect();
+        let found: Vec<&[usize]> =
+            located.neighbours.iter().map(|neighbour| located.members(neighbour)).collect();
+        assert_eq!((found, bright.len()), (vec![&bright[..]], markers), "budget {budget}");
+    }
+}

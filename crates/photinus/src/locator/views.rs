@@ -26,6 +26,10 @@ const HIGHEST_RAD: f64 = 75.0 * PI / 180.0;
 pub(super) const ELEVATION_STEP_RAD: f64 = 2.0 * HIGHEST_RAD / (ELEVATIONS - 1) as f64;
 /// Without gravity, neighbours at the same height are the likelier ones: a weak prior on elevation, rad.
 const ELEVATION_SIGMA_RAD: f64 = 40.0 * PI / 180.0;
+/// Elevations so far from that which gravity tells, nats, are not compared: they cost more than any match is worth.
+const FAR_NATS: f64 = 12.0;
+/// What fills up a row costs too much to be chosen, nats.
+const FILLING_NATS: f64 = 1e6;
 /// A marker is expected to be seen when it shines at least as bright as this, 1 being straight ahead.
 const BRIGHT: f64 = 0.3;
 /// Below this it is not expected at all.
@@ -98,28 +102,59 @@ pub(super) struct Quad {
     pub(super) firmness: Lanes,
 }
 
-/// All arrangements of one number of spots.
+/// All arrangements of one number of spots, from the lowest elevation up.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Arrangements {
-    pub(super) all: Vec<Arrangement>,
-    /// The same, four by four; what is missing in the last costs too much to be chosen.
-    pub(super) quads: Vec<Quad>,
+    all: Vec<Arrangement>,
+    /// The same, four by four of one elevation.
+    quads: Vec<Quad>,
+    /// Each elevation, rad, and where its quads end.
+    rows: Vec<(f64, usize)>,
+}
+
+/// Arrangements of some elevations.
+#[derive(Clone, Copy)]
+pub(super) struct Band<'a> {
+    pub(super) all: &'a [Arrangement],
+    /// The same, four by four.
+    pub(super) quads: &'a [Quad],
 }
 
 impl Arrangements {
+    /// Those that a neighbour tilted by so much may show to a camera at this elevation, where it is known.
+    pub(super) fn within(&self, elevation_rad: Option<f64>, tilt_sigma_rad: f64) -> Band<'_> {
+        let reach_rad = (2.0 * FAR_NATS).sqrt() * tilt_sigma_rad;
+        let rows_up_to = |most_rad: f64| self.rows.partition_point(|(row_rad, _)| *row_rad < most_rad);
+        let [first, end] = match elevation_rad {
+            Some(elevation_rad) => [elevation_rad - reach_rad, elevation_rad + reach_rad].map(rows_up_to),
+            None => [0, self.rows.len()],
+        };
+        let quads_before = |row: usize| row.checked_sub(1).map_or(0, |before| self.rows[before].1);
+        let [first, end] = [first, end].map(quads_before);
+        Band { all: &self.all[LANES * first..LANES * end], quads: &self.quads[first..end] }
+    }
+
+    /// Fills up the last four of a row.
+    fn finish_row(&mut self, elevation_rad: f64) {
+        while let Some(last) = self.all.last().filter(|_| !self.all.len().is_multiple_of(LANES)) {
+            self.all.push(Arrangement { unseen_nats: FILLING_NATS, ..last.clone() });
+        }
+        self.rows.push((elevation_rad, self.all.len() / LANES));
+    }
+
     fn pack(&mut self) {
-        let number = |lanes: &[Arrangement], of: &dyn Fn(&Arrangement) -> f64, missing: f32| {
-            Lanes::new(std::array::from_fn(|lane| lanes.get(lane).map_or(missing, |a| of(a) as f32)))
+        let number = |four: &[Arrangement], of: &dyn Fn(&Arrangement) -> f64| {
+            Lanes::new(std::array::from_fn(|lane| of(&four[lane]) as f32))
         };
-        let pack = |lanes: &[Arrangement]| Quad {
-            x: std::array::from_fn(|spot| number(lanes, &|a| a.shape[spot].x, 0.0)),
-            y: std::array::from_fn(|spot| number(lanes, &|a| a.shape[spot].y, 0.0)),
-            log_intensity: std::array::from_fn(|spot| number(lanes, &|a| a.log_intensity[spot], 0.0)),
-            nats: number(lanes, &|a| a.unseen_nats - a.log_prior, 1e6),
-            elevation_rad: number(lanes, &|a| a.elevation_rad, 0.0),
-            firmness: number(lanes, &|a| firmness(a.elevation_rad), 0.0),
+        let pack = |four: &[Arrangement]| Quad {
+            x: std::array::from_fn(|spot| number(four, &|a| a.shape[spot].x)),
+            y: std::array::from_fn(|spot| number(four, &|a| a.shape[spot].y)),
+            log_intensity: std::array::from_fn(|spot| number(four, &|a| a.log_intensity[spot])),
+            nats: number(four, &|a| a.unseen_nats - a.log_prior),
+            elevation_rad: number(four, &|a| a.elevation_rad),
+            firmness: number(four, &|a| firmness(a.elevation_rad)),
         };
-        self.quads = self.all.chunks(LANES).map(pack).collect();
+        self.quads = self.all.chunks_exact(LANES).map(pack).collect();
     }
 }
 
@@ -168,6 +203,7 @@ impl Views {
                     views.add(&seen, symmetry, [yaw_rad, elevation_rad], log_prior, unseen_nats);
                 }
             }
+            views.arrangements.iter_mut().for_each(|arrangements| arrangements.finish_row(elevation_rad));
         }
         views.finish(libm::log(total));
         views
@@ -213,6 +249,7 @@ impl Views {
         for arrangements in &mut self.arrangements {
             if arrangements.all.len() > MOST_ARRANGEMENTS {
                 arrangements.all.clear();
+                arrangements.rows.clear();
             }
             for arrangement in &mut arrangements.all {
                 arrangement.log_prior -= log_total;

@@ -22,6 +22,8 @@ use super::melting::LightCentre;
 use super::observation::{Observation, Whitened};
 use super::problem::{Normal, Pose, Problem};
 
+/// Logarithm of 2 pi.
+const LOG_TAU: f64 = 1.837_877_066_409_345_5;
 /// Beyond so many sigma the pull of a bearing no longer grows.
 const HUBER: f64 = 3.5;
 /// Without gravity: how far a camera is above or below a neighbour's own horizon, the sine's sigma.
@@ -54,9 +56,16 @@ impl Problem<'_> {
         let is_clutter = |(_, marker): &(&Observation, &Option<u16>)| marker.is_none();
         let clutter = self.observations.iter().zip(self.markers).filter(is_clutter);
         normal.nats = clutter.map(|(seen, _)| -seen.clutter_log_density).sum();
-        self.add_bearings(pose, &mut normal);
-        if self.settings.use_brightness {
-            let light = Light::of(self, pose);
+        let camera_in_body_m = pose.camera_in_body_m();
+        let mut light = self.settings.use_brightness.then(|| Light::beforehand(self));
+        for (spot, marker) in self.used() {
+            let shining = self.shining(spot, marker, &camera_in_body_m);
+            self.add_bearing(pose, spot, &shining.centre, &mut normal);
+            if let Some(light) = &mut light {
+                light.see(self, pose, [spot, marker], &shining);
+            }
+        }
+        if let Some(light) = light {
             light.add_to(&mut normal);
             normal.log_power = light.log_power();
         }
@@ -66,47 +75,46 @@ impl Problem<'_> {
     /// Squared misfit of a spot's bearing, in units of its variance.
     pub(super) fn misfit(&self, pose: &Pose, spot: usize, marker: usize) -> f64 {
         let Whitened { direction, map, .. } = &self.whitened[spot];
-        let LightCentre { at_m, factor, .. } = self.light_centre(spot, marker, &pose.camera_in_body_m());
+        let LightCentre { at_m, factor, .. } = self.shining(spot, marker, &pose.camera_in_body_m()).centre;
         let place_m = pose.camera_from_body * at_m + pose.position_m;
         (map * (place_m.normalize() - direction) * factor).norm_squared()
     }
 
-    fn add_bearings(&self, pose: &Pose, normal: &mut Normal) {
+    /// Adds the bearing of a spot whose light comes from there.
+    fn add_bearing(&self, pose: &Pose, spot: usize, centre: &LightCentre, normal: &mut Normal) {
+        let LightCentre { at_m, by_camera, factor } = *centre;
         let distance_m = pose.position_m.norm();
         let camera_from_body = pose.camera_from_body.matrix();
         let camera_in_body_m = pose.camera_in_body_m();
-        for (spot, marker) in self.used() {
-            let LightCentre { at_m, by_camera, factor } = self.light_centre(spot, marker, &camera_in_body_m);
-            let place_m = camera_from_body * at_m + pose.position_m;
-            let range_m = place_m.norm();
-            let seen = place_m / range_m;
-            let Whitened { direction, map, log_sigmas } = &self.whitened[spot];
-            normal.nats += log_sigmas + libm::log(TAU);
-            if factor < 1.0 {
-                normal.nats -= 2.0 * libm::log(factor);
-            }
-            let residual = map * (seen - direction) * factor;
-            let by_place = (map - map * seen * seen.transpose()) * (factor / range_m);
-            let by_turn = by_place * camera_from_body;
-            let square = residual.norm_squared();
-            let weight = if square > HUBER * HUBER {
-                let off = square.sqrt();
-                normal.nats += HUBER * (off - 0.5 * HUBER);
-                HUBER / off
-            } else {
-                normal.nats += 0.5 * square;
-                1.0
-            };
-            for axis in 0..2 {
-                let in_body = by_turn.row(axis).transpose();
-                // The camera in the body frame moves by -R' distance delta, and by c x omega.
-                let by_melting = by_camera.transpose() * in_body;
-                let across = (by_place.row(axis).transpose() - camera_from_body * by_melting) * distance_m;
-                // d(R exp(omega) p) = R (omega x p), so that the row by omega is p x (R' row').
-                let turn = at_m.cross(&in_body) + by_melting.cross(&camera_in_body_m);
-                let row = Vector6::new(across.x, across.y, across.z, turn.x, turn.y, turn.z);
-                normal.add_weighted(weight, residual[axis], &row);
-            }
+        let place_m = camera_from_body * at_m + pose.position_m;
+        let range_m = place_m.norm();
+        let seen = place_m / range_m;
+        let Whitened { direction, map, log_sigmas } = &self.whitened[spot];
+        normal.nats += log_sigmas + LOG_TAU;
+        if factor < 1.0 {
+            normal.nats -= 2.0 * libm::log(factor);
+        }
+        let residual = map * (seen - direction) * factor;
+        let by_place = (map - map * seen * seen.transpose()) * (factor / range_m);
+        let by_turn = by_place * camera_from_body;
+        let square = residual.norm_squared();
+        let weight = if square > HUBER * HUBER {
+            let off = square.sqrt();
+            normal.nats += HUBER * (off - 0.5 * HUBER);
+            HUBER / off
+        } else {
+            normal.nats += 0.5 * square;
+            1.0
+        };
+        for axis in 0..2 {
+            let in_body = by_turn.row(axis).transpose();
+            // The camera in the body frame moves by -R' distance delta, and by c x omega.
+            let by_melting = by_camera.transpose() * in_body;
+            let across = (by_place.row(axis).transpose() - camera_from_body * by_melting) * distance_m;
+            // d(R exp(omega) p) = R (omega x p), so that the row by omega is p x (R' row').
+            let turn = at_m.cross(&in_body) + by_melting.cross(&camera_in_body_m);
+            let row = Vector6::new(across.x, across.y, across.z, turn.x, turn.y, turn.z);
+            normal.add_weighted(weight, residual[axis], &row);
         }
     }
 

@@ -4,6 +4,7 @@ use core::f64::consts::TAU;
 
 use nalgebra::Vector6;
 
+use super::melting::Shining;
 use super::observation::LogLight;
 use super::problem::{Normal, Pose, Problem};
 
@@ -27,10 +28,24 @@ pub(super) struct Light {
     /// Sums of w r a and of w a a', before the power of the LEDs is solved for.
     normal: Normal,
     log_sigmas: f64,
+    /// By how much each tells less for not being independent of the others.
+    shared: f64,
 }
 
 impl Light {
+    /// The light of all spots in use.
     pub(super) fn of(problem: &Problem<'_>, pose: &Pose) -> Self {
+        let mut light = Self::beforehand(problem);
+        let camera_in_body_m = pose.camera_in_body_m();
+        for (spot, marker) in problem.used() {
+            let shining = problem.shining(spot, marker, &camera_in_body_m);
+            light.see(problem, pose, [spot, marker], &shining);
+        }
+        light
+    }
+
+    /// What is known of the power of the LEDs before any spot.
+    pub(super) fn beforehand(problem: &Problem<'_>) -> Self {
         let mut light = Self {
             weight: 0.0,
             first: 0.0,
@@ -38,6 +53,7 @@ impl Light {
             slope: Vector6::zeros(),
             normal: Normal::zero(),
             log_sigmas: 0.0,
+            shared: (problem.used().count() as f64 / INDEPENDENT).max(1.0),
         };
         light.log_sigmas = match problem.known.power {
             Some(LogLight { value, sigma }) => {
@@ -46,35 +62,37 @@ impl Light {
             }
             None => libm::log(POWER_RANGE),
         };
-        let shared = (problem.used().count() as f64 / INDEPENDENT).max(1.0);
-        let camera_in_body_m = pose.camera_in_body_m();
-        let camera_from_body = pose.camera_from_body.matrix();
-        let distance_m = pose.position_m.norm();
-        for (spot, marker) in problem.used() {
-            let Some(seen) = problem.observations[spot].log_light else { continue };
-            let (intensity, gradient) = problem.light(spot, marker, &camera_in_body_m);
-            let shines = intensity.max(DARK);
-            let arm_m = problem.airframe.markers()[marker].position_m;
-            let from_marker_m = camera_in_body_m - arm_m;
-            let range2_m2 = from_marker_m.norm_squared();
-            // By the camera's place in the body frame, of ln I - 2 ln range.
-            let mut by_camera = from_marker_m * (-2.0 / range2_m2);
-            if intensity > DARK {
-                by_camera += gradient / intensity;
-            }
-            let lobe = problem.settings.lobe_sigma / shines;
-            let unit = problem.settings.unit_sigma;
-            let variance = (seen.sigma * seen.sigma + unit * unit + lobe * lobe) * shared;
-            light.log_sigmas += 0.5 * libm::log(TAU * variance);
-            // The camera in the body frame moves by -R' distance delta, and by c x omega.
-            let by_delta = camera_from_body * by_camera * -distance_m;
-            let by_omega = by_camera.cross(&camera_in_body_m);
-            let expected = libm::log(shines) - libm::log(range2_m2);
-            let row =
-                Vector6::new(-by_delta.x, -by_delta.y, -by_delta.z, -by_omega.x, -by_omega.y, -by_omega.z);
-            light.add(1.0 / variance, seen.value - expected, &row);
-        }
         light
+    }
+
+    /// Adds a spot and its marker, with what they show at a pose.
+    pub(super) fn see(
+        &mut self,
+        problem: &Problem<'_>,
+        pose: &Pose,
+        [spot, marker]: [usize; 2],
+        shining: &Shining,
+    ) {
+        let Some(seen) = problem.observations[spot].log_light else { return };
+        let camera_in_body_m = pose.camera_in_body_m();
+        let shines = shining.intensity.max(DARK);
+        let from_marker_m = camera_in_body_m - problem.airframe.markers()[marker].position_m;
+        let range2_m2 = from_marker_m.norm_squared();
+        // By the camera's place in the body frame, of ln I - 2 ln range.
+        let mut by_camera = from_marker_m * (-2.0 / range2_m2);
+        if shining.intensity > DARK {
+            by_camera += shining.intensity_gradient / shining.intensity;
+        }
+        let lobe = problem.settings.lobe_sigma / shines;
+        let unit = problem.settings.unit_sigma;
+        let variance = (seen.sigma * seen.sigma + unit * unit + lobe * lobe) * self.shared;
+        self.log_sigmas += 0.5 * libm::log(TAU * variance);
+        // The camera in the body frame moves by -R' distance delta, and by c x omega.
+        let by_delta = pose.camera_from_body.matrix() * by_camera * -pose.position_m.norm();
+        let by_omega = by_camera.cross(&camera_in_body_m);
+        let row =
+            Vector6::new(-by_delta.x, -by_delta.y, -by_delta.z, -by_omega.x, -by_omega.y, -by_omega.z);
+        self.add(1.0 / variance, seen.value - libm::log(shines / range2_m2), &row);
     }
 
     fn add(&mut self, weight: f64, residual: f64, row: &Vector6<f64>) {

@@ -14,6 +14,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::problem::{Pose, Problem};
+use crate::airframe::Marker;
 
 /// Radius of the window in resolutions.
 const WINDOW: f64 = 1.32;
@@ -26,12 +27,12 @@ const ROOM: f64 = 1.5;
 /// [`FAR`].
 pub(super) fn one_spot(gap2: f64) -> f64 {
     // No resolution is no number, and far.
-    if gap2.is_nan() {
+    if gap2.is_nan() || gap2 >= FAR * FAR {
         return 0.0;
     }
     let even = |gap2: f64| 1.0 / (1.0 + gap2 * gap2 * gap2);
     let least = even(FAR * FAR);
-    (even(gap2) - least).max(0.0) / (1.0 - least)
+    (even(gap2) - least) / (1.0 - least)
 }
 
 /// Where the light of a spot comes from, as far as its centre tells.
@@ -44,6 +45,14 @@ pub(super) struct LightCentre {
     pub(super) factor: f64,
 }
 
+/// What a spot shows of the markers in its window.
+pub(super) struct Shining {
+    pub(super) centre: LightCentre,
+    /// Their light, 1 being one LED straight ahead, with its derivative by the camera's place in the body frame, 1/m.
+    pub(super) intensity: f64,
+    pub(super) intensity_gradient: Vector3<f64>,
+}
+
 /// A marker without a spot of its own that may shine into that of another.
 struct Beside {
     place_m: Vector3<f64>,
@@ -54,69 +63,105 @@ struct Beside {
     intensity_gradient: Vector3<f64>,
 }
 
-impl Problem<'_> {
-    /// Squared gap of two markers in the image over the resolution of a spot, for a camera at a place in the body frame, with
-    /// its derivative by that place, 1/m; `None` where they are far apart.
-    fn gap2(&self, spot: usize, a: usize, b: usize, camera_m: &Vector3<f64>) -> Option<(f64, Vector3<f64>)> {
-        let [a_m, b_m] = [a, b].map(|marker| self.airframe.markers()[marker].position_m);
-        let (between_m, ray_m) = (b_m - a_m, camera_m - a_m);
-        let range2_m2 = ray_m.norm_squared();
-        let resolution2 = self.observations[spot].resolution_rad * self.observations[spot].resolution_rad;
-        let along = between_m.dot(&ray_m);
-        let across = between_m.norm_squared() * range2_m2 - along * along;
-        let scale = 1.0 / (range2_m2 * range2_m2 * resolution2);
-        let gap2 = across * scale;
+/// A marker from which gaps are measured, in units of the resolution of its spot.
+struct Gaps {
+    from_m: Vector3<f64>,
+    /// To the camera.
+    ray_m: Vector3<f64>,
+    range2_m2: f64,
+    resolution2: f64,
+}
+
+/// The gap from one marker to another.
+struct Gap<'a> {
+    squared: f64,
+    gaps: &'a Gaps,
+    between_m: Vector3<f64>,
+    along: f64,
+    across: f64,
+}
+
+impl Gaps {
+    /// The gap to a marker there; `None` where it is far.
+    fn to(&self, other_m: &Vector3<f64>) -> Option<Gap<'_>> {
+        let between_m = other_m - self.from_m;
+        let along = between_m.dot(&self.ray_m);
+        let across = between_m.norm_squared() * self.range2_m2 - along * along;
+        let scale = self.range2_m2 * self.range2_m2 * self.resolution2;
         // No resolution, or no range, is no number, and far.
-        if gap2.is_nan() || gap2 >= FAR * FAR {
-            return None;
-        }
-        let slope = ray_m * (2.0 * between_m.norm_squared())
-            - between_m * (2.0 * along)
-            - ray_m * (4.0 * across / range2_m2);
-        Some((gap2.max(0.0), slope * scale))
+        let is_near = scale > 0.0 && across < FAR * FAR * scale;
+        is_near.then(|| Gap { squared: (across / scale).max(0.0), gaps: self, between_m, along, across })
+    }
+}
+
+impl Gap<'_> {
+    /// The derivative of its square by the camera's place in the body frame, 1/m.
+    fn by_camera(&self) -> Vector3<f64> {
+        let Gaps { ray_m, range2_m2, resolution2, .. } = self.gaps;
+        let slope = ray_m * (2.0 * self.between_m.norm_squared())
+            - self.between_m * (2.0 * self.along)
+            - ray_m * (4.0 * self.across / range2_m2);
+        slope / (range2_m2 * range2_m2 * resolution2)
+    }
+}
+
+impl Problem<'_> {
+    /// The gaps in the image from a marker that is seen as a spot, for a camera at a place in the body frame.
+    fn gaps(&self, spot: usize, from: usize, camera_m: &Vector3<f64>) -> Gaps {
+        let from_m = self.airframe.markers()[from].position_m;
+        let ray_m = camera_m - from_m;
+        let resolution_rad = self.observations[spot].resolution_rad;
+        Gaps { from_m, ray_m, range2_m2: ray_m.norm_squared(), resolution2: resolution_rad * resolution_rad }
     }
 
     /// How likely the detector makes one spot of two markers.
     pub(super) fn melted(&self, spot: usize, seen: usize, other: usize, camera_m: &Vector3<f64>) -> f64 {
-        self.gap2(spot, seen, other, camera_m).map_or(0.0, |(gap2, _)| one_spot(gap2))
+        let other_m = &self.airframe.markers()[other].position_m;
+        self.gaps(spot, seen, camera_m).to(other_m).map_or(0.0, |gap| one_spot(gap.squared))
     }
 
     /// Whether any marker may melt into a spot, anywhere near a pose.
     pub(super) fn may_melt(&self, pose: &Pose) -> bool {
         let camera_m = pose.camera_in_body_m() * ROOM;
         let near = |(spot, seen)| {
-            let mut others = (0..self.airframe.markers().len()).filter(|&other| other != seen);
-            others.any(|other| self.gap2(spot, seen, other, &camera_m).is_some())
+            let gaps = self.gaps(spot, seen, &camera_m);
+            let mut others = self.airframe.markers().iter().enumerate().filter(|&(other, _)| other != seen);
+            others.any(|(_, other)| gaps.to(&other.position_m).is_some())
         };
         self.used().any(near)
     }
 
     /// Markers without spots of their own in the window of a spot.
     fn beside(&self, spot: usize, seen: usize, camera_m: Vector3<f64>) -> impl Iterator<Item = Beside> + '_ {
-        let others = if self.melting { 0..self.airframe.markers().len() } else { 0..0 };
-        others.filter(move |&other| other != seen && !self.is_used(other)).filter_map(move |other| {
-            let (gap2, gap2_gradient) = self.gap2(spot, seen, other, &camera_m)?;
-            let room = 1.0 - gap2 / (WINDOW * WINDOW);
+        let others = if self.melting { self.airframe.markers() } else { &[] };
+        let gaps = self.gaps(spot, seen, &camera_m);
+        others.iter().enumerate().filter_map(move |(other, Marker { position_m, .. })| {
+            let gap = gaps.to(position_m).filter(|_| other != seen && !self.is_used(other))?;
+            let room = 1.0 - gap.squared / (WINDOW * WINDOW);
             let (intensity, intensity_gradient) = self.airframe.intensity_with_gradient(other, &camera_m);
             (room > 0.0 && intensity > 0.0).then(|| Beside {
-                place_m: self.airframe.markers()[other].position_m,
+                place_m: *position_m,
                 window: room,
-                window_gradient: gap2_gradient * (-1.0 / (WINDOW * WINDOW)),
+                window_gradient: gap.by_camera() * (-1.0 / (WINDOW * WINDOW)),
                 intensity,
                 intensity_gradient,
             })
         })
     }
 
-    /// Where the light of a spot comes from: its marker, with those that shine into its window.
-    pub(super) fn light_centre(&self, spot: usize, marker: usize, camera_m: &Vector3<f64>) -> LightCentre {
+    /// What a spot shows: the light of its marker, with that of those that shine into its window.
+    pub(super) fn shining(&self, spot: usize, marker: usize, camera_m: &Vector3<f64>) -> Shining {
         let alone_m = self.airframe.markers()[marker].position_m;
-        let mut centre = LightCentre { at_m: alone_m, by_camera: Matrix3::zeros(), factor: 1.0 };
+        let (own, own_gradient) = self.airframe.intensity_with_gradient(marker, camera_m);
+        let mut shining = Shining {
+            centre: LightCentre { at_m: alone_m, by_camera: Matrix3::zeros(), factor: 1.0 },
+            intensity: own,
+            intensity_gradient: own_gradient,
+        };
         let mut beside = self.beside(spot, marker, *camera_m).peekable();
         if beside.peek().is_none() {
-            return centre;
+            return shining;
         }
-        let (own, own_gradient) = self.airframe.intensity_with_gradient(marker, camera_m);
         // A marker that hardly shines is no middle of a spot, but it keeps the others' light from being the whole of it.
         let (mut total, mut pull_m) = (own.max(1e-3), Vector3::zeros());
         let mut total_gradient = if own > 1e-3 { own_gradient } else { Vector3::zeros() };
@@ -135,23 +180,15 @@ impl Problem<'_> {
             // Spots differ in their windows: what is at the edge of one is within another.
             let unsure = (1.0 - weight) * (1.0 - weight) + unit * unit;
             unsure_m2 += unsure * off_m.norm_squared() * light * light;
+            shining.intensity += window * intensity;
+            shining.intensity_gradient += intensity_gradient * window + window_gradient * intensity;
         }
         let off_m = pull_m / total;
-        centre.at_m += off_m;
-        centre.by_camera = (pull_by_camera - off_m * total_gradient.transpose()) / total;
+        shining.centre.at_m += off_m;
+        shining.centre.by_camera = (pull_by_camera - off_m * total_gradient.transpose()) / total;
         let sigma2_rad2 = self.observations[spot].variance_rad2();
         let unsure_rad2 = unsure_m2 / (total * total * camera_m.norm_squared());
-        centre.factor = (sigma2_rad2 / (sigma2_rad2 + unsure_rad2)).sqrt();
-        centre
-    }
-
-    /// The light of a spot, 1 being one LED straight ahead, with its derivative by the camera's place in the body frame, 1/m:
-    /// its marker's, with that of those that shine into its window.
-    pub(super) fn light(&self, spot: usize, marker: usize, camera_m: &Vector3<f64>) -> (f64, Vector3<f64>) {
-        let own = self.airframe.intensity_with_gradient(marker, camera_m);
-        self.beside(spot, marker, *camera_m).fold(own, |(light, gradient), beside| {
-            let more = beside.intensity_gradient * beside.window + beside.window_gradient * beside.intensity;
-            (light + beside.window * beside.intensity, gradient + more)
-        })
+        shining.centre.factor = (sigma2_rad2 / (sigma2_rad2 + unsure_rad2)).sqrt();
+        shining
     }
 }

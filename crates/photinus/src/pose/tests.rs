@@ -138,9 +138,9 @@ proptest! {
             airframe: &airframe, settings: &settings, observations: &observations, whitened: &whitened, markers: &markers,
             known: &nothing(), melting: true,
         };
-        let centre = |at: &Vector3<f64>| problem.light_centre(0, brightest, at);
-        let light = |at: &Vector3<f64>| problem.light(0, brightest, at);
-        let step = 1e-6;
+        let shining = |at: &Vector3<f64>| problem.shining(0, brightest, at);
+        let centre = |at: &Vector3<f64>| shining(at).centre;
+                let step = 1e-6;
         for axis in 0..3 {
             let mut off = Vector3::zeros();
             off[axis] = step;
@@ -151,8 +151,8 @@ proptest! {
             let kink = airframe.markers().len() != (0..airframe.markers().len())
                 .filter(|&marker| !(1e-9..1e-4).contains(&airframe.intensity(marker, &camera_m))).count();
             prop_assert!(kink || (numeric - analytic).norm() < 1e-5, "axis {axis}: {numeric} {analytic}");
-            let numeric = (light(&ahead).0 - light(&behind).0) / (2.0 * step);
-            prop_assert!(kink || (numeric - light(&camera_m).1[axis]).abs() < 1e-5, "axis {axis}: {numeric}");
+            let numeric = (shining(&ahead).intensity - shining(&behind).intensity) / (2.0 * step);
+            prop_assert!(kink || (numeric - shining(&camera_m).intensity_gradient[axis]).abs() < 1e-5, "axis {axis}: {numeric}");
         }
     }
 
@@ -173,7 +173,7 @@ proptest! {
             airframe: &airframe, settings: &settings, observations: &observations, whitened: &whitened, markers: &markers,
             known: &nothing(), melting: true,
         };
-        let centre = problem.light_centre(0, 0, &camera_m);
+        let centre = problem.shining(0, 0, &camera_m).centre;
         let melted = problem.melted(0, 0, 1, &camera_m);
         let window = (1.0 - gap * gap / (1.32 * 1.32)).max(0.0);
         let expected = -0.05 + 0.1 * window * window / (1.0 + window * window);

@@ -47,9 +47,9 @@ impl Problem<'_> {
                 return 0.0;
             }
             // Of two markers that melt the spot is said to be the brighter one.
-            let into = |(spot, seen): (usize, usize)| {
-                let other = intensity(seen).max(1e-3);
-                self.melted(spot, seen, marker, &camera_m) * probability(odds(other / shines))
+            let into = |(spot, seen): (usize, usize)| match self.melted(spot, seen, marker, &camera_m) {
+                0.0 => 0.0,
+                melted => melted * probability(odds(intensity(seen).max(1e-3) / shines)),
             };
             let melted = if self.melting { self.used().map(into).fold(0.0, f64::max) } else { 0.0 };
             -libm::log(1.0 - found * (1.0 - melted) * (1.0 - self.merged_with_others(pose, marker)))
@@ -83,9 +83,8 @@ impl Problem<'_> {
         };
         let place_m = pose.camera_from_body * self.airframe.markers()[marker].position_m + pose.position_m;
         let direction = place_m.normalize();
-        let gap2 =
-            |other: &Bearing| (other.vector() - direction).norm_squared() / (resolution_rad * resolution_rad);
-        others.iter().map(|other| one_spot(gap2(other))).fold(0.0, f64::max)
+        let gaps = others.iter().map(|other| (other.vector() - direction).norm_squared());
+        one_spot(gaps.fold(f64::INFINITY, f64::min) / (resolution_rad * resolution_rad))
     }
 
     fn is_watched(&self, pose: &Pose, marker: usize) -> bool {

@@ -3,8 +3,8 @@
 //! In: the sightings of a frame. Out: groups of them, each a neighbour, by the least total cost; what a group costs,
 //! [`Matcher`] says. Three steps, the later ones for fewer and fewer spots:
 //!
-//! 1. [`tree`]: the tree of nearest neighbours; every neighbour that keeps its distance in the image is a branch;
-//! 2. its cheapest cut into branches, from the top down, without looking into a branch that cannot be beaten;
+//! 1. [`tree`]: the trees of nearest neighbours; every neighbour that keeps its distance in the image is a branch;
+//! 2. their cheapest cut into branches, from the top down, without looking into a branch that cannot be beaten;
 //! 3. [`partition`]: where groups overlap in the image (side by side, one behind the other) the cheapest of all partitions
 //!    of a few spots, exactly.
 
@@ -50,6 +50,8 @@ pub(super) struct Groups {
     /// Logarithm of the density of each group as one neighbour, by a first look, and how likely each observation is clutter by it.
     first_looks: Vec<f64>,
     clutter: Vec<f64>,
+    /// How much likelier each group is one neighbour than clutter, by that look, as a logarithm.
+    gains: Vec<f64>,
 }
 
 /// Groups of spots, one after the other.
@@ -98,11 +100,7 @@ impl GroupList {
 impl Groups {
     /// Finds the groups of a frame's observations, and what the clear ones tell of the light of its LEDs.
     pub(super) fn sort_out(&mut self, context: &Context<'_>, matcher: &mut Matcher) -> Option<LogLight> {
-        self.list.clear();
-        if context.sightings.is_empty() {
-            return None;
-        }
-        self.tree.grow(context.sightings);
+        self.tree.grow(context, matcher);
         self.cut_tree(context, matcher);
         let log_power = self.log_power(context, matcher);
         let power = log_power.map(|value| LogLight { value, sigma: LOG_POWER_SIGMA });
@@ -138,10 +136,13 @@ impl Groups {
     /// observations.
     pub(super) fn weigh_looks(&mut self, clutter_log_density: &[f64], log_neighbours: f64) -> f64 {
         let mut total = 0.0;
+        self.gains.clear();
         for (group, look) in self.first_looks.iter().enumerate() {
             let members = self.list.group(group);
             let clutter: f64 = members.iter().map(|&spot| clutter_log_density[spot]).sum();
             let gain = (look + log_neighbours - clutter).clamp(-LARGEST_GAIN, LARGEST_GAIN);
+            // A look that cannot tell promises nothing, and rules nothing out.
+            self.gains.push(if look.is_finite() { gain } else { 0.0 });
             let share = 1.0 / (1.0 + libm::exp(gain));
             for &spot in members {
                 self.clutter[spot] = share;
@@ -149,6 +150,11 @@ impl Groups {
             total += clutter - libm::log(share);
         }
         total
+    }
+
+    /// How much likelier a group is one neighbour than clutter, by that look, as a logarithm.
+    pub(super) fn gain(&self, group: usize) -> f64 {
+        self.gains[group]
     }
 
     /// How likely an observation is clutter, by that look.

@@ -1,15 +1,24 @@
-//! The tree of nearest neighbours (single linkage), and its cheapest cut. What is unlikely a marker is as far away as it is unlikely: it joins last.
+//! The trees of nearest neighbours (single linkage), and their cheapest cut. What is unlikely a marker is as far away as it is unlikely: it joins last.
 
-use crate::locator::Sighting;
-use crate::locator::matching::{IMPOSSIBLE, NEIGHBOUR_NATS};
+use crate::locator::context::Context;
+use crate::locator::matching::{IMPOSSIBLE, Matcher, NEIGHBOUR_NATS};
 
-/// A tree over the sightings of a frame: spots are its leaves, every branch joins the two that are nearest.
+/// A spot is joined to so many of the nearest, and to as many as one neighbour shows.
+const FEWEST_LINKS: usize = 16;
+
+/// What is more doubtful than this is not looked past any further: the time of a frame is bounded.
+const MOST_DOUBT: f64 = 100.0;
+
+/// Trees over the sightings of a frame: spots are leaves, every branch joins the two that are nearest.
 #[derive(Debug, Default)]
 pub(super) struct Tree {
     /// By how much the square of a distance to each spot is longer: one over the probability that it is a marker.
     doubts: Vec<f64>,
     nearest: Vec<(f64, usize)>,
+    /// From the shortest to the longest.
     links: Vec<(f64, usize, usize)>,
+    /// Branches that are part of no other.
+    tops: Vec<usize>,
     branches: Vec<Branch>,
     roots: Vec<usize>,
     /// The spots, so that those of a branch are together.
@@ -34,18 +43,18 @@ const LEAF: Branch =
     Branch { children: None, start: 0, spots: 1, whole_nats: IMPOSSIBLE, nats: IMPOSSIBLE, looked_at: false };
 
 impl Tree {
-    /// Grows the tree of `sightings`, at least one.
-    pub(super) fn grow(&mut self, sightings: &[Sighting]) {
-        self.link_nearest(sightings);
-        self.join(sightings.len());
-        self.order_spots(sightings.len());
+    /// Grows the trees of a frame's observations.
+    pub(super) fn grow(&mut self, context: &Context<'_>, matcher: &Matcher) {
+        self.link_nearest(context, matcher);
+        self.join(context.sightings.len());
+        self.order_spots(context.sightings.len());
     }
 
     /// Asks what branches cost as one neighbour, from the top down. A branch that costs less than two neighbours must is
     /// not looked into.
     pub(super) fn cost(&mut self, mut whole_nats: impl FnMut(&[usize]) -> f64) {
         self.open.clear();
-        self.open.push(self.branches.len() - 1);
+        self.open.extend(self.tops.iter().rev());
         while let Some(at) = self.open.pop() {
             let branch = &mut self.branches[at];
             branch.looked_at = true;
@@ -70,7 +79,7 @@ impl Tree {
     /// Hands on the branches of the cheapest cut, each with what it costs.
     pub(super) fn cut(&mut self, mut with: impl FnMut(&[usize], f64)) {
         self.open.clear();
-        self.open.push(self.branches.len() - 1);
+        self.open.extend(self.tops.iter().rev());
         while let Some(at) = self.open.pop() {
             let Branch { children, start, spots, whole_nats, nats, .. } = self.branches[at];
             match children {
@@ -80,38 +89,36 @@ impl Tree {
         }
     }
 
-    /// The shortest tree that joins all bearings (Prim), its links from the shortest to the longest.
-    fn link_nearest(&mut self, sightings: &[Sighting]) {
-        self.doubts.clear();
-        self.doubts.extend(
+    /// Links every spot to those nearest to it, and to those nearest with their doubts.
+    fn link_nearest(&mut self, context: &Context<'_>, matcher: &Matcher) {
+        let Self { doubts, nearest, links, .. } = self;
+        let Context { sightings, near, .. } = *context;
+        let most = matcher.most_visible().max(FEWEST_LINKS) + 1;
+        doubts.clear();
+        doubts.extend(
             sightings.iter().map(|sighting| 1.0 + libm::exp(-sighting.spot.marker_log_odds.max(-20.0))),
         );
-        let doubts = &self.doubts;
-        let gap = |a: usize, b: usize| {
-            let apart = sightings[a].bearing.vector() - sightings[b].bearing.vector();
-            apart.norm_squared() * doubts[a] * doubts[b]
-        };
-        self.nearest.clear();
-        self.nearest.extend((0..sightings.len()).map(|spot| (gap(0, spot), 0)));
-        self.links.clear();
-        let mut joined = 0;
-        for _ in 1..sightings.len() {
-            self.nearest[joined].0 = f64::NAN;
-            let outside = self.nearest.iter().enumerate().filter(|(_, (gap, _))| !gap.is_nan());
-            let closest = outside.min_by(|(_, a), (_, b)| a.0.total_cmp(&b.0));
-            let Some((spot, &(length, from))) = closest else { break };
-            self.links.push((length, from, spot));
-            joined = spot;
-            for (other, nearest) in self.nearest.iter_mut().enumerate() {
-                let length = gap(joined, other);
-                if length < nearest.0 {
-                    *nearest = (length, joined);
-                }
-            }
+        links.clear();
+        for (spot, sighting) in sightings.iter().enumerate() {
+            let direction = sighting.bearing.vector();
+            let mut link = |nearest: &[(f64, usize)]| {
+                let others = nearest.iter().map(|&(_, other)| other).filter(|&other| other != spot);
+                links.extend(others.map(|other| {
+                    let apart = direction - sightings[other].bearing.vector();
+                    let length = apart.norm_squared() * doubts[spot] * doubts[other];
+                    (length, spot.min(other), spot.max(other))
+                }));
+            };
+            near.nearest(direction, most, f64::INFINITY, |_| 1.0, nearest);
+            link(nearest);
+            let longer = |other: usize| doubts[other].min(MOST_DOUBT);
+            near.nearest(direction, most, f64::INFINITY, longer, nearest);
+            link(nearest);
         }
-        self.links.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)).then(a.2.cmp(&b.2)));
+        links.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)).then(a.2.cmp(&b.2)));
     }
 
+    /// Joins what links join, the shortest first (Kruskal).
     fn join(&mut self, spots: usize) {
         self.branches.clear();
         self.branches.resize(spots, LEAF);
@@ -119,6 +126,9 @@ impl Tree {
         self.roots.extend(0..spots);
         for &(_, a, b) in &self.links {
             let (a, b) = (root(&mut self.roots, a), root(&mut self.roots, b));
+            if a == b {
+                continue;
+            }
             let joined = self.branches.len();
             let spots = self.branches[a].spots + self.branches[b].spots;
             self.branches.push(Branch { children: Some((a, b)), spots, ..LEAF });
@@ -126,12 +136,19 @@ impl Tree {
             self.roots[a] = joined;
             self.roots[b] = joined;
         }
+        self.tops.clear();
+        self.tops.extend((0..self.branches.len()).filter(|&branch| self.roots[branch] == branch));
     }
 
     /// From the top down every branch gets a stretch of the order of spots.
     fn order_spots(&mut self, spots: usize) {
         self.order.clear();
         self.order.resize(spots, 0);
+        let mut start = 0;
+        for &top in &self.tops {
+            self.branches[top].start = start;
+            start += self.branches[top].spots;
+        }
         for branch in (0..self.branches.len()).rev() {
             let Branch { children, start, .. } = self.branches[branch];
             match children {

@@ -153,7 +153,7 @@ impl Alternatives {
     fn open_window(&mut self, context: &Context<'_>, observation: usize, matcher: &Matcher) {
         let own = &context.sightings[observation];
         let Self { window, nearest, .. } = self;
-        context.near.nearest(own.bearing.vector(), 1 + NEAREST, f64::INFINITY, |_| 1.0, nearest);
+        context.near.nearest(own.bearing.vector(), 1 + NEAREST, nearest);
         nearest.retain(|&(_, index)| index != observation);
         self.beside[observation] = nearest.first().map(|&(_, index)| index);
         let reach_rad = matcher.widest_rad(own);

@@ -44,27 +44,23 @@ impl Near {
         });
     }
 
-    /// The `most` observations nearest to a direction, nearer than `reach_rad`, with their squared gaps, each longer by a factor of at least 1; the nearest
-    /// first.
+    /// The `most` observations nearest to a direction with their squared gaps, the nearest first.
     pub(super) fn nearest(
         &self,
         direction: &Vector3<f64>,
         most: usize,
-        reach_rad: f64,
-        longer: impl Fn(usize) -> f64,
         nearest: &mut Vec<(f64, usize)>,
     ) {
         nearest.clear();
-        let reach2 = reach_rad * reach_rad;
         let before = |a: &(f64, usize), b: &(f64, usize)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)).is_lt();
         search(&self.places, &self.axes, direction, &mut |gap2, index| {
-            let own = (gap2 * longer(index), index);
-            if gap2 < reach2 && (nearest.len() < most || before(&own, &nearest[most - 1])) {
+            let own = (gap2, index);
+            if nearest.len() < most || before(&own, &nearest[most - 1]) {
                 nearest.truncate(most - 1);
                 let place = nearest.partition_point(|other| before(other, &own));
                 nearest.insert(place, own);
             }
-            if nearest.len() < most { reach2 } else { reach2.min(nearest[most - 1].0) }
+            if nearest.len() < most { f64::INFINITY } else { nearest[most - 1].0 }
         });
     }
 }
@@ -128,7 +124,6 @@ mod tests {
             at in prop::array::uniform3(-4i32..4),
             most in 1usize..12,
             reach in 1u32..8,
-            longer in prop::collection::vec(1u32..5, 80),
         ) {
             let vector = |place: [i32; 3]| Vector3::from(place.map(f64::from));
             let mut near = Near::default();
@@ -138,17 +133,13 @@ mod tests {
             let (at, reach) = (vector(at), f64::from(reach));
             let gap2 = |place: &[i32; 3]| (vector(*place) - at).norm_squared();
             let mut all: Vec<(f64, usize)> = places.iter().map(gap2).zip(0..).collect();
-            all.retain(|(gap2, _)| *gap2 < reach * reach);
             all.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
             let mut within = Vec::new();
             near.each_within(&at, reach, |gap2, index| within.push((gap2, index)));
             within.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-            prop_assert_eq!(&within, &all);
+            prop_assert_eq!(&within[..], &all[..all.partition_point(|(gap2, _)| *gap2 < reach * reach)]);
             let mut nearest = Vec::new();
-            let longer = |index: usize| f64::from(longer[index]);
-            near.nearest(&at, most, reach, longer, &mut nearest);
-            all.iter_mut().for_each(|(gap2, index)| *gap2 *= longer(*index));
-            all.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+            near.nearest(&at, most, &mut nearest);
             all.truncate(most);
             prop_assert_eq!(nearest, all);
         }

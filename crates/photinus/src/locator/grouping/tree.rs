@@ -6,9 +6,6 @@ use crate::locator::matching::{IMPOSSIBLE, Matcher, NEIGHBOUR_NATS};
 /// A spot is joined to so many of the nearest, and to as many as one neighbour shows.
 const FEWEST_LINKS: usize = 16;
 
-/// What is more doubtful than this is not looked past any further: the time of a frame is bounded.
-const MOST_DOUBT: f64 = 100.0;
-
 /// Trees over the sightings of a frame: spots are leaves, every branch joins the two that are nearest.
 #[derive(Debug, Default)]
 pub(super) struct Tree {
@@ -89,7 +86,7 @@ impl Tree {
         }
     }
 
-    /// Links every spot to those nearest to it, and to those nearest with their doubts.
+    /// Links every spot to those nearest to it.
     fn link_nearest(&mut self, context: &Context<'_>, matcher: &Matcher) {
         let Self { doubts, nearest, links, .. } = self;
         let Context { sightings, near, .. } = *context;
@@ -101,19 +98,11 @@ impl Tree {
         links.clear();
         for (spot, sighting) in sightings.iter().enumerate() {
             let direction = sighting.bearing.vector();
-            let mut link = |nearest: &[(f64, usize)]| {
-                let others = nearest.iter().map(|&(_, other)| other).filter(|&other| other != spot);
-                links.extend(others.map(|other| {
-                    let apart = direction - sightings[other].bearing.vector();
-                    let length = apart.norm_squared() * doubts[spot] * doubts[other];
-                    (length, spot.min(other), spot.max(other))
-                }));
-            };
-            near.nearest(direction, most, f64::INFINITY, |_| 1.0, nearest);
-            link(nearest);
-            let longer = |other: usize| doubts[other].min(MOST_DOUBT);
-            near.nearest(direction, most, f64::INFINITY, longer, nearest);
-            link(nearest);
+            near.nearest(direction, most, nearest);
+            let others = nearest.iter().filter(|&&(_, other)| other != spot);
+            links.extend(others.map(|&(gap2, other)| {
+                (gap2 * doubts[spot] * doubts[other], spot.min(other), spot.max(other))
+            }));
         }
         links.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)).then(a.2.cmp(&b.2)));
     }

@@ -302,6 +302,7 @@ impl Entry {
             latency_s: None,
             tracks: Vec::new(),
             source: frame.source.clone(),
+            incomplete: false,
             spots: Vec::new(),
             rejected: Vec::new(),
             neighbours: Vec::new(),

@@ -24,6 +24,7 @@ pub(crate) struct Summary {
     rejected: BTreeMap<String, usize>,
     neighbours: usize,
     frames_with_neighbours: u64,
+    incomplete: u64,
     distances_m: Quantiles,
     odd: BTreeMap<&'static str, u64>,
     span_s: Option<(f64, f64)>,
@@ -43,6 +44,7 @@ impl Summary {
         }
         self.neighbours += record.neighbours.len();
         self.frames_with_neighbours += u64::from(!record.neighbours.is_empty());
+        self.incomplete += u64::from(record.incomplete);
         let estimates = record.neighbours.iter().filter_map(|neighbour| neighbour.distance_m.estimate);
         estimates.for_each(|distance_m| self.distances_m.add(distance_m));
     }
@@ -82,6 +84,13 @@ impl Summary {
         table.row(["rejected".to_owned(), self.reasons()]);
         for (kind, count) in &self.odd {
             table.row(["odd".to_owned(), format!("{count} frames are {kind}: nothing can be found in them")]);
+        }
+        if self.incomplete > 0 {
+            let told = format!(
+                "frames that held more than the budget: {}; --budget allows for more",
+                self.incomplete
+            );
+            table.row(["incomplete".to_owned(), told]);
         }
         if self.neighbours > 0 {
             let seen = format!("{} in {} of the frames", self.neighbours, self.frames_with_neighbours);

@@ -92,6 +92,7 @@ pub(crate) fn record(frame: u64, spots: Vec<SpotRecord>, neighbours: Vec<Neighbo
         latency_s: None,
         tracks: Vec::new(),
         source: String::new(),
+        incomplete: false,
         spots,
         rejected: vec![],
         neighbours,

@@ -68,6 +68,7 @@ fn record() -> FrameRecord {
         latency_s: None,
         tracks: Vec::new(),
         source: "images/000017.png".to_owned(),
+        incomplete: false,
         spots: vec![
             spot(280.0, 231.0),
             spot(297.0, 236.0),

@@ -109,6 +109,18 @@ fn locate_prints_writes_and_draws() {
 }
 
 #[test]
+fn a_frame_that_holds_more_than_the_budget_says_so() {
+    let stage = Stage::new("budget");
+    for (budget, incomplete) in [(3, true), (10_000, false)] {
+        let done = stage.run(&format!("{LOCATE} --out r.jsonl --force --budget {budget}"));
+        assert_eq!(done.code, 0);
+        assert_eq!(records(&stage, "r.jsonl")[0].incomplete, incomplete, "budget {budget}");
+        assert_eq!(stage.read("r.jsonl").contains("\"incomplete\":true"), incomplete);
+        assert_eq!(done.err.contains("held more than the budget: 1;"), incomplete, "{}", done.err);
+    }
+}
+
+#[test]
 fn what_is_believed_of_a_neighbour_shows_in_its_sigma() {
     let stage = Stage::new("priors");
     let sigma_m = |options: &str| {

@@ -64,6 +64,7 @@ fn result(frame: u64) -> FrameRecord {
         time_s: Some(frame as f64 / 20.0),
         latency_s: Some(0.004),
         source: String::new(),
+        incomplete: false,
         spots: vec![],
         rejected: vec![],
         neighbours: vec![neighbour],

@@ -9,7 +9,7 @@ use crate::render::{self, Setup};
 
 /// Spots no further apart stand beside each other, px.
 const BESIDE_PX: f64 = 15.0;
-/// LEDs no further apart than this may melt into one spot, px.
+/// LEDs no further apart than this may merge into one spot, px.
 const MELTED_PX: f64 = 4.0;
 /// A spot further from every LED is none of them, px.
 const ASTRAY_PX: f64 = 2.0;
@@ -129,11 +129,11 @@ fn nearest<'a>(spot: &Spot, leds: &[&'a TruthLed]) -> Option<&'a TruthLed> {
 fn class(spot: &Spot, beside: Option<&Spot>, led: &TruthLed, leds: &[&TruthLed]) -> usize {
     let apart = |other: &TruthLed| libm::hypot(other.u_px - led.u_px, other.v_px - led.v_px);
     // LEDs of one marker shine from one place.
-    let melted = leds.iter().any(|other| (0.01..MELTED_PX).contains(&apart(other)));
+    let merged = leds.iter().any(|other| (0.01..MELTED_PX).contains(&apart(other)));
     let saturated = usize::from(spot.saturated_px > 0);
     let beside = beside.filter(|beside| gap(spot, beside) < BESIDE_PX);
     match beside {
-        _ if melted => 6 + saturated,
+        _ if merged => 6 + saturated,
         None => 3 * saturated,
         Some(beside) => 3 * saturated + if beside.flux < spot.flux { 1 } else { 2 },
     }

@@ -61,9 +61,9 @@ impl Lights {
             let to_spot = |led: &&Fallen| gap(led, centre.u, centre.v);
             let Some(own) = fallen.iter().min_by(|a, b| to_spot(a).total_cmp(&to_spot(b))) else { continue };
             let apart = |led: &Fallen| gap(led, own.u_px, own.v_px);
-            let is_melted = fallen.iter().any(|led| (SAME_PX..MELTED_PX).contains(&apart(led)));
+            let is_merged = fallen.iter().any(|led| (SAME_PX..MELTED_PX).contains(&apart(led)));
             let light: f64 = fallen.iter().filter(|led| apart(led) < SAME_PX).map(|led| led.light).sum();
-            if let Some(measured) = sighting.log_light.filter(|_| to_spot(&own) < GATE_PX && !is_melted) {
+            if let Some(measured) = sighting.log_light.filter(|_| to_spot(&own) < GATE_PX && !is_merged) {
                 let off = measured.value - libm::log(light);
                 self.0.push((SpotClass::of(index, spots), off, measured.sigma));
             }

@@ -145,6 +145,7 @@ fn record_of(frame: &Frame) -> FrameRecord {
         latency_s: None,
         tracks: Vec::new(),
         source: String::new(),
+        incomplete: false,
         spots: Vec::new(),
         rejected: Vec::new(),
         neighbours: Vec::new(),

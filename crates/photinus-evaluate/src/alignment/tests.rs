@@ -93,6 +93,7 @@ fn record(number: u64, time_s: f64, place: &Vector3<f64>, sigma_m: f64) -> Frame
         time_s: Some(time_s),
         latency_s: None,
         source: String::new(),
+        incomplete: false,
         spots: vec![],
         rejected: vec![],
         neighbours: vec![neighbour],

@@ -18,6 +18,7 @@ impl FrameRecord {
     /// Puts what was located in the place of the spots and neighbours that the record holds; what was rejected joins what
     /// another detector rejected before. `airframe` is the name of the neighbours' airframe.
     pub fn put_located(&mut self, located: &Located, airframe: &str) {
+        self.incomplete = !located.is_complete;
         self.spots = located.sightings.iter().map(SpotRecord::from).collect();
         self.rejected.extend(located.rejected.iter().map(RejectedRecord::from));
         let record = |neighbour| NeighbourRecord::new(neighbour, located, airframe);

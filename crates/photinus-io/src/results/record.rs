@@ -24,6 +24,9 @@ pub struct FrameRecord {
     /// The image file or stream; empty where it is missing.
     #[serde(default)]
     pub source: String,
+    /// Whether the frame held more than there was work for: the likeliest was weighed, not all.
+    #[serde(default, skip_serializing_if = "core::ops::Not::not")]
+    pub incomplete: bool,
     /// What is bright and may be a marker.
     pub spots: Vec<SpotRecord>,
     /// What is bright and is none.

@@ -63,6 +63,7 @@ fn record() -> FrameRecord {
         latency_s: None,
         tracks: Vec::new(),
         source: "images/000017.png".to_owned(),
+        incomplete: false,
         spots: vec![spot()],
         rejected: vec![rejected],
         neighbours: vec![neighbour()],

@@ -30,6 +30,7 @@ pub(crate) fn empty(frame: Option<u64>, time_s: Option<f64>) -> PyResult<FrameRe
         time_s,
         latency_s: None,
         source: String::new(),
+        incomplete: false,
         spots: Vec::new(),
         rejected: Vec::new(),
         neighbours: Vec::new(),
@@ -85,6 +86,12 @@ impl Record {
     #[getter]
     fn latency_s(&self) -> Option<f64> {
         self.0.latency_s
+    }
+
+    /// Whether the frame held more than there was work for: the likeliest was weighed, not all.
+    #[getter]
+    fn incomplete(&self) -> bool {
+        self.0.incomplete
     }
 
     /// The image file or stream; empty where it is not known.

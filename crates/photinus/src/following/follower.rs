@@ -195,7 +195,7 @@ impl Follower {
         }
     }
 
-    /// With what probability the light of a track melts into that of another, and how far that is, rad.
+    /// With what probability the light of a track merges with that of another, and how far that is, rad.
     fn melted(&self, index: usize) -> (f64, f64) {
         let own = &self.tracks[index];
         if !own.is_confirmed() {

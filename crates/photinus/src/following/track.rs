@@ -54,7 +54,7 @@ pub(super) struct Expected {
     pub(super) lit: f64,
     /// Probability of no spot by the share of the exposure that it shines, if it is in sight.
     pub(super) absence: [f64; SHARES],
-    /// With what probability its light melts into that of another track, and how far that is, rad.
+    /// With what probability its light merges with that of another track, and how far that is, rad.
     pub(super) melted: (f64, f64),
 }
 
@@ -184,7 +184,7 @@ impl Track {
         let likely = own.filter(|&(probability, _)| probability > NEGLIGIBLE);
         self.motion.update(likely.map(|(probability, candidate)| (probability, candidate.offset)));
         self.presence.weigh(all);
-        // where it is hidden a frame says nothing of its code, and little where it melts into another
+        // where it is hidden a frame says nothing of its code, and little where it merges with another
         let (melted, _) = self.frame.melted;
         let mean = by_share.iter().sum::<f64>() / SHARES as f64;
         let evidence = by_share.map(|one| shows * (one + melted * (mean - one)) + 1.0 - shows);

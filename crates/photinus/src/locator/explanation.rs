@@ -204,7 +204,11 @@ impl Explanation {
         let first = left.partition_point(|&index| part(index) < roots[spots[0]]);
         let own = left[first..].iter().take_while(|&&index| part(index) == roots[spots[0]]);
         options.clear();
-        options.extend(own.map(|&candidate| Choice { candidate, mask: 0, odds: libm::exp(gains[candidate]) }));
+        options.extend(own.map(|&candidate| Choice {
+            candidate,
+            mask: 0,
+            odds: libm::exp(gains[candidate]),
+        }));
         if spots.len() > MOST_TOGETHER {
             self.take_the_best(candidates);
             return;
@@ -227,7 +231,9 @@ impl Explanation {
         }
         let choices = |mask: usize| {
             let first = mask.trailing_zeros() as usize;
-            options[of_first[first]..of_first[first + 1]].iter().filter(move |choice| choice.mask & !mask == 0)
+            options[of_first[first]..of_first[first + 1]]
+                .iter()
+                .filter(move |choice| choice.mask & !mask == 0)
         };
         let all = (1usize << spots.len()) - 1;
         sums.clear();

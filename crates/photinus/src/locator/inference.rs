@@ -257,7 +257,8 @@ impl Inference {
 
     /// Explains the frame by its candidates, with clutter and neighbours as dense as the explanation itself has them.
     fn settle(&mut self, sightings: &[Sighting]) {
-        let Self { explanation, clutter, groups, candidates, besides, companions, fixtures, memory, .. } = self;
+        let Self { explanation, clutter, groups, candidates, besides, companions, fixtures, memory, .. } =
+            self;
         let frame = Surroundings { sightings, besides, companions, fixtures, memory };
         let mut supposed = |share: Option<f64>| {
             clutter.measure(&frame, groups, |spot| share.unwrap_or(groups.clutter(spot)));

@@ -45,12 +45,7 @@ impl Near {
     }
 
     /// The `most` observations nearest to a direction with their squared gaps, the nearest first.
-    pub(super) fn nearest(
-        &self,
-        direction: &Vector3<f64>,
-        most: usize,
-        nearest: &mut Vec<(f64, usize)>,
-    ) {
+    pub(super) fn nearest(&self, direction: &Vector3<f64>, most: usize, nearest: &mut Vec<(f64, usize)>) {
         nearest.clear();
         let before = |a: &(f64, usize), b: &(f64, usize)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)).is_lt();
         search(&self.places, &self.axes, direction, &mut |gap2, index| {

@@ -18,7 +18,7 @@ use nalgebra::{Matrix3, Vector6};
 
 use super::known::LogDistance;
 use super::light::Light;
-use super::melting::LightCentre;
+use super::merging::LightCentre;
 use super::observation::{Observation, Whitened};
 use super::problem::{Normal, Pose, Problem};
 
@@ -109,10 +109,10 @@ impl Problem<'_> {
         for axis in 0..2 {
             let in_body = by_turn.row(axis).transpose();
             // The camera in the body frame moves by -R' distance delta, and by c x omega.
-            let by_melting = by_camera.transpose() * in_body;
-            let across = (by_place.row(axis).transpose() - camera_from_body * by_melting) * distance_m;
+            let by_merging = by_camera.transpose() * in_body;
+            let across = (by_place.row(axis).transpose() - camera_from_body * by_merging) * distance_m;
             // d(R exp(omega) p) = R (omega x p), so that the row by omega is p x (R' row').
-            let turn = at_m.cross(&in_body) + by_melting.cross(&camera_in_body_m);
+            let turn = at_m.cross(&in_body) + by_merging.cross(&camera_in_body_m);
             let row = Vector6::new(across.x, across.y, across.z, turn.x, turn.y, turn.z);
             normal.add_weighted(weight, residual[axis], &row);
         }

@@ -224,7 +224,7 @@ fn problem<'a>(
     whitened: &'a [Whitened],
     known: &'a Known<'a>,
 ) -> Problem<'a> {
-    Problem { airframe, settings, observations, whitened, known, markers: &[], melting: true }
+    Problem { airframe, settings, observations, whitened, known, markers: &[], merging: true }
 }
 
 /// Assigns spots to the nearest markers and refines the pose in turns, until nothing changes.
@@ -250,8 +250,8 @@ impl<'a> Problem<'a> {
     where
         'a: 'b,
     {
-        let assigned = Problem { markers, melting: true, ..*self };
-        Problem { melting: assigned.may_melt(near), ..assigned }
+        let assigned = Problem { markers, merging: true, ..*self };
+        Problem { merging: assigned.may_merge(near), ..assigned }
     }
 }
 

@@ -4,7 +4,7 @@ use core::f64::consts::TAU;
 
 use nalgebra::Vector6;
 
-use super::melting::Shining;
+use super::merging::Shining;
 use super::observation::LogLight;
 use super::problem::{Normal, Pose, Problem};
 
@@ -90,8 +90,7 @@ impl Light {
         // The camera in the body frame moves by -R' distance delta, and by c x omega.
         let by_delta = pose.camera_from_body.matrix() * by_camera * -pose.position_m.norm();
         let by_omega = by_camera.cross(&camera_in_body_m);
-        let row =
-            Vector6::new(-by_delta.x, -by_delta.y, -by_delta.z, -by_omega.x, -by_omega.y, -by_omega.z);
+        let row = Vector6::new(-by_delta.x, -by_delta.y, -by_delta.z, -by_omega.x, -by_omega.y, -by_omega.z);
         self.add(1.0 / variance, seen.value - libm::log(shines / range2_m2), &row);
     }
 

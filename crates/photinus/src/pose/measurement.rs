@@ -34,9 +34,9 @@ impl<'a> Measurement<'a> {
     pub(crate) fn new(seen: &Seen<'a>, markers: &'a [Option<u16>], near: &Pose) -> Self {
         let Seen { airframe, settings, per_frame, observations, whitened, known } = *seen;
         let problem =
-            Problem { airframe, settings: per_frame, observations, whitened, markers, known, melting: true };
-        let melting = problem.may_melt(near);
-        Self { problem: Problem { melting, ..problem }, told: settings }
+            Problem { airframe, settings: per_frame, observations, whitened, markers, known, merging: true };
+        let merging = problem.may_merge(near);
+        Self { problem: Problem { merging, ..problem }, told: settings }
     }
 
     /// Cost and normal equations of a pose.

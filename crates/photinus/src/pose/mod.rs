@@ -6,7 +6,7 @@
 //! ```text
 //! hypotheses    which spot may be which marker, with a first guess of the pose
 //! problem       one assignment with all that is known (known) and seen (observation)
-//! cost          what a pose costs: bearings (melting), light, tilt; with its derivatives; and visibility
+//! cost          what a pose costs: bearings (merging), light, tilt; with its derivatives; and visibility
 //! refine        downhill to the mode of each hypothesis
 //! along_yaw     slices along the valley where the yaw is uncertain
 //! mixture       weights, truncation to the strict bounds, moments, modes
@@ -27,7 +27,7 @@ mod hypotheses;
 mod known;
 mod light;
 mod measurement;
-mod melting;
+mod merging;
 mod misfit;
 mod mixture;
 mod observation;

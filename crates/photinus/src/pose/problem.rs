@@ -47,8 +47,8 @@ pub(super) struct Problem<'a> {
     /// The marker of each spot; `None` for a spot that is not used.
     pub(super) markers: &'a [Option<u16>],
     pub(super) known: &'a Known<'a>,
-    /// Whether markers may melt into one spot.
-    pub(super) melting: bool,
+    /// Whether markers may merge into one spot.
+    pub(super) merging: bool,
 }
 
 /// The cost of a pose, nats, with gradient and Gauss-Newton information for a step [delta; omega].

@@ -81,7 +81,7 @@ proptest! {
         };
         let problem = Problem {
             airframe: &airframe, settings: &settings, observations: &observations, whitened: &whitened, markers: &markers,
-            known: &known, melting: false,
+            known: &known, merging: false,
         };
         let normal = problem.normal(&pose);
         prop_assert!((normal.information - normal.information.transpose()).norm() == 0.0);
@@ -124,7 +124,7 @@ proptest! {
     }
 
     #[test]
-    fn slopes_of_melted_light_agree_with_finite_differences(
+    fn slopes_of_merged_light_agree_with_finite_differences(
         camera in prop::array::uniform3(-1.0f64..1.0), yaw in -3.0f64..3.0, resolution_rad in 0.02f64..0.3, quad in any::<bool>(),
     ) {
         let airframe = if quad { quadrotor() } else { hexarotor() };
@@ -136,7 +136,7 @@ proptest! {
         let (settings, markers) = (Settings::default(), [Some(brightest as u16)]);
         let problem = Problem {
             airframe: &airframe, settings: &settings, observations: &observations, whitened: &whitened, markers: &markers,
-            known: &nothing(), melting: true,
+            known: &nothing(), merging: true,
         };
         let shining = |at: &Vector3<f64>| problem.shining(0, brightest, at);
         let centre = |at: &Vector3<f64>| shining(at).centre;
@@ -157,7 +157,7 @@ proptest! {
     }
 
     #[test]
-    fn markers_that_melt_are_seen_between_them(gap in 0.0f64..2.5) {
+    fn markers_that_merge_are_seen_between_them(gap in 0.0f64..2.5) {
         // Two markers 0.1 m apart, side by side, the first seen: at no gap their light is one, far apart it is its own.
         let leds = [-0.05, 0.05].map(|y| crate::airframe::Led {
             position_m: Vector3::new(0.0, y, 0.0), axis: Vector3::x_axis(), lobe: crate::airframe::Lobe::Omni, power: 1.0,
@@ -171,14 +171,14 @@ proptest! {
         let (settings, markers) = (Settings::default(), [Some(0)]);
         let problem = Problem {
             airframe: &airframe, settings: &settings, observations: &observations, whitened: &whitened, markers: &markers,
-            known: &nothing(), melting: true,
+            known: &nothing(), merging: true,
         };
         let centre = problem.shining(0, 0, &camera_m).centre;
-        let melted = problem.melted(0, 0, 1, &camera_m);
+        let merged = problem.merged(0, 0, 1, &camera_m);
         let window = (1.0 - gap * gap / (1.32 * 1.32)).max(0.0);
         let expected = -0.05 + 0.1 * window * window / (1.0 + window * window);
         prop_assert!((centre.at_m.y - expected).abs() < 2e-3, "{} {expected}", centre.at_m.y);
-        prop_assert!((0.0..=1.0).contains(&melted) && (gap < 2.01 || melted == 0.0) && (gap > 0.2 || melted > 0.99), "{melted}");
+        prop_assert!((0.0..=1.0).contains(&merged) && (gap < 2.01 || merged == 0.0) && (gap > 0.2 || merged > 0.99), "{merged}");
         prop_assert!(centre.factor <= 1.0 && (gap < 1.4 || centre.factor > 1.0 - 1e-12));
     }
 }

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::melting::one_spot;
+use super::merging::one_spot;
 use super::problem::{Pose, Problem};
 use crate::camera::Bearing;
 
@@ -46,20 +46,20 @@ impl Problem<'_> {
             if !self.is_watched(pose, marker) {
                 return 0.0;
             }
-            // Of two markers that melt the spot is said to be the brighter one.
-            let into = |(spot, seen): (usize, usize)| match self.melted(spot, seen, marker, &camera_m) {
+            // Of two markers that merge the spot is said to be the brighter one.
+            let into = |(spot, seen): (usize, usize)| match self.merged(spot, seen, marker, &camera_m) {
                 0.0 => 0.0,
-                melted => melted * probability(odds(intensity(seen).max(1e-3) / shines)),
+                merged => merged * probability(odds(intensity(seen).max(1e-3) / shines)),
             };
-            let melted = if self.melting { self.used().map(into).fold(0.0, f64::max) } else { 0.0 };
-            -libm::log(1.0 - found * (1.0 - melted) * (1.0 - self.merged_with_others(pose, marker)))
+            let merged = if self.merging { self.used().map(into).fold(0.0, f64::max) } else { 0.0 };
+            -libm::log(1.0 - found * (1.0 - merged) * (1.0 - self.merged_with_others(pose, marker)))
         };
         (0..self.airframe.markers().len()).map(nats).sum::<f64>() + self.told_apart_nats(&camera_m)
     }
 
     /// What it costs that markers beside each other are seen as two spots.
     fn told_apart_nats(&self, camera_m: &Vector3<f64>) -> f64 {
-        if !self.melting {
+        if !self.merging {
             return 0.0;
         }
         let pairs = self.used().flat_map(|first| {
@@ -68,7 +68,7 @@ impl Problem<'_> {
         });
         pairs
             .map(|((spot, seen), (_, other))| {
-                -libm::log((1.0 - self.melted(spot, seen, other, camera_m)).max(1e-9))
+                -libm::log((1.0 - self.merged(spot, seen, other, camera_m)).max(1e-9))
             })
             .sum()
     }

@@ -2,7 +2,7 @@
 //!
 //! The update of an error-state Kalman filter, iterated: down the sum of the prior's squared error and the measurement's cost, by Gauss and Newton; B. M.
 //! Bell, F. W. Cathey, "The iterated Kalman filter update as a Gauss-Newton method", IEEE Trans. Autom. Control 38 (1993). The measurement brings its
-//! robustness (Huber), markers that melt, and light. How likely it was is Laplace's integral around the summit, as for poses.
+//! robustness (Huber), markers that merge, and light. How likely it was is Laplace's integral around the summit, as for poses.
 
 use super::component::{Component, Covariance, Step};
 use crate::pose::{Measurement, Normal};

@@ -20,7 +20,7 @@ use crate::airframe::Marker;
 const WINDOW: f64 = 1.32;
 /// Beyond so many resolutions markers have nothing to do with each other.
 const FAR: f64 = 2.0;
-/// How much farther than a pose markers are looked from to tell whether any melt near it.
+/// How much farther than a pose markers are looked from to tell whether any merge near it.
 const ROOM: f64 = 1.5;
 
 /// How likely two markers at a squared gap are one spot: the odds fall with the sixth power of the gap, to nothing at
@@ -115,13 +115,13 @@ impl Problem<'_> {
     }
 
     /// How likely the detector makes one spot of two markers.
-    pub(super) fn melted(&self, spot: usize, seen: usize, other: usize, camera_m: &Vector3<f64>) -> f64 {
+    pub(super) fn merged(&self, spot: usize, seen: usize, other: usize, camera_m: &Vector3<f64>) -> f64 {
         let other_m = &self.airframe.markers()[other].position_m;
         self.gaps(spot, seen, camera_m).to(other_m).map_or(0.0, |gap| one_spot(gap.squared))
     }
 
-    /// Whether any marker may melt into a spot, anywhere near a pose.
-    pub(super) fn may_melt(&self, pose: &Pose) -> bool {
+    /// Whether any marker may merge into a spot, anywhere near a pose.
+    pub(super) fn may_merge(&self, pose: &Pose) -> bool {
         let camera_m = pose.camera_in_body_m() * ROOM;
         let near = |(spot, seen)| {
             let gaps = self.gaps(spot, seen, &camera_m);
@@ -133,7 +133,7 @@ impl Problem<'_> {
 
     /// Markers without spots of their own in the window of a spot.
     fn beside(&self, spot: usize, seen: usize, camera_m: Vector3<f64>) -> impl Iterator<Item = Beside> + '_ {
-        let others = if self.melting { self.airframe.markers() } else { &[] };
+        let others = if self.merging { self.airframe.markers() } else { &[] };
         let gaps = self.gaps(spot, seen, &camera_m);
         others.iter().enumerate().filter_map(move |(other, Marker { position_m, .. })| {
             let gap = gaps.to(position_m).filter(|_| other != seen && !self.is_used(other))?;

@@ -41,7 +41,7 @@ pub fn read_airframe(path: impl AsRef<Path>) -> Result<AirframeFile> {
 ///
 /// # Errors
 /// [`Error`] with the line or the key for unknown keys, for numbers that are none, for a zero axis, for the same LED
-/// twice, and for LEDs that form fewer than two markers.
+/// twice, and where there is none.
 pub fn parse_airframe(text: &str, path: impl AsRef<Path>) -> Result<AirframeFile> {
     let path = path.as_ref();
     let first = text.lines().map(str::trim).find(|line| !line.is_empty() && !line.starts_with('#'));
@@ -90,7 +90,8 @@ fn is_row_of_layout(first: &str) -> bool {
 fn refuse(path: &Path, error: AirframeError, place: impl Fn(usize, Part) -> Place) -> Error {
     use AirframeError as E;
     let (at, advice) = match error {
-        E::TooFewMarkers { .. } => (None, "list every LED, in metres from the body's origin"),
+        E::NoLed => (None, "list every LED, in metres from the body's origin"),
+        E::TooFewMarkers { .. } => (None, "give a larger radius"),
         E::TooManyLeds { .. } => (None, "list the LEDs of one airframe"),
         E::NotFinite { led } => (Some((led, Part::Position)), "give finite numbers"),
         E::Axis { led } => (Some((led, Part::Axis)), "give the direction in which the LED shines"),

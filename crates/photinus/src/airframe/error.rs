@@ -6,8 +6,11 @@ use super::{Airframe, Led, LobeError};
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum AirframeError {
-    /// Too few places that shine.
-    #[error("{leds} LEDs form {markers} marker(s): distance needs two, 3 cm or more apart")]
+    /// Nothing that shines.
+    #[error("no LED: an airframe has at least one")]
+    NoLed,
+    /// A ring so small that its LEDs are seen as one.
+    #[error("{leds} LEDs of a ring form {markers} marker: they must be 3 cm or more apart")]
     TooFewMarkers {
         /// LEDs given.
         leds: usize,

@@ -2,7 +2,7 @@
 //!
 //! A list of LEDs (or a [`Ring`] that stands for one) enters; an [`Airframe`] leaves: its *markers*, the
 //! places that a camera sees as one spot, and how brightly each shines towards a camera. Everything is in the
-//! body frame (x forward, y left, z up). What cannot be ranged, such as a single marker, does not construct.
+//! body frame (x forward, y left, z up). A single marker is ranged by its size alone, and its attitude is not told.
 
 mod error;
 mod led;
@@ -39,13 +39,13 @@ impl Airframe {
     ///
     /// # Errors
     /// [`AirframeError`] for more than [`Self::MAX_LEDS`], for an LED that is not finite, has no axis, sits too far
-    /// out or appears twice, and for fewer than two markers, since distance comes from the angle between two.
+    /// out or appears twice, and where there is none.
     pub fn new(name: impl Into<String>, leds: Vec<Led>) -> Result<Self, AirframeError> {
         led::check(&leds)?;
-        let markers = marker::group(&leds);
-        if markers.len() < 2 {
-            return Err(AirframeError::TooFewMarkers { leds: leds.len(), markers: markers.len() });
+        if leds.is_empty() {
+            return Err(AirframeError::NoLed);
         }
+        let markers = marker::group(&leds);
         let ring = RingGeometry::detect(&markers);
         let max_radius_m = markers.iter().map(|marker| marker.position_m.norm()).fold(0.0, f64::max);
         Ok(Self { name: name.into(), leds, markers, ring, max_radius_m })
@@ -56,7 +56,11 @@ impl Airframe {
     /// # Errors
     /// [`AirframeError`] when the ring itself is impossible, or as [`Airframe::new`].
     pub fn from_ring(name: impl Into<String>, ring: Ring) -> Result<Self, AirframeError> {
-        Self::new(name, ring.leds()?)
+        let airframe = Self::new(name, ring.leds()?)?;
+        match airframe.markers.len() {
+            markers @ ..2 => Err(AirframeError::TooFewMarkers { leds: airframe.leds.len(), markers }),
+            _ => Ok(airframe),
+        }
     }
 
     /// What the airframe is called.
@@ -69,7 +73,7 @@ impl Airframe {
         &self.leds
     }
 
-    /// The markers, in the order of their first LEDs; at least two.
+    /// The markers, in the order of their first LEDs; at least one.
     pub fn markers(&self) -> &[Marker] {
         &self.markers
     }

@@ -198,6 +198,7 @@ impl Views {
             for column in 0..yaws {
                 let yaw_rad = sector_rad * column as f64 / yaws as f64;
                 let seen = look(airframe, yaw_rad, elevation_rad);
+                views.most_visible = views.most_visible.max(seen.len());
                 if seen.len() >= 2 {
                     total += libm::exp(log_prior);
                     views.add(&seen, symmetry, [yaw_rad, elevation_rad], log_prior, unseen_nats);
@@ -224,7 +225,6 @@ impl Views {
         unseen_nats: &[f64],
     ) {
         let cost_of_unseen = |seen: &Seen| unseen_nats[seen.marker] * (seen.intensity / BRIGHT).min(1.0);
-        self.most_visible = self.most_visible.max(seen.len());
         let all_unseen_nats: f64 = seen.iter().map(cost_of_unseen).sum();
         let brightest = seen.iter().map(cost_of_unseen).fold(0.0, f64::max);
         self.lone_nats += libm::exp(log_prior) * (all_unseen_nats - brightest);

@@ -40,6 +40,9 @@ impl DistanceBounds {
     /// can be markers of one such airframe in any attitude, alone or among others; `None` when there are
     /// none. An angle outside 0 to pi says nothing.
     pub fn pair_interval(&self, angle_rad: f64, slack_rad: f64) -> Option<Interval> {
+        if self.markers < 2 {
+            return None;
+        }
         let is_angle = (0.0..=PI).contains(&angle_rad);
         let slack_rad = known_angle_rad(slack_rad);
         let angle = if is_angle {

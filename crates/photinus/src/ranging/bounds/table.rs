@@ -176,6 +176,9 @@ impl<'a> Search<'a> {
 
     /// Bounds over the whole of `place`, by number of spots from 2.
     fn run(&mut self, place: ViewBox) -> Vec<Extents> {
+        if self.sizes == 0 {
+            return Vec::new(); // one marker shows no angle
+        }
         let reach_m = self.airframe.max_radius_m();
         let mut found = vec![Extents::NONE; self.sizes];
         let mut seen = vec![Extents::NONE; self.sizes];

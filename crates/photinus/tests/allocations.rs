@@ -216,7 +216,15 @@ fn a_warm_tracker_allocates_nothing() {
         number += 1;
         // Every fifth frame comes after the next one.
         let time_s = f64::from(number + u32::from(number % 5 == 1) - u32::from(number % 5 == 2)) / 30.0;
-        let look = Look { time_s, turned: None, gravity: Some(gravity), located, signals: &[], lit: &[] };
+        let look = Look {
+            time_s,
+            turned: None,
+            gravity: Some(gravity),
+            located,
+            signals: &[],
+            lit: &[],
+            blinking: None,
+        };
         tracks += tracker.track(&look).unwrap().tracks.len();
         tracker.at(f64::from(number + 2) / 30.0).unwrap();
     };

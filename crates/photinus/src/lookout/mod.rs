@@ -141,7 +141,7 @@ impl Lookout {
             let watched = Watched::new(&self.camera, self.mask.as_ref());
             look.blinking = Some(blinking.hear(glance, self.faintest_light, watched, self.tracked.time_s));
         }
-        self.tracked.clone_from(self.tracker.track(&look)?);
+        self.tracked.take_over(self.tracker.track(&look)?);
         if let Some(blinking) = &mut self.blinking {
             blinking.conclude(&mut self.tracked);
         }

@@ -74,6 +74,14 @@ impl Tracked {
         own(&self.markers, track)
     }
 
+    /// The same as another, in the room that it has.
+    pub(crate) fn take_over(&mut self, other: &Self) {
+        (self.time_s, self.placed) = (other.time_s, other.placed);
+        self.tracks.clone_from(&other.tracks);
+        self.members.clone_from(&other.members);
+        self.markers.clone_from(&other.markers);
+    }
+
     /// Turns vehicles, where a turn of their symmetric airframe is known to be the true one.
     pub(crate) fn turn<'a>(&mut self, turn: impl Fn(u64) -> Option<(&'a Symmetry, usize)>) {
         for track in &mut self.tracks {

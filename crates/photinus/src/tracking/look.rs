@@ -10,8 +10,9 @@ use crate::pose::{Mode, Observation, POWER_RANGE};
 
 /// Most ways in which a neighbour can be its airframe that are taken over.
 const MOST_MODES: usize = 16;
-/// Markers that a frame has room for beforehand.
+/// Markers and neighbours that a frame has room for beforehand.
 const FOLLOWED: usize = 128;
+const NEIGHBOURS: usize = 4;
 /// A signal that comes with its sighting is right so often.
 const SIGNAL_IS_RIGHT: f64 = 0.99;
 
@@ -138,7 +139,11 @@ pub(super) struct Moment {
 impl Moment {
     /// Room for a frame: each of those that are kept would else grow by itself.
     pub(super) fn with_room() -> Self {
-        Self { followed: Vec::with_capacity(FOLLOWED), ..Self::default() }
+        Self {
+            modes: Vec::with_capacity(NEIGHBOURS * MOST_MODES),
+            followed: Vec::with_capacity(FOLLOWED),
+            ..Self::default()
+        }
     }
 
     /// Takes over a frame.

@@ -139,7 +139,7 @@ fn an_id_that_two_carry_is_nobodys_and_the_user_is_told() {
     // Both blink word 5, and only one of them is listed.
     let vehicles = stage.read("flight/vehicles.toml");
     let second = vehicles.rfind("[[vehicle]]").unwrap();
-    stage.file("flight/vehicles.toml", vehicles[..second].to_owned());
+    stage.file("flight/vehicles.toml", &vehicles[..second]);
     let done = stage.run("locate flight --out r.jsonl");
     assert!(done.code == 0 && done.err.contains("two tracks blink the words of vehicle 4"), "{}", done.err);
     let told = told(&stage, "r.jsonl");

@@ -3,13 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use nalgebra::{Unit, Vector3};
-use photinus::airframe::Airframe;
 use photinus::camera::{Bearing, Camera};
-use photinus::frame::Mask;
 use photinus::locator::{Locator, LocatorError, Settings, Stage};
 use photinus::ranging::SpotCurve;
 use photinus::spots::Spot;
-use photinus::tracking::{self, Look, Tracker, TrackerError};
 use photinus_io::airframe::{AirframeFile, Tolerances};
 use photinus_io::calibration::{MountingFile, read_mounting};
 use photinus_io::dataset::{Dataset, DatasetCamera};
@@ -28,13 +25,14 @@ use crate::pose_options::PoseArgs;
 use crate::run;
 use crate::spot_options::{SpotArgs, mask_of};
 use crate::terminal::Terminal;
+use crate::time::{self, Turns, Watch};
 
 const EXAMPLES: &str = "\
 Examples:
   # a dataset folder says itself what camera and airframe are
   photinus locate recording --out results.jsonl
-  # follows neighbours from frame to frame
-  photinus locate recording --track --out results.jsonl
+  # every frame by itself
+  photinus locate recording --no-time --out results.jsonl
   # goes on where a stopped run ended
   photinus locate recording --out results.jsonl --resume
   photinus locate *.png --camera camera.txt --airframe quad.toml \\
@@ -48,7 +46,10 @@ Examples:
 
 Without --out and --csv a line per neighbour is printed: distance with its
 standard deviation, bounds that truth never leaves, and where it is seen from
-the camera.
+the camera; of a vehicle that blinks words of the dataset, who it is.
+
+Frames that have times are followed: results have tracks with velocities, also
+of who is hidden or dark, and ids where the dataset says who blinks what.
 
 Exit codes: 0 done, 1 some frames failed or writing did, 2 bad usage or input,
 or no frame could be used.";
@@ -93,8 +94,11 @@ pub(crate) struct Args {
     spot_options: SpotArgs,
     #[command(flatten)]
     output: OutputArgs,
-    /// Follow neighbours from frame to frame: where each is, how fast, and where it must be while it is hidden. Frames need times
+    /// Every frame by itself: no tracks, no velocities, no ids
     #[arg(long)]
+    no_time: bool,
+    /// What happens anyway
+    #[arg(long, hide = true, conflicts_with = "no_time")]
     track: bool,
     /// Write a table with a row per neighbour; - is standard output
     #[arg(long, value_name = "FILE")]
@@ -154,6 +158,9 @@ impl Args {
             cameras => cameras.iter().map(Some).collect(),
         };
         let masks = self.spot_options.masks(input, terminal)?;
+        let warn = |text: String| terminal.warning(format_args!("{}: {text}", input.name));
+        let dataset = input.dataset.as_ref().filter(|_| !self.no_time);
+        let fleet = time::fleet(dataset, airframe, warn)?;
         let view = |(of_dataset, mask): (Option<&DatasetCamera>, Option<MaskFile>)| {
             let named = of_dataset.zip(input.dataset.as_ref());
             let path = needed(self.camera.as_deref(), "camera", named.map(|(c, d)| d.path(&c.camera)))?;
@@ -171,25 +178,19 @@ impl Args {
                 Locator::new(camera.clone(), airframe, curve, self.settings(tolerances)).map_err(refuse)?;
             let mask = mask_of(mask.as_ref());
             locator.set_mask(mask.cloned()).map_err(refuse)?;
-            let tracker =
-                self.track.then(|| self.tracker(&camera, airframe, tolerances, mask)).transpose()?;
-            Ok(View { camera, mounting, locator, tracker })
+            if self.no_time {
+                return Ok(View { camera, mounting, locator, watch: None });
+            }
+            let is_rig = of_dataset.is_some_and(|camera| camera.name.is_some());
+            let turns = match dataset {
+                Some(dataset) => Turns::of(dataset, is_rig, mounting.as_ref()).map_err(Failure::input)?,
+                None => Turns::Unknown,
+            };
+            let beside = (fleet.as_ref(), turns, of_dataset.map(|camera| camera.exposure_us));
+            let watch = Watch::new(&camera, airframe, &self.settings(tolerances), mask, beside)?;
+            Ok(View { camera, mounting, locator, watch: Some(watch) })
         };
         cameras.into_iter().zip(masks).map(view).collect()
-    }
-
-    fn tracker(
-        &self,
-        camera: &Camera,
-        airframe: &Airframe,
-        tolerances: &Tolerances,
-        mask: Option<&Mask>,
-    ) -> std::result::Result<Tracker, Failure> {
-        let refuse = |error: TrackerError| Failure::Input(error.to_string());
-        let (located, settings) = (self.settings(tolerances), tracking::Settings::default());
-        let mut tracker = Tracker::new(camera.clone(), airframe, &located, settings).map_err(refuse)?;
-        tracker.set_mask(mask.cloned()).map_err(refuse)?;
-        Ok(tracker)
     }
 
     fn spot_curve(
@@ -217,7 +218,7 @@ struct View {
     camera: Camera,
     mounting: Option<MountingFile>,
     locator: Locator,
-    tracker: Option<Tracker>,
+    watch: Option<Watch>,
 }
 
 /// Runs the command.
@@ -245,8 +246,9 @@ impl run::Work for Locating<'_> {
         let view = &mut self.views[entry.camera];
         entry.gravity = self.gravity.or(entry.gravity);
         fill(entry, &mut view.locator, self.airframe, clock)?;
-        if let Some(tracker) = &mut view.tracker {
-            follow(entry, &view.locator, tracker, self.airframe)?;
+        if let Some(watch) = &mut view.watch {
+            watch.follow(entry, view.locator.located(), self.airframe);
+            clock.lap("following");
         }
         if let Some(mounting) = &view.mounting {
             entry.record.put_mounting(mounting);
@@ -262,6 +264,10 @@ impl run::Work for Locating<'_> {
     fn learn(&mut self, entry: &mut Entry) {
         // A frame of another size is refused, and teaches nothing.
         let _ = self.fill(entry, &mut Clock::new());
+    }
+
+    fn remarks(&mut self) -> Vec<String> {
+        self.views.iter_mut().filter_map(|view| view.watch.as_mut()).flat_map(Watch::remarks).collect()
     }
 }
 
@@ -289,31 +295,6 @@ pub(crate) fn fill(
         }
     };
     entry.record.put_located(located, airframe);
-    Ok(())
-}
-
-/// Completes the record of a frame that was located with who is followed.
-///
-/// # Errors
-/// [`Error`] when the frame has no time, or its time is not after that of the frame before.
-fn follow(entry: &mut Entry, locator: &Locator, tracker: &mut Tracker, airframe: &str) -> Result<()> {
-    let refused = |what: String, advice: &str| Error::format(&entry.record.source, what).advise(advice);
-    let time_s = entry.record.time_s.ok_or_else(|| {
-        let advice = "frames of a dataset or a video have times (photinus convert makes one of images); or leave --track out";
-        refused("the frame has no time, and who is followed depends on it".to_owned(), advice)
-    })?;
-    let look = Look {
-        time_s,
-        turned: None,
-        gravity: entry.gravity,
-        located: locator.located(),
-        signals: &[],
-        lit: &[],
-    };
-    let tracked = tracker
-        .track(&look)
-        .map_err(|error| refused(error.to_string(), "see the times of the frames, or leave --track out"))?;
-    entry.record.put_tracked(tracked, airframe);
     Ok(())
 }
 
@@ -356,6 +337,7 @@ fn neighbour_line(neighbour: &NeighbourRecord) -> String {
         Some(max) => format!("{:.2} to {max:.2} m", distance.min),
         None => format!("{:.2} m or more", distance.min),
     };
+    let who = neighbour.id.map_or(String::new(), |id| format!(" {id}"));
     let [x, y, z] = neighbour.bearing;
     let (azimuth, elevation) =
         (libm::atan2(x, z).to_degrees(), libm::atan2(-y, libm::hypot(x, z)).to_degrees());
@@ -363,7 +345,7 @@ fn neighbour_line(neighbour: &NeighbourRecord) -> String {
         format!("{:5.1}° {}", degrees.abs(), if degrees < 0.0 { negative } else { positive })
     };
     format!(
-        "{}  {estimate:>6} {sigma:<6} m  {bounds:<17}  {:<12} {:<11}  {} {}",
+        "{}{who}  {estimate:>6} {sigma:<6} m  {bounds:<17}  {:<12} {:<11}  {} {}",
         neighbour.airframe,
         side(azimuth, "right", "left"),
         side(elevation, "up", "down"),

@@ -49,6 +49,7 @@ mod spot_options;
 mod summary;
 mod targets;
 mod terminal;
+mod time;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::process::ExitCode;

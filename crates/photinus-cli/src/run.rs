@@ -38,6 +38,11 @@ pub(crate) trait Work {
 
     /// Learns from a frame what [`Self::fill`] would have learnt; what that refuses teaches nothing.
     fn learn(&mut self, entry: &mut Entry);
+
+    /// What a user should know of the frame.
+    fn remarks(&mut self) -> Vec<String> {
+        Vec::new()
+    }
 }
 
 /// Takes every frame of `input` through `work`, which completes its record, and writes it. What is `done` is skipped, once nothing is left to
@@ -75,6 +80,7 @@ pub(crate) fn run(
             Ok(entry) => {
                 outputs.write(&entry, &mut clock, terminal)?;
                 tell_oddity(&entry, &mut summary, terminal);
+                work.remarks().iter().for_each(|remark| terminal.warning(remark));
                 summary.count(&entry.record);
             }
             Err(error) => {

@@ -24,6 +24,9 @@ pub(crate) fn found_at(position_m: [f64; 3]) -> NeighbourRecord {
     NeighbourRecord {
         track: None,
         id: None,
+        id_probability: None,
+        velocity_m_s: None,
+        velocity_covariance_m2_s2: None,
         airframe: "hexarotor".to_owned(),
         spots: vec![],
         bearing: (position / distance_m).into(),

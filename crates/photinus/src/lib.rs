@@ -4,7 +4,7 @@
 //!
 //! ```text
 //! frame -> spots -> bearings (camera) -> ranges (airframe, ranging) -> neighbours (locator) -> tracks (tracking)
-//!                                                            -> marker tracks (following, identity)
+//!                                                            -> marker tracks (following, identity) -> who is who (lookout)
 //! ```
 //!
 //! No files, threads, clocks or printing happen here. Transcendental functions come from the `libm`
@@ -17,6 +17,7 @@ pub mod frame;
 pub mod identity;
 mod lanes;
 pub mod locator;
+pub mod lookout;
 pub mod optics;
 pub mod pose;
 pub mod ranging;

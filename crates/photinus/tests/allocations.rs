@@ -1,4 +1,4 @@
-//! A warm detector, locator, decoder, follower and tracker allocate nothing: every request to the allocator is counted.
+//! A warm detector, locator, decoder, follower, tracker and lookout allocate nothing: every request to the allocator is counted.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
@@ -13,6 +13,7 @@ use photinus::frame::{FrameView, Mask};
 use photinus::identity::decoder::{self, Decoder};
 use photinus::identity::{CodeBook, Evidence, Word};
 use photinus::locator::{self, Located, Locator};
+use photinus::lookout::{Fleet, Glance, Lookout, Vehicle};
 use photinus::pose::{p3p, pnp};
 use photinus::spots::{Brightness, Detector, Extent, Settings, Spot};
 use photinus::tracking::{self, Look, Tracker};
@@ -161,6 +162,24 @@ fn a_warm_locator_allocates_nothing() {
     assert!(neighbours > 300, "{neighbours}");
 }
 
+/// A spot as a detector finds it.
+fn spot(centre: Pixel, flux: f64) -> Spot {
+    let middle = (centre.u as u32, centre.v as u32);
+    Spot {
+        centre,
+        covariance_px2: Matrix2::identity() * 0.01,
+        area_px: 9,
+        peak: 200,
+        saturated_px: 0,
+        flux,
+        light: None,
+        background: 5.0,
+        marker_log_odds: 3.0,
+        middle,
+        extent: Extent { left: middle.0, top: middle.1, right: middle.0 + 1, bottom: middle.1 + 1 },
+    }
+}
+
 #[test]
 fn a_warm_tracker_allocates_nothing() {
     let lens = Ideal::new(IdealLaw::Equidistant, [130.0; 2], Pixel::new(187.5, 119.5)).unwrap();
@@ -171,22 +190,6 @@ fn a_warm_tracker_allocates_nothing() {
     let mut locator = Locator::new(camera.clone(), &airframe, None, settings).unwrap();
     let gravity = Vector3::y_axis();
     // Two vehicles that drift by, a glint now and then.
-    let spot = |centre: Pixel, flux: f64| {
-        let middle = (centre.u as u32, centre.v as u32);
-        Spot {
-            centre,
-            covariance_px2: Matrix2::identity() * 0.01,
-            area_px: 9,
-            peak: 200,
-            saturated_px: 0,
-            flux,
-            light: None,
-            background: 5.0,
-            marker_log_odds: 3.0,
-            middle,
-            extent: Extent { left: middle.0, top: middle.1, right: middle.0 + 1, bottom: middle.1 + 1 },
-        }
-    };
     let mut locate = |number: u32| {
         let mut spots = Vec::new();
         for place_m in
@@ -216,7 +219,15 @@ fn a_warm_tracker_allocates_nothing() {
         number += 1;
         // Every fifth frame comes after the next one.
         let time_s = f64::from(number + u32::from(number % 5 == 1) - u32::from(number % 5 == 2)) / 30.0;
-        let look = Look { time_s, turned: None, gravity: Some(gravity), located, signals: &[], lit: &[] };
+        let look = Look {
+            time_s,
+            turned: None,
+            gravity: Some(gravity),
+            located,
+            signals: &[],
+            lit: &[],
+            blinking: None,
+        };
         tracks += tracker.track(&look).unwrap().tracks.len();
         tracker.at(f64::from(number + 2) / 30.0).unwrap();
     };
@@ -224,6 +235,64 @@ fn a_warm_tracker_allocates_nothing() {
     (0..20).for_each(|_| located.iter().for_each(&mut track));
     assert_eq!(requests_during(|| located.iter().for_each(&mut track)), 0);
     assert!(tracks > 100, "{tracks}");
+}
+
+#[test]
+fn a_warm_lookout_allocates_nothing() {
+    let lens = Ideal::new(IdealLaw::Equidistant, [130.0; 2], Pixel::new(187.5, 119.5)).unwrap();
+    let camera = Camera::new(Model::Ideal(lens), WIDTH, HEIGHT, None).unwrap();
+    let ring = Ring { arms: 6, radius_m: 0.4, leds_per_arm: 1, splay_rad: 0.0 };
+    let airframe = Airframe::from_ring("hexarotor", ring).unwrap();
+    let settings = locator::Settings::default();
+    let bits = |text: &str| text.chars().map(|bit| bit == '1').collect::<Vec<_>>();
+    let words = ["0010110111", "0010101111", "0001110101"].map(|text| Word::new(&bits(text)).unwrap());
+    let book = CodeBook::new(words.to_vec()).unwrap();
+    let vehicle = |id: usize| (Vehicle { id: id as u32, words: vec![id] }, 60.0);
+    let fleet = Fleet::new(book, (0..3).map(vehicle)).unwrap();
+    let mut locator = Locator::new(camera.clone(), &airframe, None, settings).unwrap();
+    let mut lookout =
+        Lookout::new(camera.clone(), &airframe, &settings, tracking::Settings::default(), Some(&fleet))
+            .unwrap();
+    let gravity = Vector3::y_axis();
+    // Two that drift by, each with a word; the second is away for half of the time, and comes back as another track.
+    let mut number = 0_u32;
+    let (mut named, mut away) = (0, 0);
+    let mut requests = 0;
+    for round in 0..12 {
+        for step in 0..90_u32 {
+            number += 1;
+            let side_m = 0.01 * f64::from(step) - 0.45;
+            let mut spots = Vec::new();
+            for (word, place_m) in [(0, [side_m - 0.8, 0.1, 4.0]), (1, [0.8 - side_m, -0.1, 5.0])] {
+                let is_away = word == 1 && step > 60;
+                away += u32::from(is_away);
+                if is_away || !words[word].bit(number as usize) {
+                    continue;
+                }
+                let place_m = Vector3::from(place_m);
+                for (index, marker) in airframe.markers().iter().enumerate() {
+                    let [x, y, z]: [f64; 3] = marker.position_m.into();
+                    let at_m = place_m + Vector3::new(x, -z, y);
+                    let camera_m = Vector3::new(-place_m.x, -place_m.z, place_m.y);
+                    let flux = 1e5 * airframe.intensity(index, &camera_m) / at_m.norm_squared();
+                    if flux > 75.0 {
+                        spots.push(spot(camera.pixel(&Bearing::new(at_m).unwrap()).unwrap(), flux));
+                    }
+                }
+            }
+            let located = locator.locate_spots(&spots, Some(&gravity), &mut |_| ());
+            let time_s = f64::from(number) / 60.0;
+            let glance = Glance { time_s, exposure_s: 1e-3, turned: None, gravity: Some(gravity), located };
+            let own = requests_during(|| {
+                lookout.look(&glance).unwrap();
+            });
+            // Warm is who has been through it.
+            requests += if round > 8 { own } else { 0 };
+            named += lookout.names().iter().filter(|name| name.probability > 0.99).count();
+        }
+    }
+    assert_eq!(requests, 0);
+    assert!(named > 600 && away > 100, "{named}");
 }
 
 #[test]

@@ -40,6 +40,9 @@ fn neighbour(spots: Vec<usize>, bearing: Vector3<f64>, distance_m: Distance) -> 
     NeighbourRecord {
         track: None,
         id: None,
+        id_probability: None,
+        velocity_m_s: None,
+        velocity_covariance_m2_s2: None,
         airframe: "hexarotor-0.4".to_owned(),
         spots,
         bearing: (*Bearing::new(bearing).unwrap().vector()).into(),

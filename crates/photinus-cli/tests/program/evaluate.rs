@@ -36,6 +36,9 @@ fn result(frame: u64) -> FrameRecord {
     let neighbour = NeighbourRecord {
         track: None,
         id: None,
+        id_probability: None,
+        velocity_m_s: None,
+        velocity_covariance_m2_s2: None,
         airframe: "hexa".to_owned(),
         spots: vec![],
         bearing: [0.0, 0.0, 1.0],

@@ -1,8 +1,8 @@
-//! `locate --track`: who is followed, and that it says where it is going.
+//! `locate` of frames with times: who is followed, where it is going, and who it is.
 
 use nalgebra::Vector3;
 use photinus_io::dataset::Dataset;
-use photinus_io::results::{FrameRecord, read_results};
+use photinus_io::results::{FrameRecord, NeighbourRecord, TrackRecord, read_results};
 
 use crate::stage::Stage;
 
@@ -27,7 +27,7 @@ fn a_neighbour_that_passes_by_is_one_track_that_knows_its_velocity() {
     let stage = Stage::new("track");
     stage.file("scene.toml", scene());
     assert_eq!(stage.run("simulate scene.toml --out flight -q").code, 0);
-    assert_eq!(stage.run("locate flight --track -q --out r.jsonl --csv t.csv").code, 0);
+    assert_eq!(stage.run("locate flight -q --out r.jsonl --csv t.csv").code, 0);
     let frames = records(&stage, "r.jsonl");
     assert_eq!(frames.len(), 60);
     let truth = Dataset::read(stage.path("flight")).unwrap().truth().unwrap().unwrap();
@@ -50,8 +50,8 @@ fn a_neighbour_that_passes_by_is_one_track_that_knows_its_velocity() {
     assert!((squares / 39.0).sqrt() < 0.4, "rms {} m/s", (squares / 39.0).sqrt());
     assert!(stage.read("t.csv").lines().nth(30).unwrap().contains(&format!(",{id},")));
 
-    // Without --track a frame tells of itself alone, and says the same of it.
-    assert_eq!(stage.run("locate flight -q --out alone.jsonl").code, 0);
+    // With --no-time a frame tells of itself alone, and says the same of it.
+    assert_eq!(stage.run("locate flight --no-time -q --out alone.jsonl").code, 0);
     for (alone, followed) in records(&stage, "alone.jsonl").iter().zip(&frames) {
         assert!(alone.tracks.is_empty() && alone.neighbours.iter().all(|n| n.track.is_none()));
         assert_eq!(alone.neighbours.len(), followed.neighbours.len());
@@ -66,9 +66,96 @@ fn a_neighbour_that_passes_by_is_one_track_that_knows_its_velocity() {
 }
 
 #[test]
-fn frames_without_times_cannot_be_followed() {
+fn frames_without_times_are_located_one_by_one() {
     let stage = Stage::new("track-untimed");
-    let done = stage.run("locate frame.png --camera camera.toml --airframe hexa.toml --track --out r.jsonl");
-    assert_eq!(done.code, 2, "{}", done.err);
-    assert!(done.err.contains("no time") && done.err.contains("--track"), "{}", done.err);
+    assert_eq!(
+        stage.run("locate frame.png --camera camera.toml --airframe hexa.toml -q --out r.jsonl").code,
+        0
+    );
+    assert_eq!(
+        stage
+            .run("locate frame.png --camera camera.toml --airframe hexa.toml --no-time -q --out alone.jsonl")
+            .code,
+        0
+    );
+    assert_eq!(stage.read("r.jsonl"), stage.read("alone.jsonl"));
+    assert!(records(&stage, "r.jsonl").iter().all(|frame| frame.tracks.is_empty()));
+}
+
+/// Two hexarotors beside each other for two seconds, each with a word, and a camera that pans.
+fn blinking(words: [usize; 2], observer: &str) -> String {
+    let scenes = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes");
+    let target = |id: usize, y_m: f64, word: usize| {
+        format!(
+            "[[target]]\nid = {id}\nairframe = \"{scenes}/airframes/hexarotor-0.4.toml\"\n\
+             motion = {{ line = {{ from_m = [5.0, {y_m}, 5.0], to_m = [5.5, {y_m}, 5.2], duration_s = 2.0 }} }}\n\
+             blink = {{ codes = \"{scenes}/codes/l12-d3-r3.txt\", first_word = {word}, rate_hz = 60.0, shift_s = 0.00{id} }}\n"
+        )
+    };
+    format!(
+        "name = \"blinking\"\nseed = 3\npreset = \"bluefox-dsl215-bp365\"\nrate_hz = 60.0\nduration_s = 2.0\n\
+         exposure_us = 1000.0\n{observer}[[camera]]\nname = \"front\"\nfile = \"{scenes}/cameras/bluefox-dsl215.toml\"\n{}{}",
+        target(4, 1.2, words[0]),
+        target(9, -1.2, words[1])
+    )
+}
+
+const STILL: &str = "[observer]\nmotion = { hover = { position_m = [0.0, 0.0, 5.0] } }\n";
+
+/// For each frame after the first half second: of each track the true id, by its side, and the id that is told.
+fn told(stage: &Stage, file: &str) -> Vec<(u32, Option<u32>)> {
+    let later = records(stage, file).into_iter().filter(|frame| frame.time_s > Some(0.5));
+    // The camera's x is to the right: -y of the world.
+    let own = |track: &TrackRecord| (if track.position_m[0] < 0.0 { 4 } else { 9 }, track.id);
+    later.flat_map(|frame| frame.tracks.iter().map(own).collect::<Vec<_>>()).collect()
+}
+
+#[test]
+fn vehicles_that_blink_words_are_named() {
+    let stage = Stage::new("named");
+    stage.file("scene.toml", blinking([2, 7], STILL));
+    assert_eq!(stage.run("simulate scene.toml --out flight -q").code, 0);
+    let done = stage.run("locate flight --out r.jsonl");
+    assert_eq!((done.code, done.err.contains("two tracks")), (0, false), "{}", done.err);
+    let told = told(&stage, "r.jsonl");
+    assert!(told.len() > 170, "{}", told.len());
+    assert!(told.iter().all(|(true_id, id)| id.is_none_or(|id| id == *true_id)), "{told:?}");
+    let named = told.iter().filter(|(_, id)| id.is_some()).count();
+    assert!(named as f64 > 0.97 * told.len() as f64, "{named} of {}", told.len());
+    let frames = records(&stage, "r.jsonl");
+    let neighbours: Vec<_> = frames[60..].iter().flat_map(|frame| &frame.neighbours).collect();
+    let whole =
+        |n: &&&NeighbourRecord| n.id.is_some() && n.id_probability > Some(0.99) && n.velocity_m_s.is_some();
+    assert!(neighbours.iter().filter(whole).count() as f64 > 0.9 * neighbours.len() as f64);
+    let scores = stage.run("evaluate flight r.jsonl");
+    assert_eq!(scores.code, 0, "{}", scores.err);
+}
+
+#[test]
+fn an_id_that_two_carry_is_nobodys_and_the_user_is_told() {
+    let stage = Stage::new("twice");
+    stage.file("scene.toml", blinking([5, 5], STILL));
+    assert_eq!(stage.run("simulate scene.toml --out flight -q").code, 0);
+    // Both blink word 5, and only one of them is listed.
+    let vehicles = stage.read("flight/vehicles.toml");
+    let second = vehicles.rfind("[[vehicle]]").unwrap();
+    stage.file("flight/vehicles.toml", &vehicles[..second]);
+    let done = stage.run("locate flight --out r.jsonl");
+    assert!(done.code == 0 && done.err.contains("two tracks blink the words of vehicle 4"), "{}", done.err);
+    let told = told(&stage, "r.jsonl");
+    assert!(told.len() > 170 && told.iter().all(|(_, id)| id.is_none()), "{told:?}");
+    let last = records(&stage, "r.jsonl").pop().unwrap();
+    assert!(last.tracks.iter().all(|track| track.ids.iter().all(|id| id.contested && id.probability < 0.9)));
+}
+
+#[test]
+fn a_wrong_book_names_nobody() {
+    let stage = Stage::new("wrong-book");
+    stage.file("scene.toml", blinking([2, 7], STILL));
+    assert_eq!(stage.run("simulate scene.toml --out flight -q").code, 0);
+    assert_eq!(stage.run("codes preset l14-d3-r3 --out flight/codes.txt --force").code, 0);
+    let done = stage.run("locate flight --out r.jsonl -q");
+    assert_eq!(done.code, 0, "{}", done.err);
+    let told = told(&stage, "r.jsonl");
+    assert!(told.len() > 170 && told.iter().all(|(_, id)| id.is_none()), "{told:?}");
 }

@@ -7,22 +7,30 @@ use super::found::rows;
 use crate::calibration::MountingFile;
 
 impl FrameRecord {
-    /// Says where neighbours are in the body frame, as far as the mounting knows: p_body = R p + t. Its covariance is
+    /// Says where neighbours and tracks are in the body frame, as far as the mounting knows: p_body = R p + t. Its covariance is
     /// R S R^T + [R p]x S_R [R p]x^T + S_t, with the mounting's covariances S_R of a small turn about the body's axes and S_t of the
     /// camera's place. A mounting that does not know the place says nothing.
     pub fn put_mounting(&mut self, mounting: &MountingFile) {
         let Some(centre_m) = mounting.position_m else { return };
         let turn = mounting.body_from_camera.to_rotation_matrix();
+        let place = |position_m: [f64; 3]| <[f64; 3]>::from(turn * Vector3::from(position_m) + centre_m);
+        let covariance = |position_m: [f64; 3], covariance_m2: [[f64; 3]; 3]| {
+            let lever = (turn * Vector3::from(position_m)).cross_matrix();
+            let seen = turn * matrix(covariance_m2) * turn.inverse();
+            let mounted = lever * mounting.rotation_covariance_rad2 * lever.transpose();
+            rows(&(seen + mounted + mounting.position_covariance_m2.unwrap_or_else(Matrix3::zeros)))
+        };
         for neighbour in &mut self.neighbours {
             let Some(position_m) = neighbour.position_m else { continue };
-            let turned_m = turn * Vector3::from(position_m);
-            neighbour.position_body_m = Some((turned_m + centre_m).into());
-            neighbour.position_body_covariance_m2 = neighbour.position_covariance_m2.map(|covariance_m2| {
-                let lever = turned_m.cross_matrix();
-                let seen = turn * matrix(covariance_m2) * turn.inverse();
-                let mounted = lever * mounting.rotation_covariance_rad2 * lever.transpose();
-                rows(&(seen + mounted + mounting.position_covariance_m2.unwrap_or_else(Matrix3::zeros)))
-            });
+            neighbour.position_body_m = Some(place(position_m));
+            let camera_m2 = neighbour.position_covariance_m2;
+            neighbour.position_body_covariance_m2 =
+                camera_m2.map(|camera_m2| covariance(position_m, camera_m2));
+        }
+        for track in &mut self.tracks {
+            track.position_body_m = Some(place(track.position_m));
+            track.position_body_covariance_m2 =
+                Some(covariance(track.position_m, track.position_covariance_m2));
         }
     }
 }

@@ -4,6 +4,7 @@ use nalgebra::{Matrix2, Matrix3, Rotation3, UnitQuaternion};
 
 use photinus::camera::Pixel;
 use photinus::locator::{self, Located, Neighbour, Sighting};
+use photinus::lookout::Name;
 use photinus::optics::Measured;
 use photinus::pose::Mode;
 use photinus::spots::{Extent, Rejected, Spot};
@@ -11,8 +12,12 @@ use photinus::tracking::{Track, Tracked};
 
 use super::record::Mode as ModeRecord;
 use super::{
-    Distance, FrameRecord, Misfit, NeighbourRecord, RejectedRecord, RunnerUp, SpotRecord, TrackRecord,
+    Distance, FrameRecord, IdRecord, Misfit, NeighbourRecord, RejectedRecord, RunnerUp, SpotRecord,
+    TrackRecord,
 };
+
+/// A vehicle has an id from this probability on.
+const SURE: f64 = 0.99;
 
 impl FrameRecord {
     /// Puts what was located in the place of the spots and neighbours that the record holds; what was rejected joins what
@@ -25,29 +30,43 @@ impl FrameRecord {
         self.neighbours = located.neighbours.iter().map(record).collect();
     }
 
-    /// Puts in who is followed, and for each neighbour which of them it is: the one that was seen by most of its spots.
-    pub fn put_tracked(&mut self, tracked: &Tracked, airframe: &str) {
-        self.tracks = tracked.tracks.iter().map(|track| TrackRecord::new(track, tracked, airframe)).collect();
+    /// Puts in who is followed and who that may be, `None` where nobody blinks; and for each neighbour which of them it is: the one that was seen by most of
+    /// its spots.
+    pub fn put_tracked(&mut self, tracked: &Tracked, names: Option<&[Name]>, airframe: &str) {
+        let record = |track| TrackRecord::new(track, tracked, names, airframe);
+        self.tracks = tracked.tracks.iter().map(record).collect();
         for neighbour in &mut self.neighbours {
             let common = |track: &TrackRecord| {
                 track.spots.iter().filter(|spot| neighbour.spots.contains(spot)).count()
             };
             let most = self.tracks.iter().filter(|track| common(track) > 0).max_by_key(|track| common(track));
             neighbour.track = most.map(|track| track.track);
+            neighbour.id = most.and_then(|track| track.id);
+            neighbour.id_probability = most.and_then(|track| track.id_probability);
+            neighbour.velocity_m_s = most.map(|track| track.velocity_m_s);
+            neighbour.velocity_covariance_m2_s2 = most.map(|track| track.velocity_covariance_m2_s2);
         }
     }
 }
 
 impl TrackRecord {
-    fn new(track: &Track, tracked: &Tracked, airframe: &str) -> Self {
+    fn new(track: &Track, tracked: &Tracked, names: Option<&[Name]>, airframe: &str) -> Self {
+        let own = names.unwrap_or(&[]).iter().filter(|name| name.track == track.id);
+        let ids: Vec<IdRecord> = own.map(IdRecord::from).collect();
+        let likeliest = ids.first().copied();
         Self {
             track: track.id,
+            id: likeliest.filter(|first| first.probability >= SURE).map(|first| first.id),
+            id_probability: names.map(|_| likeliest.map_or(0.0, |first| first.probability)),
+            ids,
             airframe: airframe.to_owned(),
             probability: track.existence,
             predicted: track.is_predicted,
             spots: tracked.members(track).to_vec(),
             position_m: track.position_m.into(),
             position_covariance_m2: rows(&track.position_covariance_m2),
+            position_body_m: None,
+            position_body_covariance_m2: None,
             velocity_m_s: track.velocity_m_s.into(),
             velocity_covariance_m2_s2: rows(&track.velocity_covariance_m2_s2),
             orientation_xyzw: xyzw(&track.camera_from_body),
@@ -62,6 +81,9 @@ impl NeighbourRecord {
         Self {
             track: None,
             id: None,
+            id_probability: None,
+            velocity_m_s: None,
+            velocity_covariance_m2_s2: None,
             airframe: airframe.to_owned(),
             spots: located.members(neighbour).to_vec(),
             bearing: (*neighbour.bearing.vector()).into(),
@@ -84,6 +106,12 @@ impl NeighbourRecord {
             }),
             modes: located.modes(neighbour).iter().map(ModeRecord::from).collect(),
         }
+    }
+}
+
+impl From<&Name> for IdRecord {
+    fn from(name: &Name) -> Self {
+        Self { id: name.id, probability: name.probability, contested: name.is_contested }
     }
 }
 

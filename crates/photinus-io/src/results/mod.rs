@@ -13,7 +13,7 @@ mod spot;
 pub use csv::CsvWriter;
 pub use json::{ResultsReader, ResultsWriter, read_results};
 pub use record::{
-    Distance, FrameRecord, Misfit, Mode, NeighbourRecord, RejectedRecord, RunnerUp, TrackRecord,
+    Distance, FrameRecord, IdRecord, Misfit, Mode, NeighbourRecord, RejectedRecord, RunnerUp, TrackRecord,
 };
 pub use spot::{DEFAULT_SIGMA_PX, SpotRecord};
 

@@ -50,6 +50,15 @@ pub struct TrackRecord {
     pub airframe: String,
     /// How likely it exists, 0 to 1.
     pub probability: f64,
+    /// Who it surely is, where that was decoded.
+    #[serde(default)]
+    pub id: Option<u32>,
+    /// How likely it is who it most likely is; `None` where nobody blinks.
+    #[serde(default)]
+    pub id_probability: Option<f64>,
+    /// Who it may be, the likeliest first; what is missing to 1 is nobody that is listed.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub ids: Vec<IdRecord>,
     /// Whether none of its LEDs was seen in this frame.
     pub predicted: bool,
     /// Indices of the spots that it was seen by.
@@ -58,6 +67,12 @@ pub struct TrackRecord {
     pub position_m: [f64; 3],
     /// Covariance of the position, m^2.
     pub position_covariance_m2: [[f64; 3]; 3],
+    /// Its origin in the body frame of the vehicle that carries the camera, m, where the mounting is known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub position_body_m: Option<[f64; 3]>,
+    /// Covariance of that position, m^2, the mounting's own errors among it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub position_body_covariance_m2: Option<[[f64; 3]; 3]>,
     /// How that changes, m/s.
     pub velocity_m_s: [f64; 3],
     /// Covariance of the velocity, m^2/s^2.
@@ -66,6 +81,18 @@ pub struct TrackRecord {
     pub orientation_xyzw: [f64; 4],
     /// Covariance of the attitude as a small rotation in the body frame, rad^2.
     pub orientation_covariance_rad2: [[f64; 3]; 3],
+}
+
+/// Who a track may be.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct IdRecord {
+    /// The vehicle.
+    pub id: u32,
+    /// How likely it is that one.
+    pub probability: f64,
+    /// Whether it would be sure if no other track blinked the same words: two carry one id, or one is followed as two.
+    #[serde(default)]
+    pub contested: bool,
 }
 
 /// Something bright that is not taken for a marker.
@@ -90,6 +117,15 @@ pub struct NeighbourRecord {
     /// Who it is, where that was decoded.
     #[serde(default)]
     pub id: Option<u32>,
+    /// How likely its track is who it most likely is; `None` where nobody blinks.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub id_probability: Option<f64>,
+    /// The velocity of its track, m/s.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub velocity_m_s: Option<[f64; 3]>,
+    /// Covariance of that, m^2/s^2.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub velocity_covariance_m2_s2: Option<[[f64; 3]; 3]>,
     /// Name of its airframe.
     pub airframe: String,
     /// Indices of its spots in the frame's list.

@@ -30,6 +30,9 @@ fn neighbour() -> NeighbourRecord {
     NeighbourRecord {
         track: None,
         id: Some(3),
+        id_probability: None,
+        velocity_m_s: None,
+        velocity_covariance_m2_s2: None,
         airframe: "hexarotor, 0.4".to_owned(),
         spots: vec![0],
         bearing: [0.0, 0.0, 1.0],

@@ -26,7 +26,7 @@ struct Pair {
 
 /// All pairs of a frame.
 #[derive(Debug, Default)]
-pub(super) struct Association {
+pub(crate) struct Association {
     /// By track.
     pairs: Vec<Pair>,
     /// Claims on each sighting, together.
@@ -35,19 +35,19 @@ pub(super) struct Association {
 
 impl Association {
     /// Nothing yet, for so many sightings.
-    pub(super) fn begin(&mut self, sightings: usize) {
+    pub(crate) fn begin(&mut self, sightings: usize) {
         self.pairs.clear();
         self.claims.clear();
         self.claims.resize(sightings, 0.0);
     }
 
     /// Adds a pair; tracks ascend.
-    pub(super) fn add(&mut self, track: usize, sighting: usize, weight: f64) {
+    pub(crate) fn add(&mut self, track: usize, sighting: usize, weight: f64) {
         self.pairs.push(Pair { track, sighting, weight, claim: 0.0, free: 1.0 });
     }
 
     /// Passes messages until they stand.
-    pub(super) fn solve(&mut self) {
+    pub(crate) fn solve(&mut self) {
         for _ in 0..ROUNDS {
             for own in self.pairs.chunk_by_mut(|a, b| a.track == b.track) {
                 let all: f64 = own.iter().map(|pair| pair.weight * pair.free).sum();
@@ -72,12 +72,12 @@ impl Association {
     }
 
     /// For each pair, in the order in which they were added, the probability that no other track has the sighting.
-    pub(super) fn free(&self, pair: usize) -> f64 {
+    pub(crate) fn free(&self, pair: usize) -> f64 {
         self.pairs[pair].free
     }
 
     /// The probability that a sighting is of no track.
-    pub(super) fn is_unexplained(&self, sighting: usize) -> f64 {
+    pub(crate) fn is_unexplained(&self, sighting: usize) -> f64 {
         1.0 / (1.0 + self.claims[sighting])
     }
 }

@@ -13,7 +13,7 @@ use super::track::{Candidate, Expected, Track};
 use super::turn::OwnTurn;
 use super::{Settings, SettingsError};
 use crate::camera::{Bearing, Camera};
-use crate::identity::decoder::{Decoder, TimeStands};
+use crate::identity::decoder::{Decoder, TimeStands, Who};
 
 /// Tracks at most: beyond, no new ones begin.
 const MOST_TRACKS: usize = 512;
@@ -85,6 +85,20 @@ impl Follower {
     /// The tracks of the last frame, oldest first.
     pub fn tracks(&self) -> &[MarkerTrack] {
         &self.told
+    }
+
+    /// Fills in how likely the track of this number is each word of the book, in its order, if anything shines there; nothing where there is no such track,
+    /// no book, or too little was heard.
+    pub fn tell_words(&self, number: u64, words: &mut Vec<f64>) {
+        words.clear();
+        let own = self.tracks.iter().find(|own| own.number == Some(number));
+        let listener = own.and_then(|own| own.hearing.listener());
+        if let Some((decoder, listener)) = self.listeners.decoder().zip(listener) {
+            let shines = (1.0 - decoder.probability(listener, Who::Dark)).max(f64::MIN_POSITIVE);
+            words.extend(
+                (0..decoder.words()).map(|word| decoder.probability(listener, Who::Word(word)) / shines),
+            );
+        }
     }
 
     /// Forgets all tracks: a clock was set back, or frames are of another place. Numbers are not used again.

@@ -4,6 +4,7 @@ use nalgebra::Rotation3;
 
 use crate::camera::Watched;
 use crate::locator::Sighting;
+use crate::tracking::Turned;
 
 /// A frame of a camera.
 #[derive(Clone, Copy, Debug)]
@@ -29,4 +30,10 @@ pub struct Turn {
     pub now_from_before: Rotation3<f64>,
     /// Standard deviation of its error about each axis, rad.
     pub sigma_rad: f64,
+}
+
+impl From<Turned> for Turn {
+    fn from(Turned { now_from_before, sigma_rad }: Turned) -> Self {
+        Self { now_from_before, sigma_rad }
+    }
 }

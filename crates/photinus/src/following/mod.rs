@@ -34,6 +34,7 @@ mod told;
 mod track;
 mod turn;
 
+pub(crate) use association::Association;
 pub use follower::Follower;
 pub use frame::{Frame, Turn};
 pub use settings::{Settings, SettingsError};

@@ -23,6 +23,9 @@ impl Level {
     /// One frame in so many shows something else in the place of the LED.
     const SURPRISE: f64 = 1.0 / 500.0;
 
+    /// More standard deviations above it are no chance: it grew faster than was believed, as an LED does that turns into view.
+    const TOO_BRIGHT: f64 = 4.0;
+
     /// An LED whose first spot has this light; `None` for a light that is not positive.
     pub fn of_first(light: f64) -> Option<Self> {
         (light.is_finite() && light > 0.0).then_some(Self {
@@ -53,6 +56,9 @@ impl Level {
     pub fn see(&mut self, light: f64, sigma: f64, lit: f64) {
         if !(light.is_finite() && light > 0.0 && sigma.is_finite() && sigma > 0.0) {
             return;
+        }
+        if self.standing(light, sigma, 1.0).0 > Self::TOO_BRIGHT {
+            self.spread = self.spread.max(light / self.full - 1.0).min(Self::AT_FIRST);
         }
         let (own, noise) = (self.spread * self.spread * self.full * self.full, sigma * sigma);
         let gain = lit.clamp(0.0, 1.0) * own / (own + noise);

@@ -46,6 +46,7 @@ pub(super) fn appear(
         let (first_component, first_member) = (after.components.len(), after.members.len());
         after.components.extend_from_slice(modes);
         after.members.extend_from_slice(members);
+        after.markers.resize(after.members.len(), None);
         after.targets.push(Target {
             id: after.next_id,
             existence,

@@ -48,6 +48,11 @@ impl Pairs {
         self.as_slice().iter().any(|&(own, _)| usize::from(own) == spot)
     }
 
+    /// The marker that a spot is.
+    pub(super) fn marker_of(&self, spot: usize) -> Option<u16> {
+        self.as_slice().iter().find(|&&(own, _)| usize::from(own) == spot).map(|&(_, marker)| marker)
+    }
+
     /// Whether the same spots are the same markers.
     pub(super) fn is_same(&self, other: &Self) -> bool {
         self.count == other.count && self.as_slice().iter().all(|pair| other.as_slice().contains(pair))

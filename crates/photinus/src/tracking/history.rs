@@ -69,7 +69,7 @@ impl History {
         let mut entry = self
             .spare
             .pop()
-            .unwrap_or_else(|| Entry { moment: Moment::default(), state: State::empty(look.time_s, 0) });
+            .unwrap_or_else(|| Entry { moment: Moment::with_room(), state: State::empty(look.time_s, 0) });
         entry.moment.keep(look);
         if place > 0 && place < self.entries.len() {
             let before_s = self.entries[place - 1].moment.time_s;

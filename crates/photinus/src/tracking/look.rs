@@ -10,6 +10,9 @@ use crate::pose::{Mode, Observation, POWER_RANGE};
 
 /// Most ways in which a neighbour can be its airframe that are taken over.
 const MOST_MODES: usize = 16;
+/// Markers and neighbours that a frame has room for beforehand.
+const FOLLOWED: usize = 128;
+const NEIGHBOURS: usize = 4;
 /// A signal that comes with its sighting is right so often.
 const SIGNAL_IS_RIGHT: f64 = 0.99;
 
@@ -26,8 +29,30 @@ pub struct Look<'a> {
     pub located: &'a Located,
     /// Which of the airframe's signals each sighting blinks, by sighting; those beyond its end blink what the locator was told.
     pub signals: &'a [Option<Signalled>],
-    /// Which markers of which tracks are likely dark in this frame; all others are lit.
+    /// Which markers of which tracks are likely dark in this frame; all others are lit. Where markers are followed as they blink, `blinking` says it all.
     pub lit: &'a [Lit],
+    /// Where markers blink and are followed one by one, whether they are lit in this frame.
+    pub blinking: Option<Blinking<'a>>,
+}
+
+/// Markers that blink, as far as they are followed: they are lit by their place, whichever vehicle's they are, and however that is turned.
+#[derive(Clone, Copy, Debug)]
+pub struct Blinking<'a> {
+    /// The markers that are followed.
+    pub followed: &'a [Followed],
+    /// How likely any other marker is lit.
+    pub others: f64,
+}
+
+/// A marker that is followed through its dark frames.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Followed {
+    /// Where it is expected.
+    pub bearing: Bearing,
+    /// How likely it is lit while the frame is exposed, as far as those before tell: 0 dark to 1 lit.
+    pub lit: f64,
+    /// Whose it surely is, where that is known: the track, and which of the airframe's signals it blinks.
+    pub signal: Option<(u64, u32)>,
 }
 
 /// How the camera turned.
@@ -59,9 +84,16 @@ pub struct Lit {
     pub probability: f64,
 }
 
+impl Followed {
+    /// Whether it is so near to a direction.
+    pub(super) fn is_near(&self, ahead: &Vector3<f64>, reach_rad: f64) -> bool {
+        (self.bearing.vector() - ahead).norm() < reach_rad
+    }
+}
+
 impl Look<'_> {
     /// Refuses what has no meaning.
-    pub(super) fn check(&self) -> Result<(), TrackError> {
+    pub(crate) fn check(&self) -> Result<(), TrackError> {
         if !self.time_s.is_finite() {
             return Err(TrackError::Time(self.time_s));
         }
@@ -99,12 +131,24 @@ pub(super) struct Moment {
     members: Vec<usize>,
     modes: Vec<Mode>,
     pub(super) lit: Vec<Lit>,
+    pub(super) followed: Vec<Followed>,
+    /// How likely markers are lit that are not among them; `None` where they do not blink.
+    pub(super) others_lit: Option<f64>,
 }
 
 impl Moment {
+    /// Room for a frame: each of those that are kept would else grow by itself.
+    pub(super) fn with_room() -> Self {
+        Self {
+            modes: Vec::with_capacity(NEIGHBOURS * MOST_MODES),
+            followed: Vec::with_capacity(FOLLOWED),
+            ..Self::default()
+        }
+    }
+
     /// Takes over a frame.
     pub(super) fn keep(&mut self, look: &Look<'_>) {
-        let Look { time_s, turned, gravity, located, signals, lit } = *look;
+        let Look { time_s, turned, gravity, located, signals, lit, blinking } = *look;
         (self.time_s, self.turned, self.up) = (time_s, turned, gravity.map(|down| -down));
         self.observations.clear();
         self.calibrations.clear();
@@ -117,6 +161,9 @@ impl Moment {
         }
         self.lit.clear();
         self.lit.extend_from_slice(lit);
+        self.followed.clear();
+        self.followed.extend_from_slice(blinking.map_or(&[], |blinking| blinking.followed));
+        self.others_lit = blinking.map(|blinking| blinking.others.clamp(0.0, 1.0));
         self.appearances.clear();
         self.members.clear();
         self.modes.clear();

@@ -46,6 +46,8 @@ pub(super) struct State {
     pub(super) components: Vec<Component>,
     /// Sightings that updated a vehicle.
     pub(super) members: Vec<usize>,
+    /// Which marker each of them most probably is.
+    pub(super) markers: Vec<Option<u16>>,
 }
 
 impl State {
@@ -59,6 +61,7 @@ impl State {
             targets: Vec::with_capacity(MOST_TARGETS),
             components: Vec::with_capacity(2 * MOST_TARGETS),
             members: Vec::with_capacity(128),
+            markers: Vec::with_capacity(128),
         }
     }
 
@@ -69,6 +72,7 @@ impl State {
         self.targets.clear();
         self.components.clear();
         self.members.clear();
+        self.markers.clear();
     }
 
     /// The normal distributions of a vehicle, the heaviest first.
@@ -79,5 +83,10 @@ impl State {
     /// The sightings of the last frame that updated it.
     pub(super) fn members(&self, target: &Target) -> &[usize] {
         &self.members[target.first_member..][..target.members]
+    }
+
+    /// Which marker each of these is.
+    pub(super) fn markers(&self, target: &Target) -> &[Option<u16>] {
+        &self.markers[target.first_member..][..target.members]
     }
 }

@@ -43,6 +43,14 @@ pub(super) struct Model {
     pub(super) settings: Settings,
 }
 
+impl Model {
+    /// Whether a marker blinks a signal: LEDs without one blink the first.
+    pub(super) fn blinks(&self, marker: u16, signal: u32) -> bool {
+        let leds = &self.airframe.markers()[usize::from(marker)].leds;
+        leds.iter().any(|&led| self.airframe.leds()[led].signal.unwrap_or(0) == signal)
+    }
+}
+
 /// Carries what is believed from frame to frame. Keeps its room.
 #[derive(Debug)]
 pub(super) struct Stepper {
@@ -161,6 +169,7 @@ impl Stepper {
             };
             if ways.of(vehicle).map(claims).sum::<f64>() > 0.5 {
                 after.members.push(spot);
+                after.markers.push(marker_of(spot, ways.of(vehicle), &joint.probability));
                 calibration_rad2 += moment.calibrations[spot];
             }
         }
@@ -183,6 +192,19 @@ impl Stepper {
             members,
         });
     }
+}
+
+/// The marker that a spot is in most of the ways that have it.
+fn marker_of<'a>(
+    spot: usize,
+    ways: impl Iterator<Item = (usize, &'a Way)> + Clone,
+    probability: &[f64],
+) -> Option<u16> {
+    let claims = ways.filter_map(|(index, way)| Some((way.pairs.marker_of(spot)?, probability[index])));
+    let all: f64 = claims.clone().map(|(_, share)| share).sum();
+    let share_of =
+        |marker: u16| claims.clone().filter(|claim| claim.0 == marker).map(|claim| claim.1).sum::<f64>();
+    claims.clone().map(|(marker, _)| marker).find(|&marker| share_of(marker) > 0.5 * all)
 }
 
 fn averaged(before: Option<f64>, now: Option<f64>) -> Option<f64> {

@@ -8,6 +8,7 @@ use super::motion::Motion;
 use super::state::{MOST_COMPONENTS, State};
 use super::step::Model;
 use crate::locator::of_mean_calibration;
+use crate::pose::Symmetry;
 
 /// A vehicle that is followed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -58,12 +59,38 @@ pub struct Tracked {
     /// Who is followed, those who were there first before the others.
     pub tracks: Vec<Track>,
     members: Vec<usize>,
+    markers: Vec<Option<u16>>,
 }
 
 impl Tracked {
     /// Which sightings of the newest frame updated a track, ascending; none where a time between frames was asked for.
     pub fn members(&self, track: &Track) -> &[usize] {
-        self.members.get(track.first_member..).and_then(|rest| rest.get(..track.members)).unwrap_or(&[])
+        own(&self.members, track)
+    }
+
+    /// Which marker of the airframe each of [`Self::members`] is, one for each: `None` where that is not clear. Of a symmetric airframe they are those of
+    /// the told attitude.
+    pub fn markers(&self, track: &Track) -> &[Option<u16>] {
+        own(&self.markers, track)
+    }
+
+    /// The same as another, in the room that it has.
+    pub(crate) fn take_over(&mut self, other: &Self) {
+        (self.time_s, self.placed) = (other.time_s, other.placed);
+        self.tracks.clone_from(&other.tracks);
+        self.members.clone_from(&other.members);
+        self.markers.clone_from(&other.markers);
+    }
+
+    /// Turns vehicles, where a turn of their symmetric airframe is known to be the true one.
+    pub(crate) fn turn<'a>(&mut self, turn: impl Fn(u64) -> Option<(&'a Symmetry, usize)>) {
+        for track in &mut self.tracks {
+            let Some((symmetry, turn)) = turn(track.id) else { continue };
+            track.camera_from_body = symmetry.attitude(&track.camera_from_body, turn);
+            for marker in self.markers[track.first_member..][..track.members].iter_mut().flatten() {
+                *marker = symmetry.turned(turn, *marker);
+            }
+        }
     }
 
     /// Tells what is believed, carried on by a motion.
@@ -72,6 +99,7 @@ impl Tracked {
         self.time_s = state.time_s + interval_s;
         self.tracks.clear();
         self.members.clear();
+        self.markers.clear();
         for target in &state.targets {
             let existence =
                 Existence::new(target.existence, target.hidden).after(interval_s, &model.settings).total();
@@ -92,6 +120,7 @@ impl Tracked {
             let first_member = self.members.len();
             if motion.is_none() {
                 self.members.extend_from_slice(state.members(target));
+                self.markers.extend_from_slice(state.markers(target));
             }
             self.tracks.push(Track {
                 id: target.id,
@@ -110,4 +139,8 @@ impl Tracked {
             });
         }
     }
+}
+
+fn own<'a, T>(of_all: &'a [T], track: &Track) -> &'a [T] {
+    of_all.get(track.first_member..).and_then(|rest| rest.get(..track.members)).unwrap_or(&[])
 }

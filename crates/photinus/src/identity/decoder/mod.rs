@@ -93,6 +93,17 @@ impl Decoder {
         Ok(Self { signals: book.words().iter().map(Signal::of).collect(), length: book.length(), settings })
     }
 
+    /// How many words the book has.
+    pub fn words(&self) -> usize {
+        self.signals.len()
+    }
+
+    /// How likely each word of the book is before anything is heard, if anything shines.
+    pub(crate) fn word_beforehand(&self) -> f64 {
+        let Settings { known, steady, unknown, .. } = self.settings;
+        known / (known + steady + unknown) / self.signals.len() as f64
+    }
+
     /// Seconds of a round of a word.
     pub fn round_s(&self) -> f64 {
         self.length as f64 / self.settings.bit_rate_hz

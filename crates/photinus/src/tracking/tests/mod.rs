@@ -4,5 +4,5 @@ mod accuracy;
 mod manoeuvres;
 mod order;
 mod parts;
-mod simulator;
+pub(crate) mod simulator;
 mod told;

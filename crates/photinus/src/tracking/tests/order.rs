@@ -37,8 +37,15 @@ fn track(
     tracker: &mut Tracker,
     (time_s, turned, located): &(f64, Turned, Located),
 ) -> Result<Tracked, TrackError> {
-    let look =
-        Look { time_s: *time_s, turned: Some(*turned), gravity: None, located, signals: &[], lit: &[] };
+    let look = Look {
+        time_s: *time_s,
+        turned: Some(*turned),
+        gravity: None,
+        located,
+        signals: &[],
+        lit: &[],
+        blinking: None,
+    };
     tracker.track(&look).cloned()
 }
 
@@ -158,6 +165,7 @@ fn one_lit_marker_keeps_a_track() {
             located: observer.locator.locate_spots(&spots, Some(&down(&still)), &mut |_| ()),
             signals: &[],
             lit: if frame < 30 { &[] } else { &told },
+            blinking: None,
         };
         let tracked = observer.tracker.track(&look).unwrap();
         assert_eq!(tracked.tracks.iter().map(|track| track.id).collect::<Vec<_>>(), [0], "frame {frame}");

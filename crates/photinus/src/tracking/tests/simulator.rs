@@ -13,8 +13,8 @@ use crate::pose;
 use crate::spots::{Extent, Spot};
 use crate::tracking::{Look, Settings, Track, TrackError, Tracked, Tracker, Turned};
 
-pub(super) const SIGMA_PX: f64 = 0.1;
-pub(super) const RATE_HZ: f64 = 30.0;
+pub(crate) const SIGMA_PX: f64 = 0.1;
+pub(crate) const RATE_HZ: f64 = 30.0;
 const RAD_PER_PX: f64 = 3.7673e-3;
 /// Light of an LED straight ahead at 1 m, and the least that the detector finds, grey levels.
 const POWER: f64 = 100_000.0;
@@ -25,23 +25,23 @@ const WINDOW_PX: f64 = 3.3;
 /// A vehicle's motion is drawn in such steps, s.
 const FINE_S: f64 = 1e-3;
 
-pub(super) fn camera() -> Camera {
+pub(crate) fn camera() -> Camera {
     let lens = Ideal::new(IdealLaw::Equidistant, [1.0 / RAD_PER_PX; 2], Pixel::new(375.5, 239.5)).unwrap();
     Camera::new(Model::Ideal(lens), 752, 480, None).unwrap()
 }
 
-pub(super) fn hexarotor() -> Airframe {
+pub(crate) fn hexarotor() -> Airframe {
     let ring = Ring { arms: 6, radius_m: 0.4, leds_per_arm: 1, splay_rad: 0.0 };
     Airframe::from_ring("hexarotor", ring).unwrap()
 }
 
-pub(super) fn quadrotor() -> Airframe {
+pub(crate) fn quadrotor() -> Airframe {
     let ring = Ring { arms: 4, radius_m: 0.245, leds_per_arm: 2, splay_rad: core::f64::consts::FRAC_PI_2 };
     Airframe::from_ring("quadrotor", ring).unwrap()
 }
 
 /// Spots as good as the airframe: nothing is off by a hand's work.
-pub(super) fn located_by() -> locator::Settings {
+pub(crate) fn located_by() -> locator::Settings {
     let pose = pose::Settings {
         marker_sigma_m: 0.0,
         scale_sigma: 0.0,
@@ -52,32 +52,32 @@ pub(super) fn located_by() -> locator::Settings {
 }
 
 /// An observer: camera, locator and tracker.
-pub(super) struct Observer {
-    pub(super) airframe: Airframe,
-    pub(super) locator: Locator,
-    pub(super) tracker: Tracker,
+pub(crate) struct Observer {
+    pub(crate) airframe: Airframe,
+    pub(crate) locator: Locator,
+    pub(crate) tracker: Tracker,
     /// How the camera was turned in the frame before.
     before: Rotation3<f64>,
     /// How well its gyro tells a turn from frame to frame, rad.
-    pub(super) gyro_sigma_rad: f64,
+    pub(crate) gyro_sigma_rad: f64,
 }
 
 impl Observer {
-    pub(super) fn new(airframe: Airframe, settings: Settings) -> Self {
+    pub(crate) fn new(airframe: Airframe, settings: Settings) -> Self {
         let locator = Locator::new(camera(), &airframe, None, located_by()).unwrap();
         let tracker = Tracker::new(camera(), &airframe, &located_by(), settings).unwrap();
         Self { airframe, locator, tracker, before: Rotation3::identity(), gyro_sigma_rad: 0.0 }
     }
 
     /// Forgets everything.
-    pub(super) fn forget(&mut self) {
+    pub(crate) fn forget(&mut self) {
         self.locator.forget();
         self.tracker.forget();
         self.before = Rotation3::identity();
     }
 
     /// Takes in a frame with these spots.
-    pub(super) fn see(
+    pub(crate) fn see(
         &mut self,
         time_s: f64,
         seen: &[Seen],
@@ -96,13 +96,14 @@ impl Observer {
             located: self.locator.locate_spots(&spots, Some(&gravity), &mut |_| ()),
             signals: &[],
             lit: &[],
+            blinking: None,
         };
         self.tracker.track(&look).cloned()
     }
 }
 
 /// The track that is nearest to a vehicle in units of its covariance, with that distance squared.
-pub(super) fn nearest<'a>(
+pub(crate) fn nearest<'a>(
     tracked: &'a Tracked,
     vehicle: &Vehicle,
     camera_from_world: &Rotation3<f64>,
@@ -112,31 +113,31 @@ pub(super) fn nearest<'a>(
     tracked.tracks.iter().map(off).min_by(|a, b| a.1.total_cmp(&b.1))
 }
 
-pub(super) fn normal(rng: &mut Pcg64) -> f64 {
+pub(crate) fn normal(rng: &mut Pcg64) -> f64 {
     StandardNormal.sample(rng)
 }
 
-pub(super) fn normal3(rng: &mut Pcg64) -> Vector3<f64> {
+pub(crate) fn normal3(rng: &mut Pcg64) -> Vector3<f64> {
     Vector3::from_fn(|_, _| normal(rng))
 }
 
 /// Where a vehicle is, in the world's axes relative to the camera.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Vehicle {
-    pub(super) position_m: Vector3<f64>,
-    pub(super) velocity_m_s: Vector3<f64>,
-    pub(super) yaw_rad: f64,
+pub(crate) struct Vehicle {
+    pub(crate) position_m: Vector3<f64>,
+    pub(crate) velocity_m_s: Vector3<f64>,
+    pub(crate) yaw_rad: f64,
     /// About the world's horizontal axes, rad.
-    pub(super) tilt_rad: [f64; 2],
+    pub(crate) tilt_rad: [f64; 2],
 }
 
 impl Vehicle {
-    pub(super) fn at(position_m: [f64; 3], velocity_m_s: [f64; 3], yaw_rad: f64) -> Self {
+    pub(crate) fn at(position_m: [f64; 3], velocity_m_s: [f64; 3], yaw_rad: f64) -> Self {
         let [position_m, velocity_m_s] = [position_m, velocity_m_s].map(Vector3::from);
         Self { position_m, velocity_m_s, yaw_rad, tilt_rad: [0.0; 2] }
     }
 
-    pub(super) fn world_from_body(&self) -> Rotation3<f64> {
+    pub(crate) fn world_from_body(&self) -> Rotation3<f64> {
         // Body z up is -y, body x is the camera's right at yaw 0.
         let upright = Rotation3::from_basis_unchecked(&[Vector3::x(), Vector3::z(), -Vector3::y()]);
         let [about_x, about_z] = self.tilt_rad;
@@ -146,7 +147,7 @@ impl Vehicle {
     }
 
     /// Flies on as the tracker's priors have it, in fine steps.
-    pub(super) fn drawn(
+    pub(crate) fn drawn(
         mut self,
         interval_s: f64,
         settings: &Settings,
@@ -169,7 +170,7 @@ impl Vehicle {
     }
 
     /// Flies on evenly.
-    pub(super) fn on(mut self, interval_s: f64) -> Self {
+    pub(crate) fn on(mut self, interval_s: f64) -> Self {
         self.position_m += self.velocity_m_s * interval_s;
         self
     }
@@ -177,14 +178,14 @@ impl Vehicle {
 
 /// A spot, and which marker it is: the brightest, and whether it is that one alone.
 #[derive(Clone, Debug)]
-pub(super) struct Seen {
-    pub(super) spot: Spot,
-    pub(super) marker: usize,
-    pub(super) is_alone: bool,
+pub(crate) struct Seen {
+    pub(crate) spot: Spot,
+    pub(crate) marker: usize,
+    pub(crate) is_alone: bool,
 }
 
 /// What the camera sees, turned against the world.
-pub(super) fn look(
+pub(crate) fn look(
     airframe: &Airframe,
     vehicles: &[Vehicle],
     camera_from_world: &Rotation3<f64>,
@@ -258,11 +259,11 @@ fn spot(centre: Pixel, flux: f64) -> Spot {
     }
 }
 
-pub(super) fn down(camera_from_world: &Rotation3<f64>) -> Unit<Vector3<f64>> {
+pub(crate) fn down(camera_from_world: &Rotation3<f64>) -> Unit<Vector3<f64>> {
     Unit::new_normalize(camera_from_world * Vector3::y())
 }
 
 /// The squared error in units of its covariance.
-pub(super) fn nees(error: &Vector3<f64>, covariance: &nalgebra::Matrix3<f64>) -> f64 {
+pub(crate) fn nees(error: &Vector3<f64>, covariance: &nalgebra::Matrix3<f64>) -> f64 {
     error.dot(&covariance.cholesky().unwrap().solve(error))
 }

@@ -4,6 +4,7 @@
 //! it: their poses say which spots are which markers and where to begin. Either way the weight is the density of the frame's spots under the vehicle's own
 //! prediction, so that a neighbour located again is a way to look at the same spots and no second sight of them.
 
+mod blinking;
 mod located;
 
 use super::branches::{Around, Branches, Pairs};
@@ -18,6 +19,7 @@ use crate::airframe::Airframe;
 use crate::camera::{Bearing, Watched};
 use crate::pose::{self, Assignment, Known, Measurement, Observation, Pose, Seen, Visible, Whitened};
 use crate::ranging::Interval;
+use blinking::Blinking;
 
 /// Neighbours at half of the sphere.
 const FIELD_SR: f64 = core::f64::consts::TAU;
@@ -68,6 +70,7 @@ pub(super) struct Ways {
     correlated: f64,
     whitened: Vec<Whitened>,
     lit: Vec<f64>,
+    blinking: Blinking,
     branches: Branches,
     tried: Vec<Pairs>,
     markers: Vec<Option<u16>>,
@@ -95,6 +98,7 @@ impl Ways {
             correlated: 1.0,
             whitened: Vec::new(),
             lit: Vec::with_capacity(markers),
+            blinking: Blinking::default(),
             branches: Branches::with_room(markers),
             tried: Vec::with_capacity(16),
             markers: Vec::new(),
@@ -106,7 +110,7 @@ impl Ways {
     }
 
     /// The ways of a vehicle with their places.
-    pub(super) fn of(&self, vehicle: usize) -> impl Iterator<Item = (usize, &Way)> {
+    pub(super) fn of(&self, vehicle: usize) -> impl Iterator<Item = (usize, &Way)> + Clone {
         let own = self.choices.iter().zip(&self.all).enumerate();
         own.filter(move |(_, (choice, _))| choice.vehicle == vehicle).map(|(index, (_, way))| (index, way))
     }
@@ -200,10 +204,24 @@ impl Ways {
                 *place = told.probability.clamp(0.0, 1.0);
             }
         }
+        if let Some(first) = components.first() {
+            let reach_rad = NEAR_RADII * model.airframe.max_radius_m() / distance_m;
+            let ahead = first.pose.position_m / distance_m;
+            self.blinking
+                .begin(target.id, moment.followed.iter().filter(|own| own.is_near(&ahead, reach_rad)));
+        }
+    }
+
+    /// How likely each marker is lit at a pose, where markers blink.
+    fn light(&mut self, scene: &Scene<'_>, pose: &Pose) {
+        if let Some(others_lit) = scene.moment.others_lit {
+            self.blinking.light(scene.model, pose, others_lit, &mut self.lit);
+        }
     }
 
     /// How likely no marker of a vehicle is seen that nothing hides.
     fn unseen(&mut self, scene: &Scene<'_>, target: &Target, component: &Component) -> f64 {
+        self.light(scene, &component.pose);
         self.markers.clear();
         self.markers.resize(self.observations.len(), None);
         self.gather_others(scene, component);
@@ -216,6 +234,7 @@ impl Ways {
     /// The ways that the prediction offers.
     fn grow(&mut self, scene: &Scene<'_>, origin: &Origin<'_>) {
         let Scene { model, moment, .. } = *scene;
+        self.light(scene, &origin.prior.component.pose);
         let around = Around {
             airframe: &model.airframe,
             observations: &self.observations,
@@ -246,6 +265,7 @@ impl Ways {
             signals += signal_nats(model, moment, usize::from(spot), usize::from(marker));
         }
         self.gather_others(scene, &start);
+        self.light(scene, &start.pose);
         let updated =
             self.measured(scene, &start.pose, |measurement| origin.prior.update(measurement, &start));
         let Some(updated) = updated else { return };

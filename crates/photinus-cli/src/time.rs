@@ -1,0 +1,221 @@
+//! What frames with times allow: vehicles are followed from one to the next, and named where they blink.
+//!
+//! In: the dataset's book of words, its vehicles, its gyro or odometry. Out: [`Watch`], which completes the record of each frame.
+
+use nalgebra::{Rotation3, UnitQuaternion, Vector3};
+use photinus::airframe::Airframe;
+use photinus::camera::Camera;
+use photinus::frame::Mask;
+use photinus::locator::{Located, Settings};
+use photinus::lookout::{Fleet, Glance, Lookout, Name, Vehicle};
+use photinus::tracking::{self, Placed, Turned};
+use photinus_io::calibration::MountingFile;
+use photinus_io::dataset::{Dataset, OdometryRow};
+
+use crate::failure::Failure;
+use crate::input::Entry;
+
+/// The exposure of frames of which nobody says it, s.
+const EXPOSURE_S: f64 = 1e-3;
+/// What an odometry's attitude is off by from frame to frame, rad per axis.
+const ODOMETRY_SIGMA_RAD: f64 = 3e-3;
+/// Attitudes of an odometry that are this far apart, s, say nothing of what is between.
+const LONGEST_GAP_S: f64 = 0.25;
+
+/// The vehicles of a dataset that blink, and are built like this.
+///
+/// # Errors
+/// [`Failure`] when their words or rates make no fleet.
+pub(crate) fn fleet(
+    dataset: Option<&Dataset>,
+    airframe: &Airframe,
+    mut warn: impl FnMut(String),
+) -> Result<Option<Fleet>, Failure> {
+    let Some(dataset) = dataset else { return Ok(None) };
+    let Some(book) = dataset.codes() else { return Ok(None) };
+    if dataset.vehicles().is_empty() {
+        warn(
+            "codes are given, but no vehicles: nobody can be named; list who blinks what in a vehicles.toml"
+                .to_owned(),
+        );
+        return Ok(None);
+    }
+    let mut vehicles = Vec::new();
+    for vehicle in dataset.vehicles() {
+        let Some(blink) = &vehicle.blink else { continue };
+        if !is_built_like(&vehicle.airframe, airframe) {
+            let file = vehicle.airframe_file.display();
+            warn(format!(
+                "vehicle {} is not looked for: it is built as {file}, and one kind of airframe is located at a time",
+                vehicle.id
+            ));
+            continue;
+        }
+        vehicles.push((Vehicle { id: vehicle.id, words: blink.words.clone() }, blink.bit_rate_hz));
+    }
+    if vehicles.is_empty() {
+        return Ok(None);
+    }
+    let refuse = |error: photinus::lookout::FleetError| {
+        let file = dataset.info().vehicles.as_deref().map(|named| dataset.path(named)).unwrap_or_default();
+        Failure::Input(format!("{}: {error}; or locate with --no-time", file.display()))
+    };
+    Fleet::new(book.clone(), vehicles).map(Some).map_err(refuse)
+}
+
+/// Names of airframes are for people: LEDs count.
+fn is_built_like(one: &Airframe, other: &Airframe) -> bool {
+    one.leds() == other.leds()
+}
+
+/// What follows the vehicles that one camera sees.
+pub(crate) struct Watch {
+    lookout: Lookout,
+    has_names: bool,
+    exposure_s: f64,
+    turns: Turns,
+    last_s: Option<f64>,
+    /// Said once of each kind.
+    told: Vec<&'static str>,
+    contested: Vec<u32>,
+    remarks: Vec<String>,
+}
+
+/// What tells how a camera turned.
+pub(crate) enum Turns {
+    /// Nothing does.
+    Unknown,
+    /// Rates in the camera's own frame.
+    Gyro(Vec<(f64, Vector3<f64>)>),
+    /// Attitudes odometry_from_camera.
+    Attitudes(Vec<(f64, UnitQuaternion<f64>)>),
+}
+
+impl Turns {
+    /// What a dataset says of a camera that is mounted so: its gyro, or else its odometry. A dataset without mountings has its gyro in the camera's frame.
+    ///
+    /// # Errors
+    /// As [`Dataset::imu`] and [`Dataset::odometry`].
+    pub(crate) fn of(
+        dataset: &Dataset,
+        is_rig: bool,
+        mounting: Option<&MountingFile>,
+    ) -> photinus_io::Result<Self> {
+        let body_from_camera = mounting.map(|mounting| mounting.body_from_camera);
+        if let Some(rows) = dataset.imu()? {
+            let camera_from_part = match (is_rig, body_from_camera) {
+                (true, Some(body_from_camera)) => body_from_camera.inverse(),
+                (true, None) => return Ok(Self::Unknown),
+                (false, _) => UnitQuaternion::identity(),
+            };
+            let rate = |row: &photinus_io::dataset::ImuRow| (row.time_s, camera_from_part * row.turn_rad_s);
+            return Ok(Self::Gyro(rows.iter().map(rate).collect()));
+        }
+        let (Some(rows), Some(body_from_camera)) = (dataset.odometry()?, body_from_camera) else {
+            return Ok(Self::Unknown);
+        };
+        let attitude = |row: &OdometryRow| (row.time_s, row.pose.rotation * body_from_camera);
+        Ok(Self::Attitudes(rows.iter().map(attitude).collect()))
+    }
+
+    /// How the camera turned between two times.
+    fn between(&self, from_s: f64, to_s: f64) -> Option<Turned> {
+        match self {
+            Self::Unknown => None,
+            Self::Gyro(rates) => tracking::turned(rates, from_s, to_s),
+            Self::Attitudes(attitudes) => {
+                let [before, now] = [attitude_at(attitudes, from_s)?, attitude_at(attitudes, to_s)?];
+                let now_from_before: Rotation3<f64> = (now.inverse() * before).to_rotation_matrix();
+                Some(Turned { now_from_before, sigma_rad: ODOMETRY_SIGMA_RAD })
+            }
+        }
+    }
+}
+
+/// The attitude at a time, turned evenly between those before and after it.
+fn attitude_at(attitudes: &[(f64, UnitQuaternion<f64>)], time_s: f64) -> Option<UnitQuaternion<f64>> {
+    let after = attitudes.partition_point(|attitude| attitude.0 < time_s);
+    let (end_s, end) = *attitudes.get(after)?;
+    if end_s <= time_s {
+        return Some(end);
+    }
+    let (begin_s, begin) = *attitudes.get(after.checked_sub(1)?)?;
+    let share = (time_s - begin_s) / (end_s - begin_s);
+    let turn = (begin.inverse() * end).scaled_axis() * share;
+    (end_s - begin_s <= LONGEST_GAP_S).then(|| begin * UnitQuaternion::from_scaled_axis(turn))
+}
+
+impl Watch {
+    /// For frames of a camera that are exposed so long.
+    ///
+    /// # Errors
+    /// [`Failure`] when a setting has no meaning.
+    pub(crate) fn new(
+        camera: &Camera,
+        airframe: &Airframe,
+        settings: &Settings,
+        mask: Option<&Mask>,
+        (fleet, turns, exposure_us): (Option<&Fleet>, Turns, Option<f64>),
+    ) -> Result<Self, Failure> {
+        let refuse = |error: photinus::lookout::LookoutError| Failure::Input(error.to_string());
+        let mut lookout =
+            Lookout::new(camera.clone(), airframe, settings, tracking::Settings::default(), fleet)
+                .map_err(refuse)?;
+        lookout.set_mask(mask.cloned()).map_err(refuse)?;
+        Ok(Self {
+            lookout,
+            has_names: fleet.is_some(),
+            exposure_s: exposure_us.map_or(EXPOSURE_S, |us| us * 1e-6),
+            turns,
+            last_s: None,
+            told: Vec::new(),
+            contested: Vec::new(),
+            remarks: Vec::new(),
+        })
+    }
+
+    /// Completes the record of a frame that was located, if it has a time that comes after the one before.
+    pub(crate) fn follow(&mut self, entry: &mut Entry, located: &Located, airframe: &str) {
+        let Some(time_s) = entry.record.time_s else { return };
+        let turned = self.last_s.and_then(|last_s| self.turns.between(last_s, time_s));
+        let glance = Glance { time_s, exposure_s: self.exposure_s, turned, gravity: entry.gravity, located };
+        let frame = entry.record.frame.unwrap_or_default();
+        if let Err(error) = self.lookout.look(&glance) {
+            self.remark("refused", || format!("frame {frame} tells nothing of tracks: {error}"));
+            return;
+        }
+        let (tracked, names) = (self.lookout.tracked(), self.has_names.then(|| self.lookout.names()));
+        entry.record.put_tracked(tracked, names, airframe);
+        let placed = tracked.placed;
+        if placed != Placed::Late {
+            self.last_s = Some(time_s);
+        }
+        if placed == Placed::Reset {
+            self.remark("reset", || {
+                format!("frame {frame}: its time is of another clock, all tracks begin anew")
+            });
+        }
+        self.tell_contested(frame);
+    }
+
+    /// What a user should know, since it was asked for last.
+    pub(crate) fn remarks(&mut self) -> Vec<String> {
+        std::mem::take(&mut self.remarks)
+    }
+
+    fn remark(&mut self, kind: &'static str, text: impl FnOnce() -> String) {
+        if !self.told.contains(&kind) {
+            self.told.push(kind);
+            self.remarks.push(format!("{} (said once)", text()));
+        }
+    }
+
+    /// Two that blink the words of one.
+    fn tell_contested(&mut self, frame: u64) {
+        let is_new = |name: &&Name| name.is_contested && !self.contested.contains(&name.id);
+        let Some(name) = self.lookout.names().iter().find(is_new) else { return };
+        let id = name.id;
+        self.contested.push(id);
+        self.remarks.push(format!("frame {frame}: two tracks blink the words of vehicle {id}; none of them has its id meanwhile (said once)"));
+    }
+}

@@ -1,0 +1,116 @@
+//! Which marker track belongs to which vehicle's track, as which of its markers: told by the sightings that both have, and kept while a marker is dark.
+
+use crate::following::{Follower, MarkerTrack};
+use crate::tracking::Tracked;
+
+/// What a first sighting in common says.
+const FIRST: f64 = 0.5;
+/// By what share of what is missing to 1 each one more draws nearer, and by what share one with another vehicle takes away.
+const NEARER: f64 = 0.25;
+const FARTHER: f64 = 0.5;
+/// Below this it belongs to the other.
+const LEAST: f64 = 0.25;
+/// No marker belongs to a vehicle more surely: what looks like one light may be two.
+const MOST: f64 = 0.999;
+
+/// A marker track, and the vehicle that it belongs to.
+#[derive(Debug, Default)]
+pub(super) struct Belonging {
+    /// Number of the marker track.
+    pub(super) number: u64,
+    /// The vehicle's track.
+    pub(super) track: u64,
+    /// The marker of the airframe, as the track is turned.
+    pub(super) marker: Option<u16>,
+    /// How sure that is, 0 to 1.
+    pub(super) share: f64,
+    /// How likely it is each word of the book; empty where too little was heard.
+    pub(super) words: Vec<f64>,
+}
+
+/// All of them. Keeps its room.
+#[derive(Debug, Default)]
+pub(super) struct Belongings {
+    all: Vec<Belonging>,
+    spare: Vec<Belonging>,
+}
+
+impl Belongings {
+    /// Those of a vehicle.
+    pub(super) fn of(&self, track: u64) -> impl Iterator<Item = &Belonging> {
+        self.all.iter().filter(move |own| own.track == track)
+    }
+
+    /// That of a marker track.
+    pub(super) fn of_marker(&self, number: u64) -> Option<&Belonging> {
+        self.all.iter().find(|own| own.number == number)
+    }
+
+    /// Moves all on by a frame. Those whose marker is followed no more, or whose vehicle is not, end: `ended` is told the last that was heard of each.
+    pub(super) fn follow(
+        &mut self,
+        follower: &Follower,
+        tracked: &Tracked,
+        mut ended: impl FnMut(&Belonging),
+    ) {
+        let (markers, spare) = (follower.tracks(), &mut self.spare);
+        let is_over = |own: &mut Belonging| {
+            find(markers, own.number).is_none() || !tracked.tracks.iter().any(|track| track.id == own.track)
+        };
+        for over in self.all.extract_if(.., is_over) {
+            ended(&over);
+            spare.push(over);
+        }
+        for marker in markers {
+            let seen = marker.sighting.and_then(|sighting| whose(tracked, sighting));
+            let known = self.all.iter_mut().find(|own| own.number == marker.number);
+            match (known, seen) {
+                (Some(own), Some((track, place))) => own.see(track, place),
+                (None, Some((track, place))) => {
+                    let mut own = spare.pop().unwrap_or_default();
+                    (own.number, own.track, own.marker) = (marker.number, track, place);
+                    own.share = FIRST;
+                    self.all.push(own);
+                }
+                (_, None) => {}
+            }
+        }
+        for own in &mut self.all {
+            follower.tell_words(own.number, &mut own.words);
+        }
+    }
+
+    /// Forgets all.
+    pub(super) fn forget(&mut self) {
+        self.spare.append(&mut self.all);
+    }
+}
+
+impl Belonging {
+    /// It has a sighting in common with a vehicle.
+    fn see(&mut self, track: u64, marker: Option<u16>) {
+        if track == self.track {
+            self.share = (self.share + NEARER * (1.0 - self.share)).min(MOST);
+            self.marker = marker.or(self.marker);
+            return;
+        }
+        self.share *= 1.0 - FARTHER;
+        if self.share < LEAST {
+            (self.track, self.marker, self.share) = (track, marker, FIRST);
+        }
+    }
+}
+
+/// The marker track of a number; they ascend.
+fn find(markers: &[MarkerTrack], number: u64) -> Option<&MarkerTrack> {
+    let place = markers.binary_search_by_key(&number, |marker| marker.number).ok()?;
+    markers.get(place)
+}
+
+/// The vehicle that has a sighting, and which of its markers it is.
+fn whose(tracked: &Tracked, sighting: usize) -> Option<(u64, Option<u16>)> {
+    tracked.tracks.iter().find_map(|track| {
+        let place = tracked.members(track).iter().position(|&own| own == sighting)?;
+        Some((track.id, tracked.markers(track)[place]))
+    })
+}

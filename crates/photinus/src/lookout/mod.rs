@@ -1,0 +1,226 @@
+//! Located frames, one after the other -> vehicles that are followed, and who each of them is.
+//!
+//! ```text
+//! frame, when and how turned   -> Glance
+//! sightings -> marker tracks   through their dark frames, each with its word        crate::following, crate::identity
+//! which of them will shine     what is dark is not held against a vehicle
+//! sightings -> vehicles        where, how fast, how turned                          crate::tracking
+//! marker tracks -> vehicles    whose marker each is                                 belonging
+//! words -> names               who a vehicle is, with probability                   naming, fleet
+//! ```
+//!
+//! ```no_run
+//! # use photinus::{locator::{self, Locator}, lookout::{Glance, Lookout}, tracking, airframe::Airframe, camera::Camera, frame::FrameView};
+//! # fn see(camera: Camera, airframe: Airframe, frame: FrameView<'_>) -> Result<(), Box<dyn std::error::Error>> {
+//! let settings = locator::Settings::default();
+//! let mut locator = Locator::new(camera.clone(), &airframe, None, settings)?;
+//! let mut lookout = Lookout::new(camera, &airframe, &settings, tracking::Settings::default(), None)?;
+//! // and for every frame
+//! let located = locator.locate(&frame, None, &mut |_| ())?;
+//! let seen = lookout.look(&Glance { time_s: 0.0, exposure_s: 1e-3, turned: None, gravity: None, located })?;
+//! for track in &seen.tracks {
+//!     println!("{} at {}", track.id, track.position_m);
+//! }
+//! # Ok(())
+//! # }
+//! ```
+
+mod belonging;
+mod fleet;
+mod naming;
+#[cfg(test)]
+mod tests;
+
+use nalgebra::{Unit, Vector3};
+
+use crate::airframe::Airframe;
+use crate::camera::{Camera, Watched};
+use crate::following::{self, Follower, Frame, MarkerTrack};
+use crate::frame::Mask;
+use crate::identity::decoder::{self, Decoder, DecoderError};
+use crate::locator::{self, Located};
+use crate::tracking::{self, Followed, Look, Placed, TrackError, Tracked, Tracker, TrackerError, Turned};
+use belonging::Belongings;
+pub use fleet::{Fleet, FleetError, Vehicle};
+pub use naming::Name;
+use naming::Naming;
+
+/// A marker of which nothing is known is lit so likely: of the bits of a word about half are.
+const ANY_BIT: f64 = 0.5;
+
+/// A frame that was located.
+#[derive(Clone, Copy, Debug)]
+pub struct Glance<'a> {
+    /// When its exposure began, s, on a clock of the caller's.
+    pub time_s: f64,
+    /// How long it lasted, s.
+    pub exposure_s: f64,
+    /// How the camera turned since the frame before, where that is known.
+    pub turned: Option<Turned>,
+    /// Down in the camera frame, where it is known.
+    pub gravity: Option<Unit<Vector3<f64>>>,
+    /// What the locator makes of it.
+    pub located: &'a Located,
+}
+
+/// Follows the vehicles that one camera sees, all with the same airframe, and says who they are. Keeps its room from frame to frame, so that a warm one
+/// allocates nothing.
+#[derive(Debug)]
+pub struct Lookout {
+    camera: Camera,
+    mask: Option<Mask>,
+    faintest_light: f64,
+    tracker: Tracker,
+    tracked: Tracked,
+    blinking: Option<Blinking>,
+}
+
+/// What following words takes.
+#[derive(Debug)]
+struct Blinking {
+    follower: Follower,
+    belongings: Belongings,
+    naming: Naming,
+    /// Where they are expected in a frame, and whether lit.
+    followed: Vec<Followed>,
+}
+
+/// Why there can be no lookout.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum LookoutError {
+    /// The tracker's settings.
+    #[error("{0}")]
+    Tracker(#[from] TrackerError),
+    /// What is believed of words.
+    #[error("{0}")]
+    Decoder(#[from] DecoderError),
+    /// What is believed of markers.
+    #[error("{0}")]
+    Following(#[from] following::SettingsError),
+}
+
+impl Lookout {
+    /// A lookout for what a locator with these settings tells. Without a fleet LEDs shine steadily, and nobody has a name.
+    ///
+    /// # Errors
+    /// [`LookoutError`] when a setting has no meaning.
+    pub fn new(
+        camera: Camera,
+        airframe: &Airframe,
+        locator: &locator::Settings,
+        settings: tracking::Settings,
+        fleet: Option<&Fleet>,
+    ) -> Result<Self, LookoutError> {
+        let tracker = Tracker::new(camera.clone(), airframe, locator, settings)?;
+        let blinking = fleet.map(|fleet| Blinking::new(&camera, airframe, fleet)).transpose()?;
+        let faintest_light = locator::faintest_light(&locator.spots);
+        Ok(Self { camera, mask: None, faintest_light, tracker, tracked: Tracked::default(), blinking })
+    }
+
+    /// Sets where the locator does not look.
+    ///
+    /// # Errors
+    /// [`LookoutError`] when the mask is not of the camera's size.
+    pub fn set_mask(&mut self, mask: Option<Mask>) -> Result<(), LookoutError> {
+        self.tracker.set_mask(mask.clone())?;
+        self.mask = mask;
+        Ok(())
+    }
+
+    /// Takes a frame in, and tells the vehicles at the time of the newest frame: late frames and clocks that jump are as for [`Tracker::track`]; what
+    /// blinks in a late frame is not heard. Where signals tell which turn of a symmetric airframe is the true one, attitudes are turned by it.
+    ///
+    /// # Errors
+    /// As [`Tracker::track`]; nothing is changed then.
+    pub fn look(&mut self, glance: &Glance<'_>) -> Result<&Tracked, TrackError> {
+        let Glance { time_s, turned, gravity, located, .. } = *glance;
+        let mut look = Look { time_s, turned, gravity, located, signals: &[], lit: &[], blinking: None };
+        look.check()?;
+        if let Some(blinking) = &mut self.blinking {
+            let watched = Watched::new(&self.camera, self.mask.as_ref());
+            look.blinking = Some(blinking.hear(glance, self.faintest_light, watched, self.tracked.time_s));
+        }
+        self.tracked.take_over(self.tracker.track(&look)?);
+        if let Some(blinking) = &mut self.blinking {
+            blinking.conclude(&mut self.tracked);
+        }
+        Ok(&self.tracked)
+    }
+
+    /// What it told last.
+    pub fn tracked(&self) -> &Tracked {
+        &self.tracked
+    }
+
+    /// The markers that were followed last, oldest first; none without a fleet.
+    pub fn markers(&self) -> &[MarkerTrack] {
+        self.blinking.as_ref().map_or(&[], |blinking| blinking.follower.tracks())
+    }
+
+    /// Who the tracks may be, one after the other, the likeliest first: those of the fleet that are likelier than a hundredth.
+    pub fn names(&self) -> &[Name] {
+        self.blinking.as_ref().map_or(&[], |blinking| blinking.naming.names())
+    }
+
+    /// Who a track most likely is, if anybody of the fleet.
+    pub fn name(&self, track: u64) -> Option<&Name> {
+        self.names().iter().find(|name| name.track == track)
+    }
+}
+
+impl Blinking {
+    fn new(camera: &Camera, airframe: &Airframe, fleet: &Fleet) -> Result<Self, LookoutError> {
+        let settings = decoder::Settings { bit_rate_hz: fleet.bit_rate_hz(), ..decoder::Settings::default() };
+        let decoder = Decoder::new(fleet.book(), settings)?;
+        let naming = Naming::new(fleet, airframe, decoder.word_beforehand());
+        let follower = Follower::new(camera, Some(decoder), following::Settings::default())?;
+        Ok(Self { follower, belongings: Belongings::default(), naming, followed: Vec::new() })
+    }
+
+    /// Follows the markers, and says where each is and whether it must be lit in this frame.
+    fn hear(
+        &mut self,
+        glance: &Glance<'_>,
+        faintest_light: f64,
+        watched: Watched<'_>,
+        last_s: f64,
+    ) -> tracking::Blinking<'_> {
+        if (glance.time_s - last_s).abs() > Tracker::JUMP_S {
+            self.follower.restart();
+        }
+        let frame = Frame {
+            time_s: glance.time_s,
+            exposure_s: glance.exposure_s,
+            sightings: &glance.located.sightings,
+            faintest_light,
+            turn: glance.turned.map(following::Turn::from),
+            watched,
+        };
+        self.followed.clear();
+        // A late frame is not heard.
+        if let Ok(markers) = self.follower.follow(&frame) {
+            let signal = |number: u64| self.naming.signal(self.belongings.of_marker(number)?);
+            self.followed.extend(markers.iter().map(|marker| Followed {
+                bearing: marker.bearing,
+                lit: marker.lit,
+                signal: signal(marker.number),
+            }));
+        }
+        tracking::Blinking { followed: &self.followed, others: ANY_BIT }
+    }
+
+    /// Gives the markers to the vehicles, names these, and turns them as their signals say.
+    fn conclude(&mut self, tracked: &mut Tracked) {
+        let Self { follower, belongings, naming, .. } = self;
+        if tracked.placed == Placed::Reset {
+            belongings.forget();
+            naming.forget();
+        }
+        if tracked.placed != Placed::Late {
+            belongings.follow(follower, tracked, |over| naming.remember(over));
+        }
+        naming.name(tracked, belongings);
+        tracked.turn(|track| naming.turn(track));
+    }
+}

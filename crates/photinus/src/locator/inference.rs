@@ -44,6 +44,8 @@ const ROUNDS: usize = 2;
 const FEWEST_NEIGHBOURS: f64 = 0.2;
 /// Rounds of telling how dense clutter is from what is explained, and what is explained from that.
 const CLUTTER_ROUNDS: usize = 2;
+/// Who asks for neighbours less likely than this is told what a first look has as clutter, too.
+const UNLIKELY: f64 = 1e-3;
 /// A look that changes no more than this, nats, is the last.
 const SMALL_GAIN: f64 = 1e-3;
 /// Weighing a candidate in full is as much work as so many first looks.
@@ -203,7 +205,8 @@ impl Inference {
         let context = Context { clutter: first_clutter.log_density(), log_neighbours, ..*context };
         candidates.clear();
         promising.clear();
-        promising.extend((0..groups.len()).filter(|&group| groups.gain(group) > POOR_GAIN));
+        let poor_gain = if self.min_probability > UNLIKELY { POOR_GAIN } else { f64::NEG_INFINITY };
+        promising.extend((0..groups.len()).filter(|&group| groups.gain(group) > poor_gain));
         promising.sort_unstable_by(|&a, &b| groups.gain(b).total_cmp(&groups.gain(a)).then(a.cmp(&b)));
         for &group in promising.iter() {
             if work.weigh() {

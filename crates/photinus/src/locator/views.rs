@@ -130,7 +130,11 @@ impl Arrangements {
             None => [0, self.rows.len()],
         };
         let quads_before = |row: usize| row.checked_sub(1).map_or(0, |before| self.rows[before].1);
-        let [first, end] = [first, end].map(quads_before);
+        let [first, end] = match [first, end].map(quads_before) {
+            // Where so many markers never show from there, the nearest that does is as good as any.
+            [first, end] if first == end => [0, self.quads.len()],
+            band => band,
+        };
         Band { all: &self.all[LANES * first..LANES * end], quads: &self.quads[first..end] }
     }
 

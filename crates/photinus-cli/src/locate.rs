@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use nalgebra::{Unit, Vector3};
 use photinus::camera::{Bearing, Camera};
 use photinus::locator::{Locator, LocatorError, Settings, Stage};
+use photinus::lookout::Fleet;
 use photinus::ranging::SpotCurve;
 use photinus::spots::Spot;
 use photinus_io::airframe::{AirframeFile, Tolerances};
@@ -49,7 +50,8 @@ standard deviation, bounds that truth never leaves, and where it is seen from
 the camera; of a vehicle that blinks words of the dataset, who it is.
 
 Frames that have times are followed: results have tracks with velocities, also
-of who is hidden or dark, and ids where the dataset says who blinks what.
+of who is hidden or dark, and ids where the dataset says who blinks what. Fleets
+whose vehicles carry several signals each are not followed yet.
 
 Exit codes: 0 done, 1 some frames failed or writing did, 2 bad usage or input,
 or no frame could be used.";
@@ -97,8 +99,8 @@ pub(crate) struct Args {
     /// Every frame by itself: no tracks, no velocities, no ids
     #[arg(long)]
     no_time: bool,
-    /// What happens anyway
-    #[arg(long, hide = true, conflicts_with = "no_time")]
+    /// Follow also fleets whose vehicles carry several signals each: slow, and who is who is often wrong
+    #[arg(long, conflicts_with = "no_time")]
     track: bool,
     /// Write a table with a row per neighbour; - is standard output
     #[arg(long, value_name = "FILE")]
@@ -161,6 +163,14 @@ impl Args {
         let warn = |text: String| terminal.warning(format_args!("{}: {text}", input.name));
         let dataset = input.dataset.as_ref().filter(|_| !self.no_time);
         let fleet = time::fleet(dataset, airframe, warn)?;
+        let several = fleet.as_ref().is_some_and(Fleet::has_several_signals) && !self.track;
+        if several {
+            terminal.warning(format_args!(
+                "{}: its vehicles carry several signals each, and are not followed: every frame is located by itself (--no-time says so at once, --track follows all the same)",
+                input.name
+            ));
+        }
+        let no_time = self.no_time || several;
         let view = |(of_dataset, mask): (Option<&DatasetCamera>, Option<MaskFile>)| {
             let named = of_dataset.zip(input.dataset.as_ref());
             let path = needed(self.camera.as_deref(), "camera", named.map(|(c, d)| d.path(&c.camera)))?;
@@ -178,7 +188,7 @@ impl Args {
                 Locator::new(camera.clone(), airframe, curve, self.settings(tolerances)).map_err(refuse)?;
             let mask = mask_of(mask.as_ref());
             locator.set_mask(mask.cloned()).map_err(refuse)?;
-            if self.no_time {
+            if no_time {
                 return Ok(View { camera, mounting, locator, watch: None });
             }
             let is_rig = of_dataset.is_some_and(|camera| camera.name.is_some());

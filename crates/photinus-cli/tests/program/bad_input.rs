@@ -165,9 +165,9 @@ fn airframes_that_are_none() {
     };
     refuses(
         &stage,
-        &with("one.txt", "0.1 0 0 0 0 0 0\n"),
+        &with("none.toml", "name = \"none\"\nled = []\n"),
         2,
-        &["one.txt: 1 LEDs form 1 marker(s)", "; list every LED"],
+        &["none.toml: no LED: an airframe has at least one", "; list every LED"],
     );
     let twice = "0.1 0 0 0 0 0 0\n-0.1 0 0 0 0 0 0\n0.1 0 0 0 0 0 1\n";
     refuses(

@@ -53,6 +53,12 @@ pub enum FleetError {
 }
 
 impl Fleet {
+    /// Whether a vehicle carries several signals, each with a word of its own.
+    #[must_use]
+    pub fn has_several_signals(&self) -> bool {
+        self.vehicles.iter().any(|vehicle| vehicle.words.len() > 1)
+    }
+
     /// A fleet whose vehicles each blink so many bits per second.
     ///
     /// # Errors

@@ -65,6 +65,7 @@ fn record(number: u64, time_s: f64, place: &Vector3<f64>, sigma_m: f64) -> Frame
     let neighbour = NeighbourRecord {
         track: None,
         id: None,
+        id_probability: None,
         airframe: "quad".to_owned(),
         spots: vec![],
         bearing: (place / far_m).into(),
@@ -80,6 +81,8 @@ fn record(number: u64, time_s: f64, place: &Vector3<f64>, sigma_m: f64) -> Frame
         position_covariance_m2: Some((Matrix3::identity() * sigma_m * sigma_m).into()),
         position_body_m: None,
         position_body_covariance_m2: None,
+        velocity_m_s: None,
+        velocity_covariance_m2_s2: None,
         orientation_xyzw: None,
         orientation_covariance_rad2: None,
         probability: None,

@@ -25,7 +25,7 @@ def crossing(folder: Path, more: str) -> Path:
 
 
 def test_a_dataset(program: Program, records: list[photinus.Record], tmp_path: Path) -> None:
-    program("locate", EXAMPLE, "--out", tmp_path / "r.jsonl", "-q")
+    program("locate", "--no-time", EXAMPLE, "--out", tmp_path / "r.jsonl", "-q")
     assert [record.to_json() for record in records] == lines(tmp_path / "r.jsonl")
     assert sum(len(record.neighbours) for record in records) >= 3 * len(records)
 
@@ -34,7 +34,7 @@ def test_a_simulation(program: Program, tmp_path: Path) -> None:
     scene = ROOT / "scenes" / "swarm-12.toml"
     folder = tmp_path / "swarm"
     program("simulate", scene, "--frames", 4, "--seed", 7, "--out", folder, "-q")
-    program("locate", folder, "--out", tmp_path / "r.jsonl", "-q")
+    program("locate", "--no-time", folder, "--out", tmp_path / "r.jsonl", "-q")
 
     simulation = photinus.simulate(scene, frames=4, seed=7)
     dataset = photinus.Dataset.read(folder)
@@ -69,7 +69,7 @@ def test_one_of_several_cameras(program: Program, tmp_path: Path) -> None:
     left = f'name = "left"\nfile = "{ROOT}/scenes/cameras/bluefox-dsl215.toml"\nposition_m = [0, 0.1, 0]\nyaw_deg = 20'
     scene = crossing(tmp_path, f"[[camera]]\n{left}\nclock = {{ offset_s = 0.002, ppm = 20.0 }}")
     program("simulate", scene, "--frames", 3, "--out", tmp_path / "flight", "-q")
-    program("locate", tmp_path / "flight", "--out", tmp_path / "r.jsonl", "-q")
+    program("locate", "--no-time", tmp_path / "flight", "--out", tmp_path / "r.jsonl", "-q")
     theirs = [line for line in lines(tmp_path / "r.jsonl") if '"camera":"left"' in line]
 
     with pytest.raises(photinus.SettingError, match="front, left"):
@@ -105,7 +105,7 @@ def test_real_photos(program: Program, data: Path, tmp_path: Path) -> None:
         "--min-probability",
         0,
     ]
-    program("locate", *photos, *options, "--out", tmp_path / "r.jsonl", "-q")
+    program("locate", "--no-time", *photos, *options, "--out", tmp_path / "r.jsonl", "-q")
     with pytest.warns(photinus.PhotinusWarning, match="the inverse polynomial disagrees"):
         seen_by = photinus.Camera.read(camera)
     locator = photinus.Locator(seen_by, photinus.Airframe.read(airframe), max_tilt=20, min_probability=0)
@@ -134,7 +134,7 @@ def test_masks_and_curves(program: Program, tmp_path: Path, example: photinus.Da
     mask[top : bottom + 1, left : right + 1] = 0
     (tmp_path / "mask.pgm").write_bytes(b"P5 %d %d 255\n" % mask.shape[::-1] + mask.tobytes())
     options = ["--mask", tmp_path / "mask.pgm", "--spot-curve", "paper", "--threshold", 200, "--frames", 1]
-    program("locate", EXAMPLE, *options, "--out", tmp_path / "r.jsonl", "-q")
+    program("locate", "--no-time", EXAMPLE, *options, "--out", tmp_path / "r.jsonl", "-q")
     for given in (mask, tmp_path / "mask.pgm"):
         locator = photinus.Locator(example.camera, example.airframe, mask=given, spot_curve="paper", threshold=200)
         record = locator.locate(frame.image, gravity=frame.gravity, time=frame.time_s, frame=frame.frame)
@@ -152,7 +152,7 @@ def test_a_mounting(program: Program, tmp_path: Path, example: photinus.Dataset)
         position_covariance_m2 = [[1e-6, 0.0, 0.0], [0.0, 1e-6, 0.0], [0.0, 0.0, 1e-6]]
         """
     )
-    program("locate", EXAMPLE, "--mounting", mounting, "--frames", 1, "--out", tmp_path / "r.jsonl", "-q")
+    program("locate", "--no-time", EXAMPLE, "--mounting", mounting, "--frames", 1, "--out", tmp_path / "r.jsonl", "-q")
     locator, frame = photinus.Locator(example.camera, example.airframe, mounting=mounting), next(iter(example))
     record = locator.locate(frame.image, gravity=frame.gravity, time=frame.time_s, frame=frame.frame)
     assert [record.to_json()] == lines(tmp_path / "r.jsonl")
@@ -167,7 +167,7 @@ def test_a_mounting(program: Program, tmp_path: Path, example: photinus.Dataset)
 def test_spots_of_another_detector(program: Program, tmp_path: Path, example: photinus.Dataset) -> None:
     program("detect", EXAMPLE, "--out", tmp_path / "spots.jsonl", "-q")
     files = ["--camera", EXAMPLE / "camera.toml", "--airframe", EXAMPLE / "airframe.toml"]
-    program("locate", "--spots", tmp_path / "spots.jsonl", *files, "--out", tmp_path / "r.jsonl", "-q")
+    program("locate", "--no-time", "--spots", tmp_path / "spots.jsonl", *files, "--out", tmp_path / "r.jsonl", "-q")
     locator = photinus.Locator(example.camera, example.airframe)
     given = photinus.read_results(tmp_path / "spots.jsonl")
     assert [locator.locate_spots(record) for record in given] == photinus.read_results(tmp_path / "r.jsonl")
@@ -183,7 +183,7 @@ def test_a_calibration(program: Program, data: Path, tmp_path: Path) -> None:
 
 
 def test_scores(program: Program, tmp_path: Path, example: photinus.Dataset) -> None:
-    program("locate", EXAMPLE, "--out", tmp_path / "r.jsonl", "-q")
+    program("locate", "--no-time", EXAMPLE, "--out", tmp_path / "r.jsonl", "-q")
     theirs = json.loads(program("evaluate", EXAMPLE, tmp_path / "r.jsonl", "--bins", "5,10", "--json", "-"))
     ours = photinus.evaluate(EXAMPLE, tmp_path / "r.jsonl", bins=[5, 10])
     assert ours == {key: theirs[key] for key in ours}

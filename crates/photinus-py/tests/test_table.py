@@ -15,7 +15,7 @@ csv: Any = pytest.importorskip("pyarrow.csv")
 
 
 def test_neighbours_are_the_programs_csv(program: Program, records: list[photinus.Record], tmp_path: Path) -> None:
-    program("locate", EXAMPLE, "--csv", tmp_path / "r.csv", "-q")
+    program("locate", "--no-time", EXAMPLE, "--csv", tmp_path / "r.csv", "-q")
     table = pyarrow.table(photinus.neighbours_table(records))
     theirs = csv.read_csv(
         tmp_path / "r.csv",

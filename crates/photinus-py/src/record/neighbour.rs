@@ -36,6 +36,24 @@ impl Neighbour {
         self.told().id
     }
 
+    /// How likely its track is who it most likely is, where frames are followed and vehicles blink.
+    #[getter]
+    fn id_probability(&self) -> Option<f64> {
+        self.told().id_probability
+    }
+
+    /// The velocity of its track, (3,), m/s, where frames are followed: relative to the camera, in axes that do not rotate.
+    #[getter]
+    fn velocity_m_s<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
+        self.told().velocity_m_s.map(|velocity_m_s| vector(py, velocity_m_s))
+    }
+
+    /// Covariance of the velocity, (3, 3), m^2/s^2.
+    #[getter]
+    fn velocity_covariance_m2_s2<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
+        self.told().velocity_covariance_m2_s2.map(|covariance| matrix(py, covariance)).transpose()
+    }
+
     /// Name of its airframe.
     #[getter]
     fn airframe(&self) -> &str {

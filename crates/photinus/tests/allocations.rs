@@ -6,7 +6,7 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
 use nalgebra::{Matrix2, Vector3};
-use photinus::airframe::{Airframe, Ring};
+use photinus::airframe::{Airframe, Marker, Ring};
 use photinus::camera::{Bearing, Camera, Ideal, IdealLaw, Model, Pixel, Watched};
 use photinus::following::{self, Follower};
 use photinus::frame::{FrameView, Mask};
@@ -162,6 +162,18 @@ fn a_warm_locator_allocates_nothing() {
     assert!(neighbours > 300, "{neighbours}");
 }
 
+/// The spots of an upright vehicle at a place in the camera frame.
+fn spots_of(camera: &Camera, airframe: &Airframe, place_m: Vector3<f64>) -> Vec<Spot> {
+    let camera_m = Vector3::new(-place_m.x, -place_m.z, place_m.y);
+    let spot_of = |(index, marker): (usize, &Marker)| {
+        let [x, y, z]: [f64; 3] = marker.position_m.into();
+        let at_m = place_m + Vector3::new(x, -z, y);
+        let flux = 1e5 * airframe.intensity(index, &camera_m) / at_m.norm_squared();
+        (flux > 75.0).then(|| spot(camera.pixel(&Bearing::new(at_m).unwrap()).unwrap(), flux))
+    };
+    airframe.markers().iter().enumerate().filter_map(spot_of).collect()
+}
+
 /// A spot as a detector finds it.
 fn spot(centre: Pixel, flux: f64) -> Spot {
     let middle = (centre.u as u32, centre.v as u32);
@@ -195,16 +207,7 @@ fn a_warm_tracker_allocates_nothing() {
         for place_m in
             [[0.01 * f64::from(number) - 1.0, 0.1, 4.0], [1.0 - 0.02 * f64::from(number), -0.1, 5.0]]
         {
-            let place_m = Vector3::from(place_m);
-            for (index, marker) in airframe.markers().iter().enumerate() {
-                let [x, y, z]: [f64; 3] = marker.position_m.into();
-                let at_m = place_m + Vector3::new(x, -z, y);
-                let camera_m = Vector3::new(-place_m.x, -place_m.z, place_m.y);
-                let flux = 1e5 * airframe.intensity(index, &camera_m) / at_m.norm_squared();
-                if flux > 75.0 {
-                    spots.push(spot(camera.pixel(&Bearing::new(at_m).unwrap()).unwrap(), flux));
-                }
-            }
+            spots.extend(spots_of(&camera, &airframe, Vector3::from(place_m)));
         }
         if number.is_multiple_of(3) {
             spots.push(spot(Pixel::new(150.0 + f64::from(number), 80.0), 900.0));
@@ -269,16 +272,7 @@ fn a_warm_lookout_allocates_nothing() {
                 if is_away || !words[word].bit(number as usize) {
                     continue;
                 }
-                let place_m = Vector3::from(place_m);
-                for (index, marker) in airframe.markers().iter().enumerate() {
-                    let [x, y, z]: [f64; 3] = marker.position_m.into();
-                    let at_m = place_m + Vector3::new(x, -z, y);
-                    let camera_m = Vector3::new(-place_m.x, -place_m.z, place_m.y);
-                    let flux = 1e5 * airframe.intensity(index, &camera_m) / at_m.norm_squared();
-                    if flux > 75.0 {
-                        spots.push(spot(camera.pixel(&Bearing::new(at_m).unwrap()).unwrap(), flux));
-                    }
-                }
+                spots.extend(spots_of(&camera, &airframe, Vector3::from(place_m)));
             }
             let located = locator.locate_spots(&spots, Some(&gravity), &mut |_| ());
             let time_s = f64::from(number) / 60.0;

@@ -159,3 +159,25 @@ fn a_wrong_book_names_nobody() {
     let told = told(&stage, "r.jsonl");
     assert!(told.len() > 170 && told.iter().all(|(_, id)| id.is_none()), "{told:?}");
 }
+
+#[test]
+fn a_fleet_with_several_signals_a_vehicle_is_followed_only_when_asked() {
+    let stage = Stage::new("several");
+    let scenes = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes");
+    let scene = format!(
+        "name = \"several\"\nseed = 3\npreset = \"bluefox-dsl215-bp365\"\nrate_hz = 60.0\nduration_s = 0.3\n\
+         exposure_us = 1000.0\n{STILL}[[camera]]\nname = \"front\"\nfile = \"{scenes}/cameras/bluefox-dsl215.toml\"\n\
+         [[target]]\nid = 1\nairframe = \"{scenes}/airframes/quadrotor-pairs-0.3.toml\"\n\
+         motion = {{ hover = {{ position_m = [4.0, 0.2, 5.0] }} }}\n\
+         blink = {{ codes = \"{scenes}/codes/l12-d3-r3.txt\", first_word = 0, rate_hz = 60.0 }}\n"
+    );
+    stage.file("scene.toml", scene);
+    assert_eq!(stage.run("simulate scene.toml --out flight -q").code, 0);
+    for (option, is_followed) in [("", false), ("--track", true)] {
+        let done = stage.run(&format!("locate flight --out r.jsonl --force {option}"));
+        assert_eq!((done.code, done.err.contains("are not followed")), (0, !is_followed), "{}", done.err);
+        let frames = records(&stage, "r.jsonl");
+        assert_eq!(frames.iter().any(|frame| !frame.tracks.is_empty()), is_followed);
+        assert!(frames.iter().any(|frame| !frame.neighbours.is_empty()));
+    }
+}

@@ -124,10 +124,9 @@ impl Alternatives {
     ) {
         self.chosen.clear();
         for index in self.turns[observation].clone() {
-            let look = self.looks[index];
-            let members = &self.members[look.first..look.first + look.spots];
+            let members = self.members(index);
             let clutter: f64 = members.iter().map(|&spot| context.clutter[spot]).sum();
-            let gain = look.log_density + context.log_neighbours - clutter;
+            let gain = self.looks[index].log_density + context.log_neighbours - clutter;
             if gain > held(members) + POOR_GAIN {
                 self.chosen.push((gain, index));
             }
@@ -144,9 +143,14 @@ impl Alternatives {
 
     /// Those that were chosen, each ascending.
     pub(super) fn chosen(&self) -> impl Iterator<Item = &[usize]> {
-        let members = |look: Look| &self.members[look.first..look.first + look.spots];
-        let looked_at = self.chosen.iter().map(move |&(_, index)| members(self.looks[index]));
+        let looked_at = self.chosen.iter().map(|&(_, index)| self.members(index));
         looked_at.chain((!self.handful.is_empty()).then_some(&self.handful[..]))
+    }
+
+    /// The observations of a look.
+    fn members(&self, look: usize) -> &[usize] {
+        let Look { first, spots, .. } = self.looks[look];
+        &self.members[first..first + spots]
     }
 
     /// Opens the window around an observation.

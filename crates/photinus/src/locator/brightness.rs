@@ -41,29 +41,20 @@ pub(super) fn tell(sightings: &mut [Sighting], most: usize, size: [usize; 2], by
     let cells = Cells::new(size, FAR_PX);
     by_cell.sort(&cells, sightings);
     for own in 0..sightings.len().min(most) {
-        if sightings[own].spot.light.is_some() {
-            continue;
+        let Sighting { spot, log_light, .. } = &sightings[own];
+        let Some(mut light) = log_light.filter(|_| spot.light.is_none()) else { continue };
+        for (other, gap_px) in by_cell.near(&cells, sightings, own, FAR_PX) {
+            disturb(&mut light, sightings[other].log_light, gap_px);
         }
-        let here = sightings[own].spot.centre;
-        for cell in cells.around(cells.of_observation(&sightings[own])) {
-            for &other in by_cell.of_cell(cell).iter().filter(|&&other| other != own) {
-                let Sighting { spot, log_light, .. } = &sightings[other];
-                let gap_px = libm::hypot(spot.centre.u - here.u, spot.centre.v - here.v);
-                if gap_px < FAR_PX {
-                    let light = *log_light;
-                    disturb(&mut sightings[own], light, gap_px);
-                }
-            }
-        }
+        sightings[own].log_light = Some(light);
     }
 }
 
 /// The order of light; of light that is not known, that of places.
 fn brightest_first(a: &Sighting, b: &Sighting) -> Ordering {
     let light = |sighting: &Sighting| sighting.log_light.map_or(f64::NEG_INFINITY, |light| light.value);
-    let Spot { centre: a_at, .. } = a.spot;
-    let Spot { centre: b_at, .. } = b.spot;
-    light(b).total_cmp(&light(a)).then(a_at.v.total_cmp(&b_at.v)).then(a_at.u.total_cmp(&b_at.u))
+    let [here, there] = [a, b].map(|sighting| sighting.spot.centre);
+    light(b).total_cmp(&light(a)).then(here.v.total_cmp(&there.v)).then(here.u.total_cmp(&there.u))
 }
 
 /// A spot by itself; `None` where a detector measures no light.
@@ -79,8 +70,8 @@ fn alone(spot: &Spot) -> Option<LogLight> {
 }
 
 /// What another spot of this light adds to the error of one.
-fn disturb(own: &mut Sighting, other: Option<LogLight>, gap_px: f64) {
-    let Some(LogLight { value, sigma }) = &mut own.log_light else { return };
+fn disturb(own: &mut LogLight, other: Option<LogLight>, gap_px: f64) {
+    let LogLight { value, sigma } = own;
     let share = gap_px / NARROWED_PX;
     let narrowed = NARROWED * libm::exp(-(share * share) * (share * share));
     let within = other.map_or(0.0, |other| OTHERS * libm::exp(other.value - *value - gap_px / FALL_PX));

@@ -76,8 +76,21 @@ impl ByCell {
         }
     }
 
-    /// Those in a cell, ascending.
-    pub(super) fn of_cell(&self, cell: usize) -> &[usize] {
-        &self.order[self.starts[cell]..self.starts[cell + 1]]
+    /// The others nearer to an observation than `reach_px`, at most the side of a cell, each with the gap, px.
+    pub(super) fn near<'a>(
+        &'a self,
+        cells: &Cells,
+        sightings: &'a [Sighting],
+        observation: usize,
+        reach_px: f64,
+    ) -> impl Iterator<Item = (usize, f64)> + 'a {
+        let here = sightings[observation].spot.centre;
+        let around = cells.around(cells.of_observation(&sightings[observation]));
+        let within = around.flat_map(|cell| &self.order[self.starts[cell]..self.starts[cell + 1]]);
+        within.filter(move |&&other| other != observation).filter_map(move |&other| {
+            let there = sightings[other].spot.centre;
+            let gap_px = libm::hypot(here.u - there.u, here.v - there.v);
+            (gap_px < reach_px).then_some((other, gap_px))
+        })
     }
 }

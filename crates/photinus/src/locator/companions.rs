@@ -53,15 +53,11 @@ impl Companions {
         self.list.clear();
         self.ends.clear();
         for (index, own) in sightings.iter().enumerate() {
-            for cell in cells.around(cells.of_observation(own)) {
-                for &other in self.by_cell.of_cell(cell) {
-                    let gap_px = apart_px(own, &sightings[other]);
-                    if other != index && gap_px < reach_px {
-                        let density = density(gap_px, own, &sightings[other], with_light);
-                        self.list.push(Companion { observation: other, density });
-                    }
-                }
-            }
+            let near = self.by_cell.near(&cells, sightings, index, reach_px);
+            self.list.extend(near.map(|(observation, gap_px)| {
+                let density = density(gap_px, own, &sightings[observation], with_light);
+                Companion { observation, density }
+            }));
             self.ends.push(self.list.len());
         }
     }
@@ -71,10 +67,6 @@ impl Companions {
         let start = if observation == 0 { 0 } else { self.ends[observation - 1] };
         &self.list[start..self.ends[observation]]
     }
-}
-
-fn apart_px(a: &Sighting, b: &Sighting) -> f64 {
-    libm::hypot(a.spot.centre.u - b.spot.centre.u, a.spot.centre.v - b.spot.centre.v)
 }
 
 /// Even over the logarithm of distance, and log-normal in light.

@@ -74,6 +74,21 @@ impl Explanation {
         self.clutter[observation]
     }
 
+    /// Finds the best candidate of each observation, for [`Self::held`].
+    pub(super) fn hold(&mut self, candidates: &Candidates) {
+        self.held.clear();
+        self.held.resize(self.clutter.len(), None);
+        for (index, &gain) in self.gains.iter().enumerate() {
+            let members = candidates.members(index);
+            let each = gain / members.len() as f64;
+            for &spot in members {
+                if each > self.held[spot].map_or(0.0, |(most, _)| most) {
+                    self.held[spot] = Some((each, index));
+                }
+            }
+        }
+    }
+
     /// What the best candidates of a handful's observations gain over clutter, nats, less what the observations that they would lose to it may gain without
     /// them: at most as much each as before, and one that is left alone nothing.
     pub(super) fn held(&self, candidates: &Candidates, handful: &[usize]) -> f64 {
@@ -120,17 +135,6 @@ impl Explanation {
             let gain = candidates.get(index).log_density + log_neighbours - clutter;
             if gain.is_nan() { f64::NEG_INFINITY } else { gain.min(LARGEST_GAIN) }
         }));
-        self.held.clear();
-        self.held.resize(count, None);
-        for (index, &gain) in self.gains.iter().enumerate() {
-            let members = candidates.members(index);
-            let each = gain / members.len() as f64;
-            for &spot in members {
-                if each > self.held[spot].map_or(0.0, |(most, _)| most) {
-                    self.held[spot] = Some((each, index));
-                }
-            }
-        }
         self.log_gain = 0.0;
         self.done.clear();
         self.done.resize(count, false);

@@ -242,6 +242,7 @@ impl Inference {
         let log_neighbours = log_neighbours(neighbours, &self.memory);
         let context = Context { clutter: clutter.log_density(), log_neighbours, ..*context };
         let Self { alternatives, doubtful, groups, matcher, poser, candidates, explanation, .. } = self;
+        explanation.hold(candidates);
         for &spot in doubtful.iter() {
             if work.left == 0 {
                 break;

@@ -18,7 +18,7 @@ use nalgebra::{Matrix3, Vector6};
 
 use super::known::LogDistance;
 use super::light::Light;
-use super::merging::LightCentre;
+use super::merging::{LightCentre, Shining};
 use super::observation::{Observation, Whitened};
 use super::problem::{Normal, Pose, Problem};
 
@@ -60,9 +60,9 @@ impl Problem<'_> {
         let mut light = self.settings.use_brightness.then(|| Light::beforehand(self));
         for (spot, marker) in self.used() {
             let shining = self.shining(spot, marker, &camera_in_body_m);
-            self.add_bearing(pose, spot, &shining.centre, &mut normal);
+            self.add_bearing(pose, &shining, &mut normal);
             if let Some(light) = &mut light {
-                light.see(self, pose, [spot, marker], &shining);
+                light.see(self, pose, &shining);
             }
         }
         if let Some(light) = light {
@@ -80,12 +80,11 @@ impl Problem<'_> {
         (map * (place_m.normalize() - direction) * factor).norm_squared()
     }
 
-    /// Adds the bearing of a spot whose light comes from there.
-    fn add_bearing(&self, pose: &Pose, spot: usize, centre: &LightCentre, normal: &mut Normal) {
-        let LightCentre { at_m, by_camera, factor } = *centre;
+    /// Adds the bearing of a spot.
+    fn add_bearing(&self, pose: &Pose, shining: &Shining, normal: &mut Normal) {
+        let Shining { spot, camera_m, centre: LightCentre { at_m, by_camera, factor }, .. } = *shining;
         let distance_m = pose.position_m.norm();
         let camera_from_body = pose.camera_from_body.matrix();
-        let camera_in_body_m = pose.camera_in_body_m();
         let place_m = camera_from_body * at_m + pose.position_m;
         let range_m = place_m.norm();
         let seen = place_m / range_m;
@@ -112,7 +111,7 @@ impl Problem<'_> {
             let by_merging = by_camera.transpose() * in_body;
             let across = (by_place.row(axis).transpose() - camera_from_body * by_merging) * distance_m;
             // d(R exp(omega) p) = R (omega x p), so that the row by omega is p x (R' row').
-            let turn = at_m.cross(&in_body) + by_merging.cross(&camera_in_body_m);
+            let turn = at_m.cross(&in_body) + by_merging.cross(&camera_m);
             let row = Vector6::new(across.x, across.y, across.z, turn.x, turn.y, turn.z);
             normal.add_weighted(weight, residual[axis], &row);
         }

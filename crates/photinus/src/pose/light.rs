@@ -39,7 +39,7 @@ impl Light {
         let camera_in_body_m = pose.camera_in_body_m();
         for (spot, marker) in problem.used() {
             let shining = problem.shining(spot, marker, &camera_in_body_m);
-            light.see(problem, pose, [spot, marker], &shining);
+            light.see(problem, pose, &shining);
         }
         light
     }
@@ -66,17 +66,10 @@ impl Light {
     }
 
     /// Adds a spot and its marker, with what they show at a pose.
-    pub(super) fn see(
-        &mut self,
-        problem: &Problem<'_>,
-        pose: &Pose,
-        [spot, marker]: [usize; 2],
-        shining: &Shining,
-    ) {
-        let Some(seen) = problem.observations[spot].log_light else { return };
-        let camera_in_body_m = pose.camera_in_body_m();
+    pub(super) fn see(&mut self, problem: &Problem<'_>, pose: &Pose, shining: &Shining) {
+        let Some(seen) = problem.observations[shining.spot].log_light else { return };
         let shines = shining.intensity.max(DARK);
-        let from_marker_m = camera_in_body_m - problem.airframe.markers()[marker].position_m;
+        let from_marker_m = shining.camera_m - problem.airframe.markers()[shining.marker].position_m;
         let range2_m2 = from_marker_m.norm_squared();
         // By the camera's place in the body frame, of ln I - 2 ln range.
         let mut by_camera = from_marker_m * (-2.0 / range2_m2);
@@ -89,7 +82,7 @@ impl Light {
         self.log_sigmas += 0.5 * libm::log(TAU * variance);
         // The camera in the body frame moves by -R' distance delta, and by c x omega.
         let by_delta = pose.camera_from_body.matrix() * by_camera * -pose.position_m.norm();
-        let by_omega = by_camera.cross(&camera_in_body_m);
+        let by_omega = by_camera.cross(&shining.camera_m);
         let row = Vector6::new(-by_delta.x, -by_delta.y, -by_delta.z, -by_omega.x, -by_omega.y, -by_omega.z);
         self.add(1.0 / variance, seen.value - libm::log(shines / range2_m2), &row);
     }

@@ -47,6 +47,10 @@ pub(super) struct LightCentre {
 
 /// What a spot shows of the markers in its window.
 pub(super) struct Shining {
+    pub(super) spot: usize,
+    pub(super) marker: usize,
+    /// The camera that sees it, in the body frame, m.
+    pub(super) camera_m: Vector3<f64>,
     pub(super) centre: LightCentre,
     /// Their light, 1 being one LED straight ahead, with its derivative by the camera's place in the body frame, 1/m.
     pub(super) intensity: f64,
@@ -154,6 +158,9 @@ impl Problem<'_> {
         let alone_m = self.airframe.markers()[marker].position_m;
         let (own, own_gradient) = self.airframe.intensity_with_gradient(marker, camera_m);
         let mut shining = Shining {
+            spot,
+            marker,
+            camera_m: *camera_m,
             centre: LightCentre { at_m: alone_m, by_camera: Matrix3::zeros(), factor: 1.0 },
             intensity: own,
             intensity_gradient: own_gradient,

@@ -141,9 +141,8 @@ impl Matcher {
         let image = Image::of(context, group, &mut self.places)?;
         let arrangements = self.views.arrangements(group.len())?;
         let seen = Ordered::of(&image, sightings, group, self.log_flux_sigma);
-        let band = arrangements.within(image.elevation_rad, self.tilt_sigma_rad);
-        let best = seen.costs(band.quads, &image, self.tilt_sigma_rad, &mut self.costs);
-        Likeness::of(&seen, &image, &band.all[best.arrangement]).log_power(sightings, group)
+        let best = seen.costs(arrangements, &image, self.tilt_sigma_rad, &mut self.costs);
+        Likeness::of(&seen, &image, best.arrangement).log_power(sightings, group)
     }
 
     /// What the claim costs that these spots, at least one, are one neighbour, nats.
@@ -168,13 +167,12 @@ impl Matcher {
             });
         };
         let seen = Ordered::of(&image, sightings, group, self.log_flux_sigma);
-        let band = arrangements.within(image.elevation_rad, self.tilt_sigma_rad);
-        let best = seen.costs(band.quads, &image, self.tilt_sigma_rad, &mut self.costs);
+        let best = seen.costs(arrangements, &image, self.tilt_sigma_rad, &mut self.costs);
         let weight = self
             .costs
             .iter()
             .fold(Lanes::ZERO, |sum, &four| sum + lanes::exp(Lanes::splat(best.nats) - four));
-        let likeness = Likeness::of(&seen, &image, &band.all[best.arrangement]);
+        let likeness = Likeness::of(&seen, &image, best.arrangement);
         let views = f64::from(best.nats) - libm::log(f64::from(lanes::sum(weight)));
         NEIGHBOUR_NATS
             + views
@@ -197,14 +195,13 @@ impl Matcher {
         let image = Image::of(context, group, &mut self.places)?;
         let arrangements = self.views.arrangements(group.len())?;
         let seen = Ordered::of(&image, sightings, group, self.log_flux_sigma);
-        let band = arrangements.within(image.elevation_rad, self.tilt_sigma_rad);
-        let best = seen.costs(band.quads, &image, self.tilt_sigma_rad, &mut self.costs);
+        let best = seen.costs(arrangements, &image, self.tilt_sigma_rad, &mut self.costs);
         let weight = self
             .costs
             .iter()
             .fold(Lanes::ZERO, |sum, &four| sum + lanes::exp(Lanes::splat(best.nats) - four));
         let views = f64::from(best.nats) - libm::log(f64::from(lanes::sum(weight)));
-        let likeness = Likeness::of(&seen, &image, &band.all[best.arrangement]);
+        let likeness = Likeness::of(&seen, &image, best.arrangement);
         let turn_sigma_rad = if context.gravity.is_some() { self.tilt_sigma_rad } else { TAU.sqrt() };
         let count = group.len() as f64;
         let places = -(count - 2.0) * libm::log(TAU * seen.variance(&image))
@@ -280,9 +277,8 @@ impl Matcher {
             return;
         };
         let seen = Ordered::of(&image, sightings, group, self.log_flux_sigma);
-        let band = arrangements.within(image.elevation_rad, self.tilt_sigma_rad);
-        let best = seen.costs(band.quads, &image, self.tilt_sigma_rad, &mut self.costs);
-        for (four, costs) in band.all.chunks_exact(LANES).zip(&self.costs) {
+        let best = seen.costs(arrangements, &image, self.tilt_sigma_rad, &mut self.costs);
+        for (four, costs) in best.among.chunks_exact(LANES).zip(&self.costs) {
             for (arrangement, nats) in four.iter().zip(costs.to_array()) {
                 if nats > best.nats + POOR_NATS {
                     continue;

@@ -5,7 +5,7 @@ use nalgebra::{Vector2, Vector3};
 use super::image::{Image, turned};
 use crate::lanes::{self, Lanes};
 use crate::locator::Sighting;
-use crate::locator::views::{Arrangement, MOST_ORDERED, Quad};
+use crate::locator::views::{Arrangement, Arrangements, Band, MOST_ORDERED};
 use crate::pose::LogLight;
 
 /// How far the grid of views leaves a true shape from the nearest one, as a share of its size.
@@ -50,15 +50,16 @@ impl Ordered {
         ordered
     }
 
-    /// What each arrangement costs: its misfit in shape and in light, its attitude, and what it costs in itself. Returns
+    /// What each arrangement that may show costs: its misfit in shape and in light, its attitude, and what it costs in itself. Returns
     /// the least of them.
-    pub(super) fn costs(
+    pub(super) fn costs<'a>(
         &self,
-        quads: &[Quad],
+        arrangements: &'a Arrangements,
         image: &Image<'_>,
         tilt_sigma_rad: f64,
         costs: &mut Vec<Lanes>,
-    ) -> Best {
+    ) -> Best<'a> {
+        let Band { all, quads } = arrangements.within(image.elevation_rad, tilt_sigma_rad);
         let splat = |number: f64| Lanes::splat(number as f32);
         let x: [Lanes; MOST_ORDERED] = std::array::from_fn(|spot| splat(self.shape[spot].x));
         let y: [Lanes; MOST_ORDERED] = std::array::from_fn(|spot| splat(self.shape[spot].y));
@@ -91,7 +92,7 @@ impl Ordered {
         let least = costs.iter().fold(Lanes::splat(f32::INFINITY), |least, &four| least.fast_min(four));
         let nats = least.to_array().into_iter().fold(f32::INFINITY, f32::min);
         let of_best = costs.iter().flat_map(|four| four.to_array()).position(|cost| cost <= nats);
-        Best { nats, arrangement: of_best.unwrap_or(0) }
+        Best { nats, arrangement: &all[of_best.unwrap_or(0)], among: all }
     }
 
     /// Variance of a place per axis, in the image, with the error of the grid of views.
@@ -136,7 +137,9 @@ impl Ordered {
 }
 
 /// The arrangement that costs least.
-pub(super) struct Best {
+pub(super) struct Best<'a> {
     pub(super) nats: f32,
-    pub(super) arrangement: usize,
+    pub(super) arrangement: &'a Arrangement,
+    /// All that were compared, in the order of the costs.
+    pub(super) among: &'a [Arrangement],
 }

@@ -5,7 +5,7 @@ use std::fmt;
 
 use nalgebra::Vector3;
 use photinus_io::dataset::{TruthFrame, TruthNeighbour};
-use photinus_io::results::{FrameRecord, NeighbourRecord};
+use photinus_io::results::{FrameRecord, NeighbourRecord, TrackRecord};
 
 use crate::Settings;
 use crate::pairing::leds::LedPairing;
@@ -128,6 +128,8 @@ pub(crate) struct ComparedFrame<'a> {
     pub(crate) leds: LedPairing<'a>,
     /// Indices of (truth, found) neighbours, by truth.
     pub(crate) neighbours: Vec<(usize, usize)>,
+    /// Indices of (truth, followed) neighbours, by truth.
+    pub(crate) tracks: Vec<(usize, usize)>,
 }
 
 /// All frames of truth, in the order of their numbers.
@@ -165,6 +167,7 @@ impl<'a> Compared<'a> {
                 record,
                 leds: LedPairing::new(truth, record, settings.spot_gate_px),
                 neighbours: pair(&truth.neighbours, found, settings),
+                tracks: pair(&truth.neighbours, record.map_or(&[][..], |record| &record.tracks), settings),
             });
         }
         let has_leds = frames.iter().any(|frame| !frame.leds.leds.is_empty());
@@ -177,6 +180,11 @@ impl<'a> ComparedFrame<'a> {
     /// Neighbours that were reported.
     pub(crate) fn found(&self) -> &'a [NeighbourRecord] {
         self.record.map_or(&[], |record| &record.neighbours)
+    }
+
+    /// Neighbours that are followed, seen or not.
+    pub(crate) fn followed(&self) -> &'a [TrackRecord] {
+        self.record.map_or(&[], |record| &record.tracks)
     }
 
     /// The neighbour of truth that a reported one is, with the two side by side.

@@ -2,13 +2,20 @@
 
 use photinus_io::dataset::{TruthFrame, TruthLed, TruthNeighbour};
 use photinus_io::results::{
-    DEFAULT_SIGMA_PX, Distance, FrameRecord, NeighbourRecord, RejectedRecord, SpotRecord,
+    DEFAULT_SIGMA_PX, Distance, FrameRecord, NeighbourRecord, RejectedRecord, SpotRecord, TrackRecord,
 };
 
 /// A neighbour of truth with no LED in view.
 pub(crate) fn there(id: u32, position_m: [f64; 3]) -> TruthNeighbour {
     let distance_m = nalgebra::Vector3::from(position_m).norm();
-    TruthNeighbour { id, position_m, orientation_xyzw: [0.0, 0.0, 0.0, 1.0], distance_m, leds: vec![] }
+    TruthNeighbour {
+        id,
+        position_m,
+        orientation_xyzw: [0.0, 0.0, 0.0, 1.0],
+        distance_m,
+        velocity_m_s: None,
+        leds: vec![],
+    }
 }
 
 /// A neighbour of truth with LEDs at these pixels.
@@ -48,6 +55,29 @@ pub(crate) fn found_at(position_m: [f64; 3]) -> NeighbourRecord {
         misfit: None,
         runner_up: None,
         modes: vec![],
+    }
+}
+
+/// A track just there that a spot shows, at rest, with variances of 0.01.
+pub(crate) fn track(track: u64, position_m: [f64; 3]) -> TrackRecord {
+    let covariance = [[0.01, 0.0, 0.0], [0.0, 0.01, 0.0], [0.0, 0.0, 0.01]];
+    TrackRecord {
+        track,
+        airframe: "hexarotor".to_owned(),
+        probability: 1.0,
+        id: None,
+        id_probability: None,
+        ids: vec![],
+        predicted: false,
+        spots: vec![],
+        position_m,
+        position_covariance_m2: covariance,
+        position_body_m: None,
+        position_body_covariance_m2: None,
+        velocity_m_s: [0.0; 3],
+        velocity_covariance_m2_s2: covariance,
+        orientation_xyzw: [0.0, 0.0, 0.0, 1.0],
+        orientation_covariance_rad2: covariance,
     }
 }
 

@@ -28,8 +28,10 @@ pub use frames::{EvaluateError, Pair, Side};
 pub use score::bounds::{BoundScore, Bounds, Violation};
 pub use score::classes::{ClassScore, SpotClass};
 pub use score::distance::{DistanceScore, PaperScore};
+pub use score::followed::FollowedScore;
+pub use score::gospa::GospaScore;
 pub use score::neighbours::{LIKELY, NeighbourScore, Neighbours, SURE};
-pub use score::position::{CHI_SQUARE_3_50, CHI_SQUARE_3_95, PositionScore};
+pub use score::position::{CHI_SQUARE_3_50, CHI_SQUARE_3_95, Consistency, PositionScore};
 pub use score::probability::{Decile, Kept, ProbabilityScore, expected_calibration_error};
 pub use score::range::{Bin, ByRange, RangeBins};
 pub use score::spots::{SpotScore, Spots};
@@ -48,6 +50,10 @@ pub struct Settings {
     pub lateral_gate_m: f64,
     /// Times of the same frame may differ by this, s. Default 1 ms.
     pub time_tolerance_s: f64,
+    /// A vehicle farther than this from where truth has it is another one, to GOSPA, m. Default 2.
+    pub gospa_cutoff_m: f64,
+    /// Who shows again after no more than this is expected to be followed meanwhile, s. Default 2.
+    pub occlusion_s: f64,
     /// How distances are binned: the edges between bins, m.
     #[serde(rename = "bins_m")]
     pub bins: RangeBins,
@@ -60,6 +66,8 @@ impl Default for Settings {
             bearing_gate_rad: 0.05,
             lateral_gate_m: 0.6,
             time_tolerance_s: 1e-3,
+            gospa_cutoff_m: 2.0,
+            occlusion_s: 2.0,
             bins: RangeBins::default(),
         }
     }

@@ -76,7 +76,8 @@ proptest! {
         prop_assert_eq!(scores.distance.overall.error_m.max, Some(0.0));
         prop_assert_eq!(scores.bounds.by_range.overall.coverage, Some(1.0));
         prop_assert!(scores.bounds.violations.is_empty());
-        prop_assert_eq!((scores.position.overall.nees, scores.position.overall.inside_95), (Some(0.0), Some(1.0)));
+        let consistency = scores.position.overall.consistency;
+        prop_assert_eq!((consistency.nees, consistency.inside_95), (Some(0.0), Some(1.0)));
         prop_assert_eq!(scores.paper.overall.between, Some(1.0));
         prop_assert_eq!(scores.identity.unwrap().accuracy, Some(1.0));
         let tracks = scores.tracks.unwrap();
@@ -139,7 +140,7 @@ fn gaussian_errors_have_the_nees_of_their_covariance() {
             vec![NeighbourRecord { position_covariance_m2: Some(covariance_m2), ..found }],
         ));
     }
-    let position = scores(&truths, &results).position.overall;
+    let position = scores(&truths, &results).position.overall.consistency;
     assert_eq!(position.with_covariance, 5000, "the gate keeps every one");
     let (nees, standard_error) = (position.nees.unwrap(), position.nees_standard_error.unwrap());
     assert!((nees - 3.0).abs() < 2.5 * standard_error, "{nees} +- {standard_error}");
@@ -197,6 +198,6 @@ fn numbers_that_are_none_hurt_nobody() {
         ..found_at([0.0, 0.0, 5.0])
     };
     let scores = scores(&truths, &[record(0, vec![], vec![found])]);
-    assert_eq!(scores.position.overall.with_covariance, 0);
+    assert_eq!(scores.position.overall.consistency.with_covariance, 0);
     assert!(serde_json::to_string(&scores).is_ok());
 }

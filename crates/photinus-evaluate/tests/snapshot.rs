@@ -96,6 +96,7 @@ fn truth_of(place: Pixel) -> TruthFrame {
         position_m: [0.0, 0.0, 5.0],
         orientation_xyzw: [0.0, 0.0, 0.0, 1.0],
         distance_m: 5.0,
+        velocity_m_s: None,
         leds: vec![led],
     };
     TruthFrame { neighbours: vec![neighbour], ..TruthFrame::default() }

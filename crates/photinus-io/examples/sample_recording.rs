@@ -88,6 +88,7 @@ fn fly(id: u32, time_s: f64, airframe: &Airframe, camera: &Camera, light: &mut [
         position_m: place_m.into(),
         orientation_xyzw: turn.into(),
         distance_m: place_m.norm(),
+        velocity_m_s: None,
         leds,
     }
 }

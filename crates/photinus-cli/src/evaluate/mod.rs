@@ -73,6 +73,9 @@ pub(crate) struct Args {
     /// How far a neighbour's bearing may be from truth; near neighbours may be 0.6 m aside
     #[arg(long, value_name = "DEG", default_value_t = 3.0, value_parser = number::positive)]
     bearing_gate: f64,
+    /// A track farther than this from where truth has a vehicle is another one, to GOSPA
+    #[arg(long, value_name = "M", default_value_t = 2.0, value_parser = number::positive)]
+    gospa_cutoff: f64,
     /// Which camera, of a dataset with several
     #[arg(long, value_name = "NAME")]
     only: Option<String>,
@@ -106,6 +109,7 @@ impl Args {
             spot_gate_px: self.spot_gate,
             bearing_gate_rad: self.bearing_gate.to_radians(),
             time_tolerance_s: truth.time_tolerance_s,
+            gospa_cutoff_m: self.gospa_cutoff,
             bins: self.bins.clone().unwrap_or_default(),
             ..Settings::default()
         }

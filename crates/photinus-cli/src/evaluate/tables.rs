@@ -2,7 +2,10 @@
 
 use std::fmt;
 
-use photinus_evaluate::{Bounds, ByRange, IdentityScore, ProbabilityScore, Scores, Spread, TrackScore};
+use photinus_evaluate::{
+    Bounds, ByRange, Consistency, FollowedScore, GospaScore, IdentityScore, ProbabilityScore, Scores, Spread,
+    TrackScore,
+};
 
 use crate::aligned::{Aligned, Side};
 
@@ -33,6 +36,7 @@ impl fmt::Display for Tables<'_> {
         paper(f, scores)?;
         identity(f, scores.identity.as_ref())?;
         tracks(f, scores.tracks.as_ref())?;
+        followed(f, scores.followed.as_ref())?;
         latency(f, scores.latency_s.as_ref())
     }
 }
@@ -161,10 +165,16 @@ fn errors(f: &mut fmt::Formatter<'_>, scores: &Scores) -> fmt::Result {
     block(f, "position error", &columns, &scores.position, |score| {
         let error = score.error_m;
         let metres = [error.rms, error.median, error.p95].map(|m| number(m, 3));
-        let nees = [score.nees, score.nees_standard_error].map(|nees| number(nees.map(|nees| nees / 3.0), 2));
         let count = std::iter::once(error.count.to_string());
-        count.chain(metres).chain(nees).chain([percent(score.inside_95)]).collect()
+        count.chain(metres).chain(consistency(&score.consistency)).collect()
     })
+}
+
+/// NEES over what is right, its standard error, and the share inside the 95 % ellipsoid.
+fn consistency(score: &Consistency) -> [String; 3] {
+    let [nees, error] =
+        [score.nees, score.nees_standard_error].map(|nees| number(nees.map(|nees| nees / 3.0), 2));
+    [nees, error, percent(score.inside_95)]
 }
 
 fn bounds(f: &mut fmt::Formatter<'_>, bounds: &Bounds) -> fmt::Result {
@@ -217,6 +227,16 @@ fn identity(f: &mut fmt::Formatter<'_>, score: Option<&IdentityScore>) -> fmt::R
         score.found,
         score.correct,
         percent(score.accuracy)
+    )?;
+    let time = &score.time_to_identity_s;
+    writeln!(
+        f,
+        "  after {} s in the median, {} s at most, {} never; {} switches, the longest wrong for {} s",
+        number(time.median, 2),
+        number(time.max, 2),
+        score.never,
+        score.switches,
+        number(Some(score.longest_wrong_s), 2)
     )
 }
 
@@ -231,6 +251,60 @@ fn tracks(f: &mut fmt::Formatter<'_>, score: Option<&TrackScore>) -> fmt::Result
         score.switches,
         score.fragments,
         percent(score.coverage)
+    )
+}
+
+/// What is followed, then its errors, then GOSPA.
+fn followed(f: &mut fmt::Formatter<'_>, score: Option<&FollowedScore>) -> fmt::Result {
+    let Some(score) = score else { return Ok(()) };
+    writeln!(
+        f,
+        "\nfollowed  {} of {} visible ({} %), {} of {} hidden ({} %), {} false; IDF1 {}",
+        score.followed,
+        score.visible,
+        percent(score.recall),
+        score.hidden_followed,
+        score.hidden,
+        percent(score.hidden_recall),
+        score.false_tracks,
+        number(score.idf1, 3)
+    )?;
+    let mut errors = Aligned::new(
+        2,
+        &[
+            Side::Left,
+            Side::Right,
+            Side::Right,
+            Side::Right,
+            Side::Right,
+            Side::Right,
+            Side::Right,
+            Side::Right,
+        ],
+    );
+    errors.row(["of tracks", "count", "rms", "median", "95 %", "NEES/3", "+-", "in 95 % ellipsoid %"]);
+    for (name, error, kept) in [
+        ("position seen, m", &score.seen_error_m, &score.seen),
+        ("position predicted, m", &score.predicted_error_m, &score.predicted),
+        ("velocity, m/s", &score.velocity_error_m_s, &score.velocity),
+    ] {
+        let sizes = [error.rms, error.median, error.p95].map(|size| number(size, 3));
+        let cells = [name.to_owned(), error.count.to_string()].into_iter().chain(sizes);
+        errors.row(cells.chain(consistency(kept)));
+    }
+    write!(f, "{errors}\n")?;
+    for (name, gospa) in [("GOSPA", &score.gospa), ("probabilistic GOSPA", &score.probabilistic_gospa)] {
+        writeln!(f, "  {name} {}", told(gospa))?;
+    }
+    Ok(())
+}
+
+fn told(gospa: &GospaScore) -> String {
+    let parts = [gospa.place_m2, gospa.existence_m2, gospa.missed_m2, gospa.false_m2];
+    let [place, existence, missed, made_up] = parts.map(|part| number(part, 4));
+    let mean = number(gospa.mean_m, 3);
+    format!(
+        "{mean} m; of its square: place {place} m^2, existence {existence}, missed {missed}, false {made_up}"
     )
 }
 

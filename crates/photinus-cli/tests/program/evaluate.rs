@@ -24,6 +24,7 @@ fn truth(frame: u64) -> TruthFrame {
         position_m: [0.0, 0.0, distance_m(frame)],
         orientation_xyzw: [0.0, 0.0, 0.0, 1.0],
         distance_m: distance_m(frame),
+        velocity_m_s: None,
         leds: leds.to_vec(),
     };
     TruthFrame { frame, time_s: frame as f64 / 20.0, neighbours: vec![neighbour], ..TruthFrame::default() }
@@ -149,6 +150,7 @@ fn spinning(frame: u64, camera: &Camera, airframe: &Airframe) -> (TruthFrame, St
         position_m: position_m.into(),
         orientation_xyzw: [q.i, q.j, q.k, q.w],
         distance_m: position_m.norm(),
+        velocity_m_s: None,
         leds,
     };
     let time_s = frame as f64 / 20.0;

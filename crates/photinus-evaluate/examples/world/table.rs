@@ -65,9 +65,9 @@ impl Table {
                 number(Some(neighbours.sure_false as f64 / frames), 3),
                 number(distance.error_m.median, 4),
                 number(distance.error_m.rms, 3),
-                ratio(position.nees.map(|nees| nees / 3.0)),
-                percent(position.inside_50),
-                percent(position.inside_95),
+                ratio(position.consistency.nees.map(|nees| nees / 3.0)),
+                percent(position.consistency.inside_50),
+                percent(position.consistency.inside_95),
                 format!("{} of {}", bounds.violations.len(), bounds.by_range.overall.count),
             ]
         };

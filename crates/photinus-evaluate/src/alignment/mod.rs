@@ -120,6 +120,7 @@ impl Logs<'_> {
                 position_m: position_m.into(),
                 orientation_xyzw: seen.rotation.coords.into(),
                 distance_m: position_m.norm(),
+                velocity_m_s: None,
                 leds: Vec::new(),
             };
             let (frame, camera) = (record.frame.unwrap_or(index), record.camera.clone());

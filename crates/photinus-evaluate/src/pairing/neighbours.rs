@@ -6,7 +6,7 @@
 
 use nalgebra::Vector3;
 use photinus_io::dataset::TruthNeighbour;
-use photinus_io::results::NeighbourRecord;
+use photinus_io::results::{NeighbourRecord, TrackRecord};
 
 use super::assignment::{Candidate, assign};
 use crate::Settings;
@@ -14,10 +14,40 @@ use crate::Settings;
 /// A distance wrong by this factor or more counts as wholly wrong.
 const FACTOR: f64 = 4.0;
 
+/// Where somebody is said to be.
+pub(crate) trait Placed {
+    /// Towards it, of any length.
+    fn towards(&self) -> Vector3<f64>;
+    /// Of the distances that it is said to have, m, the one nearest to `truth_m`.
+    fn distance_m(&self, truth_m: f64) -> f64;
+}
+
+impl Placed for NeighbourRecord {
+    fn towards(&self) -> Vector3<f64> {
+        self.bearing.into()
+    }
+
+    fn distance_m(&self, truth_m: f64) -> f64 {
+        let told = &self.distance_m;
+        // Where there is no estimate, the bounds have their say.
+        told.estimate.unwrap_or_else(|| truth_m.max(told.min).min(told.max.unwrap_or(f64::INFINITY)))
+    }
+}
+
+impl Placed for TrackRecord {
+    fn towards(&self) -> Vector3<f64> {
+        self.position_m.into()
+    }
+
+    fn distance_m(&self, _truth_m: f64) -> f64 {
+        Vector3::from(self.position_m).norm()
+    }
+}
+
 /// The pairs (truth, found), by truth.
 pub(crate) fn pair(
     truth: &[TruthNeighbour],
-    found: &[NeighbourRecord],
+    found: &[impl Placed],
     settings: &Settings,
 ) -> Vec<(usize, usize)> {
     let mut candidates = Vec::new();
@@ -32,23 +62,18 @@ pub(crate) fn pair(
 }
 
 /// Half the share of the gate in bearing, half the error of distance; `None` outside the gate.
-fn cost(truth: &TruthNeighbour, found: &NeighbourRecord, settings: &Settings) -> Option<f64> {
+fn cost(truth: &TruthNeighbour, found: &impl Placed, settings: &Settings) -> Option<f64> {
     let gate_rad = settings.bearing_gate_rad.max(libm::atan2(settings.lateral_gate_m, truth.distance_m));
     let share = bearing_error_rad(truth, found)? / gate_rad;
-    let reported = &found.distance_m;
-    // Where there is no estimate, the bounds have their say: what in them is nearest to truth.
-    let distance_m = reported
-        .estimate
-        .unwrap_or_else(|| truth.distance_m.max(reported.min).min(reported.max.unwrap_or(f64::INFINITY)));
-    let log_ratio = libm::log(distance_m / truth.distance_m).abs();
+    let log_ratio = libm::log(found.distance_m(truth.distance_m) / truth.distance_m).abs();
     let wrong = if log_ratio.is_finite() { (log_ratio / libm::log(FACTOR)).min(1.0) } else { 1.0 };
     (share < 1.0).then_some((share + wrong) / 2.0)
 }
 
 /// The angle between truth and report, rad; `None` where the report points nowhere.
-pub(crate) fn bearing_error_rad(truth: &TruthNeighbour, found: &NeighbourRecord) -> Option<f64> {
+pub(crate) fn bearing_error_rad(truth: &TruthNeighbour, found: &impl Placed) -> Option<f64> {
     let there = Vector3::from(truth.position_m).try_normalize(0.0)?;
-    let reported = Vector3::from(found.bearing).try_normalize(0.0)?;
+    let reported = found.towards().try_normalize(0.0)?;
     let angle_rad = libm::atan2(there.cross(&reported).norm(), there.dot(&reported));
     angle_rad.is_finite().then_some(angle_rad)
 }

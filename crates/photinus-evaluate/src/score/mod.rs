@@ -3,6 +3,8 @@
 pub(crate) mod bounds;
 pub(crate) mod classes;
 pub(crate) mod distance;
+pub(crate) mod followed;
+pub(crate) mod gospa;
 pub(crate) mod neighbours;
 pub(crate) mod position;
 pub(crate) mod probability;
@@ -14,7 +16,9 @@ pub(crate) mod tracks;
 use serde::Serialize;
 
 use crate::frames::Compared;
-use crate::{Bounds, ByRange, DistanceScore, IdentityScore, Neighbours, PaperScore, PositionScore};
+use crate::{
+    Bounds, ByRange, DistanceScore, FollowedScore, IdentityScore, Neighbours, PaperScore, PositionScore,
+};
 use crate::{ProbabilityScore, Settings, Spots, Spread, TrackScore};
 
 /// Every number of an evaluation. `None` (`null`) is what nothing tells.
@@ -42,6 +46,8 @@ pub struct Scores {
     pub identity: Option<IdentityScore>,
     /// Tracks; `None` where no neighbour is on one.
     pub tracks: Option<TrackScore>,
+    /// Who is followed, seen or not; `None` where nobody is.
+    pub followed: Option<FollowedScore>,
     /// From the end of the exposure until the result stood, s; `None` where no record tells.
     pub latency_s: Option<Spread>,
 }
@@ -87,8 +93,9 @@ pub(crate) fn score(compared: &Compared<'_>, settings: &Settings) -> Scores {
         bounds: Bounds::new(pairs, bins),
         position: ByRange::new(bins, pairs, |pair| Some(pair.truth.distance_m), PositionScore::new),
         paper: ByRange::new(bins, pairs, |pair| Some(pair.truth.distance_m), PaperScore::new),
-        identity: IdentityScore::new(pairs),
+        identity: IdentityScore::new(compared),
         tracks: TrackScore::new(compared),
+        followed: FollowedScore::new(compared, settings),
         latency_s: Some(latency_s).filter(|latency_s| latency_s.count > 0),
     }
 }

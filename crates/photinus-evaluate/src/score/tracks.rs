@@ -4,8 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde::Serialize;
 
-use super::spread::share;
-use crate::frames::{Compared, Pair};
+use super::spread::{Spread, share};
+use crate::frames::Compared;
 
 /// Identities against those of truth.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -20,21 +20,83 @@ pub struct IdentityScore {
     pub accuracy: Option<f64>,
     /// identified / found.
     pub coverage: Option<f64>,
+    /// From the first sight of a neighbour of truth until it first has its own identity, s.
+    pub time_to_identity_s: Spread,
+    /// Neighbours of truth that were seen and never had it.
+    pub never: usize,
+    /// How often a neighbour of truth had another identity than the last time that it had one.
+    pub switches: usize,
+    /// The longest that a neighbour of truth went on with a wrong identity, s; 0 where none did.
+    pub longest_wrong_s: f64,
+}
+
+/// How one neighbour of truth was called.
+#[derive(Default)]
+struct Names {
+    first_seen_s: Option<f64>,
+    first_right_s: Option<f64>,
+    last: Option<u32>,
+    wrong_since_s: Option<f64>,
+    switches: usize,
+    longest_wrong_s: f64,
+}
+
+impl Names {
+    fn called(&mut self, id: u32, truth: u32, time_s: f64) {
+        self.switches += usize::from(self.last.is_some_and(|last| last != id));
+        self.last = Some(id);
+        if id == truth {
+            self.first_right_s.get_or_insert(time_s);
+            self.wrong_since_s = None;
+        } else {
+            let since_s = *self.wrong_since_s.get_or_insert(time_s);
+            self.longest_wrong_s = self.longest_wrong_s.max(time_s - since_s);
+        }
+    }
 }
 
 impl IdentityScore {
     /// `None` where no neighbour was given an identity.
-    pub(crate) fn new(pairs: &[Pair<'_>]) -> Option<Self> {
+    pub(crate) fn new(compared: &Compared<'_>) -> Option<Self> {
+        let pairs = &compared.pairs;
         let identified = pairs.iter().filter(|pair| pair.found.id.is_some()).count();
         let correct = pairs.iter().filter(|pair| pair.found.id == Some(pair.truth.id)).count();
+        let names = names(compared);
+        let time_s = |names: &Names| Some(names.first_right_s? - names.first_seen_s?);
         (identified > 0).then(|| Self {
             found: pairs.len(),
             identified,
             correct,
             accuracy: share(correct, identified),
             coverage: share(identified, pairs.len()),
+            time_to_identity_s: Spread::of(names.values().filter_map(time_s)),
+            never: names
+                .values()
+                .filter(|names| names.first_seen_s.is_some() && names.first_right_s.is_none())
+                .count(),
+            switches: names.values().map(|names| names.switches).sum(),
+            longest_wrong_s: names.values().map(|names| names.longest_wrong_s).fold(0.0, f64::max),
         })
     }
+}
+
+/// How each neighbour of truth was called, over all frames.
+fn names(compared: &Compared<'_>) -> BTreeMap<u32, Names> {
+    let mut names: BTreeMap<u32, Names> = BTreeMap::new();
+    for frame in &compared.frames {
+        let time_s = frame.truth.time_s;
+        for index in frame.visible(compared.has_leds) {
+            let truth = frame.truth.neighbours[index].id;
+            names.entry(truth).or_default().first_seen_s.get_or_insert(time_s);
+        }
+        for &(truth, found) in &frame.neighbours {
+            let truth = frame.truth.neighbours[truth].id;
+            if let Some(id) = frame.found()[found].id {
+                names.entry(truth).or_default().called(id, truth, time_s);
+            }
+        }
+    }
+    names
 }
 
 /// Tracks against the neighbours of truth.
@@ -144,6 +206,20 @@ mod tests {
         let identity = scores.identity.unwrap();
         assert_eq!((identity.found, identity.identified, identity.correct), (4, 4, 3));
         assert_eq!((identity.accuracy, identity.coverage), (Some(0.75), Some(1.0)));
+        assert_eq!((identity.switches, identity.never), (2, 0), "from 4 to 9 and back");
+    }
+
+    #[test]
+    fn time_to_identity_is_from_the_first_sight_and_wrong_names_last() {
+        let seen = |frame| truth(frame, vec![shining(4, PLACE, &[[10.0, 10.0]])]);
+        let truth: Vec<_> = (0..8).map(seen).collect();
+        let called = |frame, id| record(frame, vec![], vec![NeighbourRecord { id, ..found_at(PLACE) }]);
+        let ids = [None, Some(9), None, Some(9), Some(4), None, Some(7), Some(4)];
+        let results: Vec<_> = (0..).zip(ids).map(|(frame, id)| called(frame, id)).collect();
+        let identity = evaluate(&truth, &results, &Settings::default()).unwrap().scores.identity.unwrap();
+        assert!((identity.time_to_identity_s.median.unwrap() - 0.4).abs() < 1e-12);
+        assert!((identity.longest_wrong_s - 0.2).abs() < 1e-12, "frames 1 to 3 at 10 frames/s");
+        assert_eq!((identity.switches, identity.never), (3, 0));
     }
 
     #[test]

@@ -36,6 +36,7 @@ fn a_folder_written_is_read_back() {
             id: 3,
             position_m: [0.1, -0.2, 7.3],
             orientation_xyzw: [0.0, 0.0, 0.0, 1.0],
+            velocity_m_s: Some([1.0, -2.5, 0.125]),
             distance_m: 7.303_423_9,
             leds: vec![TruthLed { u_px: 100.25, v_px: 3.5, led: Some(2) }],
         }],

@@ -36,6 +36,9 @@ pub struct TruthNeighbour {
     pub orientation_xyzw: [f64; 4],
     /// From the camera's centre to its origin, m.
     pub distance_m: f64,
+    /// How its place changes, m/s: relative to the camera, in axes that do not rotate and are the camera's at that time, where known.
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "limits::maybe_velocity")]
+    pub velocity_m_s: Option<[f64; 3]>,
     /// Those of its LEDs that shone into the image.
     pub leds: Vec<TruthLed>,
 }
@@ -61,6 +64,7 @@ impl TruthFrame {
                 .position_m
                 .iter()
                 .chain(&n.orientation_xyzw)
+                .chain(n.velocity_m_s.iter().flatten())
                 .chain([&n.distance_m])
                 .all(|x| x.is_finite())
         };
@@ -96,6 +100,14 @@ mod limits {
         let place_m = <[f64; 3]>::deserialize(deserializer)?;
         place_m.iter().try_for_each(|x| check(*x, &physics::PLACE_M).map(|_| ()))?;
         Ok(place_m)
+    }
+
+    pub(super) fn maybe_velocity<'de, D: Deserializer<'de>>(
+        deserializer: D,
+    ) -> Result<Option<[f64; 3]>, D::Error> {
+        let velocity_m_s = Option::<[f64; 3]>::deserialize(deserializer)?;
+        velocity_m_s.iter().flatten().try_for_each(|x| check(*x, &physics::SPEED_M_S).map(|_| ()))?;
+        Ok(velocity_m_s)
     }
 }
 

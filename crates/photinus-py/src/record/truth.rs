@@ -87,6 +87,13 @@ impl TruthNeighbour {
         self.told().distance_m
     }
 
+    /// How its place changes, (3,), m/s: relative to the camera, in axes that do not rotate and are the camera's at that time; None
+    /// where that is not known.
+    #[getter]
+    fn velocity_m_s<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
+        self.told().velocity_m_s.map(|velocity_m_s| vector(py, velocity_m_s))
+    }
+
     /// Those of its LEDs that shone into the image.
     #[getter]
     fn leds<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {

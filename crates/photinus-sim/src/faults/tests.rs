@@ -27,6 +27,7 @@ pub(super) fn truth(frame: u64, leds_px: &[[f64; 2]]) -> TruthFrame {
         position_m: [0.0, 0.0, 5.0],
         orientation_xyzw: [0.0, 0.0, 0.0, 1.0],
         distance_m: 5.0,
+        velocity_m_s: None,
         leds: (0..).zip(leds_px).map(led).collect(),
     };
     TruthFrame { frame, time_s: frame as f64 / 60.0, neighbours: vec![neighbour], ..TruthFrame::default() }

@@ -72,17 +72,21 @@ impl Renderer {
         let exposure = snapshot.exposure;
         let middle = exposure.share(0.5 * exposure.length_s);
         let camera_from_world = snapshot.camera.pose(middle).inverse();
+        let span_s = exposure.span_s();
         for vehicle in &snapshot.vehicles {
             let camera_from_body = camera_from_world * vehicle.motion.pose(middle);
             let position_m = camera_from_body.translation.vector;
             let instants = self.instants(snapshot, vehicle, &position_m);
             let leds = self.draw_vehicle(snapshot, vehicle, &instants, &mut electrons);
             let q = camera_from_body.rotation.coords;
+            let way_m = vehicle.motion.way_m() - snapshot.camera.way_m();
+            let velocity_m_s = camera_from_world.rotation * way_m / span_s;
             neighbours.push(TruthNeighbour {
                 id: vehicle.id,
                 position_m: position_m.into(),
                 orientation_xyzw: [q.x, q.y, q.z, q.w],
                 distance_m: position_m.norm(),
+                velocity_m_s: Some(velocity_m_s.into()),
                 leds,
             });
         }

@@ -76,6 +76,11 @@ impl Moving {
         Isometry3::from_parts(Translation3::from(place_m), UnitQuaternion::new_normalize(turn))
     }
 
+    /// The way from the start of the span to its end, m: over the span the velocity in its middle.
+    pub(crate) fn way_m(&self) -> Vector3<f64> {
+        self.poses[2].translation.vector - self.poses[0].translation.vector
+    }
+
     /// The same as seen from a frame that is fixed to it: world_from_part of world_from_body.
     #[must_use]
     pub fn carrying(&self, body_from_part: &Isometry3<f64>) -> Self {

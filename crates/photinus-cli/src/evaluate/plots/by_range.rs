@@ -203,12 +203,13 @@ fn bounds(pairs: &[Pair<'_>]) -> Option<Figure> {
 
 fn position_nees(scores: &Scores) -> Option<Figure> {
     let bins = &scores.position.bins;
-    let nees = at_middles(bins, |score| score.nees.map(|nees| nees / 3.0));
+    let nees = at_middles(bins, |score| score.consistency.nees.map(|nees| nees / 3.0));
     if nees.is_empty() {
         return None;
     }
     // Where the mean of right covariances falls in 95 of 100 experiments.
-    let error = at_middles(bins, |score| score.nees_standard_error.map(|error| 1.96 * error / 3.0));
+    let error =
+        at_middles(bins, |score| score.consistency.nees_standard_error.map(|error| 1.96 * error / 3.0));
     let expected: Vec<_> = error.iter().map(|&(x, error)| (x, (1.0 - error).max(0.0), 1.0 + error)).collect();
     let mut plots: Vec<Plot> = Vec::new();
     if expected.len() > 1 {

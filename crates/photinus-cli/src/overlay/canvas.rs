@@ -126,6 +126,20 @@ impl<'c> Canvas<'c> {
         }
     }
 
+    /// A line with a head of `head` px; where it is too short for that, nothing.
+    pub(super) fn arrow(&mut self, from: Point, to: Point, pen: Pen, head: f32) {
+        let (dx, dy) = (to.x - from.x, to.y - from.y);
+        let length = (dx * dx + dy * dy).sqrt();
+        if !(head..=1e5).contains(&length) {
+            return;
+        }
+        let (x, y) = (dx / length * head, dy / length * head);
+        let base = Point::from_xy(to.x - x, to.y - y);
+        self.line(&[from, base], pen);
+        let side = |sign: f32| Point::from_xy(base.x - sign * 0.5 * y, base.y + sign * 0.5 * x);
+        self.polygon(&[to, side(1.0), side(-1.0)], pen.colour);
+    }
+
     /// The outline of a polygon.
     pub(super) fn outline(&mut self, points: &[Point], pen: Pen) {
         if let Some(path) = path_through(points, true) {

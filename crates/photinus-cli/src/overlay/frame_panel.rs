@@ -1,5 +1,6 @@
 //! The frame with what was found in it.
 
+use nalgebra::Vector3;
 use photinus::camera::Pixel;
 use photinus::frame::FrameView;
 use photinus_io::results::{Distance, FrameRecord, NeighbourRecord, RejectedRecord, SpotRecord};
@@ -7,7 +8,9 @@ use tiny_skia::{ColorU8 as Colour, Point, Rect};
 
 use super::canvas::{Align, Canvas, Pen, Words};
 use super::colours;
+use super::followed::Followed;
 use super::labels::Labels;
+use super::names::Name;
 use super::zoom::Zoom;
 
 /// Grey level to which the middle level of a dark frame is lifted.
@@ -32,13 +35,15 @@ pub(super) struct FramePanel {
 }
 
 impl FramePanel {
-    /// Draws everything; `names` are the numbers that the neighbours go by.
+    /// Draws everything, neighbours by their names; beside who is followed stands what tells where a place of the camera frame, m, is
+    /// in the frame.
     pub(super) fn draw(
         &self,
         canvas: &mut Canvas<'_>,
         record: &FrameRecord,
-        names: &[usize],
+        names: &[Name],
         frame: Option<FrameView<'_>>,
+        (followed, seen): (&[Followed<'_>], &dyn Fn(&Vector3<f64>) -> Option<Pixel>),
     ) {
         let Some(area) = self.area() else { return };
         match frame {
@@ -49,8 +54,9 @@ impl FramePanel {
         for spot in &record.spots {
             labels.take(self.at(spot.u_px, spot.v_px), self.radius_of(record, spot));
         }
-        for (neighbour, &number) in record.neighbours.iter().zip(names) {
-            self.neighbour(canvas, &mut labels, record, neighbour, number);
+        followed.iter().for_each(|followed| self.followed(canvas, &mut labels, followed, seen));
+        for (neighbour, name) in record.neighbours.iter().zip(names) {
+            self.neighbour(canvas, &mut labels, record, neighbour, name);
         }
         for (index, spot) in record.spots.iter().enumerate() {
             let mark = (self.radius_of(record, spot), colour_of_spot(record, names, index));
@@ -81,9 +87,9 @@ impl FramePanel {
         labels: &mut Labels,
         record: &FrameRecord,
         neighbour: &NeighbourRecord,
-        number: usize,
+        name: &Name,
     ) {
-        let colour = colours::neighbour(number);
+        let colour = name.colour();
         let spots: Vec<&SpotRecord> =
             neighbour.spots.iter().filter_map(|&spot| record.spots.get(spot)).collect();
         let path: Vec<Point> = chain(&spots).iter().map(|spot| self.at(spot.u_px, spot.v_px)).collect();
@@ -102,8 +108,8 @@ impl FramePanel {
         let Some(middle) = middle_of(&path) else { return };
         let is_crowd = record.neighbours.len() > CROWD;
         let (first, second) = match is_crowd {
-            true => (name(number), String::new()),
-            false => distance_lines(&neighbour.distance_m, number),
+            true => (name.word.clone(), String::new()),
+            false => distance_lines(&neighbour.distance_m, name),
         };
         let size = 15.0 * self.unit;
         let words = |text| Words { text, size, colour, halo: Some(colours::SHADE) };
@@ -132,6 +138,30 @@ impl FramePanel {
         }
         canvas.words(words(&first), Point::from_xy(corner.x, corner.y + size), Align::Left);
         canvas.words(words(&second), Point::from_xy(corner.x, corner.y + 2.2 * size), Align::Left);
+    }
+
+    /// Its tail, its way ahead, and a ring with its name where it is thought to be unseen.
+    fn followed(
+        &self,
+        canvas: &mut Canvas<'_>,
+        labels: &mut Labels,
+        followed: &Followed<'_>,
+        seen: &dyn Fn(&Vector3<f64>) -> Option<Pixel>,
+    ) {
+        let colour = followed.name.colour();
+        let shown = |place_m: &Vector3<f64>| seen(place_m).map(|pixel| self.at(pixel.u, pixel.v));
+        let tail: Vec<Point> = followed.tail_m.iter().filter_map(shown).collect();
+        canvas.line(&tail, Pen::new(colour, self.unit));
+        let Some(at) = shown(&followed.position_m) else { return };
+        if let Some(ahead) = shown(&followed.ahead_m) {
+            canvas.arrow(at, ahead, Pen::new(colour, 1.6 * self.unit), 6.0 * self.unit);
+        }
+        if followed.is_unseen {
+            let radius = 14.0 * self.unit;
+            canvas.circle(at, radius, Pen::new(colour, self.unit));
+            labels.take(at, radius);
+            self.label(canvas, labels, at, radius, &format!("{} unseen", followed.name.word), colour);
+        }
     }
 
     fn spot(
@@ -214,26 +244,20 @@ impl FramePanel {
 }
 
 /// Distance, then its bounds.
-fn distance_lines(distance: &Distance, number: usize) -> (String, String) {
+fn distance_lines(distance: &Distance, name: &Name) -> (String, String) {
     let sigma = distance.sigma.map_or(String::new(), |sigma| format!(" ± {sigma:.2}"));
     let estimate = distance.estimate.map_or("no estimate".to_owned(), |m| format!("{m:.2}{sigma} m"));
     let bounds = match distance.max {
         Some(max) => format!("{:.2} to {max:.2} m", distance.min),
         None => format!("{:.2} m or more", distance.min),
     };
-    (format!("{}  {estimate}", name(number)), bounds)
-}
-
-/// What a neighbour of a frame is called in the picture: A to Z, then A2 to Z2, and so on.
-pub(super) fn name(number: usize) -> String {
-    let (round, letter) = (number / 26, (b'A'..=b'Z').map(char::from).nth(number % 26).unwrap_or('?'));
-    if round == 0 { letter.to_string() } else { format!("{letter}{}", round + 1) }
+    (format!("{}  {estimate}", name.word), bounds)
 }
 
 /// The neighbour's colour, or that of spots that belong to none.
-fn colour_of_spot(record: &FrameRecord, names: &[usize], index: usize) -> Colour {
+fn colour_of_spot(record: &FrameRecord, names: &[Name], index: usize) -> Colour {
     let owner = record.neighbours.iter().zip(names).find(|(neighbour, _)| neighbour.spots.contains(&index));
-    owner.map_or(colours::SPOT, |(_, &number)| colours::neighbour(number))
+    owner.map_or(colours::SPOT, |(_, name)| name.colour())
 }
 
 /// Spots in the order along their longer side, so that a line joins neighbours of each other.
@@ -297,16 +321,17 @@ mod tests {
     }
 
     #[test]
-    fn neighbours_have_names_however_many() {
-        assert_eq!([name(0), name(25), name(26)], ["A", "Z", "A2"]);
-    }
-
-    #[test]
     fn what_is_not_known_of_a_distance_is_not_shown() {
         let distance =
             Distance { estimate: None, sigma: None, min: 2.0, max: None, perpendicular: None, inline: None };
-        assert_eq!(distance_lines(&distance, 1), ("B  no estimate".into(), "2.00 m or more".into()));
+        assert_eq!(
+            distance_lines(&distance, &Name::letter(1)),
+            ("B  no estimate".into(), "2.00 m or more".into())
+        );
         let known = Distance { estimate: Some(7.254), sigma: Some(0.5), max: Some(9.0), ..distance };
-        assert_eq!(distance_lines(&known, 0), ("A  7.25 ± 0.50 m".into(), "2.00 to 9.00 m".into()));
+        assert_eq!(
+            distance_lines(&known, &Name::letter(0)),
+            ("A  7.25 ± 0.50 m".into(), "2.00 to 9.00 m".into())
+        );
     }
 }

@@ -13,6 +13,7 @@ enum Mark {
     Neighbour,
     Bounds,
     Estimate,
+    Followed,
     Truth,
 }
 
@@ -20,6 +21,7 @@ enum Mark {
 #[derive(Clone, Copy, PartialEq)]
 pub(super) struct Kinds {
     pub(super) neighbours: bool,
+    pub(super) followed: bool,
     pub(super) truth: bool,
 }
 
@@ -35,9 +37,10 @@ const NEIGHBOUR_MARKS: [(Mark, &str); 5] = [
 /// Draws the legend to the right of `at`, through its middle; that of neighbours where they are looked for.
 pub(super) fn draw(canvas: &mut Canvas<'_>, at: Point, kinds: Kinds, unit: f32) {
     let marks = if kinds.neighbours { &NEIGHBOUR_MARKS[..] } else { &MARKS };
+    let followed = kinds.followed.then_some((Mark::Followed, "2 s ago to 0.5 s ahead; # is its id"));
     let truth = kinds.truth.then_some((Mark::Truth, "truth"));
     let mut x = at.x;
-    for (mark, text) in marks.iter().copied().chain(truth) {
+    for (mark, text) in marks.iter().copied().chain(followed).chain(truth) {
         let width = mark.draw(canvas, Point::from_xy(x, at.y), unit);
         let words = Words { text, size: 13.0 * unit, colour: colours::INK, halo: None };
         let begin = x + width + 7.0 * unit;
@@ -63,6 +66,11 @@ impl Mark {
                     .map(|(dx, dy)| Point::from_xy(centre.x + dx, centre.y + dy));
                 canvas.outline(&diamond, Pen::new(colours::REJECTED, 1.4 * unit).on(colours::SHADE));
                 14.0 * unit
+            }
+            Mark::Followed => {
+                canvas.line(&[x(0.0), x(20.0)], Pen::new(colour, 1.2 * unit));
+                canvas.arrow(x(20.0), x(36.0), Pen::new(colour, 2.0 * unit), 6.0 * unit);
+                36.0 * unit
             }
             Mark::Truth => {
                 canvas.square(x(7.0), 6.0 * unit, Pen::new(colours::INK, 1.8 * unit));

@@ -2,13 +2,14 @@
 
 use nalgebra::{Vector2, Vector3};
 use photinus_io::results::{FrameRecord, NeighbourRecord};
-use tiny_skia::{Point, Rect};
+use tiny_skia::{ColorU8 as Colour, Point, Rect};
 
 use super::canvas::{Align, Canvas, Pen, Words};
 use super::colours;
-use super::frame_panel::name;
+use super::followed::Followed;
 use super::ground::Ground;
 use super::labels::Labels;
+use super::names::Name;
 
 /// The ranges that the plot may show, m: few, so that it seldom changes from frame to frame.
 const RANGES_M: [f64; 11] = [2.0, 4.0, 6.0, 10.0, 16.0, 25.0, 40.0, 60.0, 100.0, 200.0, 400.0];
@@ -53,15 +54,32 @@ impl<'a> MapPanel<'a> {
         self.rings(canvas);
     }
 
-    /// Draws the neighbours; `names` are the numbers that they go by.
-    pub(super) fn draw(&self, canvas: &mut Canvas<'_>, record: &FrameRecord, names: &[usize]) {
+    /// Draws the neighbours by their names, and who is followed.
+    pub(super) fn draw(
+        &self,
+        canvas: &mut Canvas<'_>,
+        record: &FrameRecord,
+        names: &[Name],
+        followed: &[Followed<'_>],
+    ) {
         let mut labels = Labels::new(self.area);
         labels.take(self.camera, 12.0 * self.unit);
-        for (neighbour, &number) in record.neighbours.iter().zip(names) {
-            self.neighbour(canvas, &mut labels, neighbour, number);
+        for (neighbour, name) in record.neighbours.iter().zip(names) {
+            self.neighbour(canvas, &mut labels, neighbour, name.colour());
         }
-        for (neighbour, &number) in record.neighbours.iter().zip(names) {
-            self.label(canvas, &mut labels, neighbour, number);
+        followed.iter().for_each(|followed| self.followed(canvas, followed));
+        for (neighbour, name) in record.neighbours.iter().zip(names) {
+            let distance = &neighbour.distance_m;
+            let place_m = Vector3::from(neighbour.bearing) * distance.estimate.unwrap_or(distance.min);
+            let text = match distance.estimate {
+                Some(estimate_m) => format!("{}  {estimate_m:.1} m", name.word),
+                None => name.word.clone(),
+            };
+            self.label(canvas, &mut labels, &place_m, &text);
+        }
+        for unseen in followed.iter().filter(|followed| followed.is_unseen) {
+            let text = format!("{}  {:.1} m, unseen", unseen.name.word, unseen.position_m.norm());
+            self.label(canvas, &mut labels, &unseen.position_m, &text);
         }
         self.own_camera(canvas);
     }
@@ -115,9 +133,8 @@ impl<'a> MapPanel<'a> {
         canvas: &mut Canvas<'_>,
         labels: &mut Labels,
         neighbour: &NeighbourRecord,
-        number: usize,
+        colour: Colour,
     ) {
-        let colour = colours::neighbour(number);
         let way = self.ground.of(&neighbour.bearing.into());
         let (distance, slant) = (&neighbour.distance_m, way.norm());
         if !(1e-3..=1.0 + 1e-9).contains(&slant) {
@@ -142,7 +159,7 @@ impl<'a> MapPanel<'a> {
         if far_m <= rim_m {
             cap(canvas, far_m, 8.0 * self.unit, 1.6 * self.unit);
         } else {
-            self.arrow(canvas, (way / slant, rim_m * slant), across, number);
+            self.arrow(canvas, (way / slant, rim_m * slant), across, colour);
         }
         let Some(estimate_m) = distance.estimate else { return };
         if let Some(sigma_m) = distance.sigma {
@@ -169,32 +186,22 @@ impl<'a> MapPanel<'a> {
         canvas: &mut Canvas<'_>,
         (ahead, rim_m): (Vector2<f64>, f64),
         across: Vector2<f64>,
-        number: usize,
+        colour: Colour,
     ) {
         let px = |px: f32| f64::from(px * self.unit) / self.px_per_m;
         let tip = ahead * (rim_m + px(8.0));
         let base = ahead * (rim_m - px(4.0));
         let corners = [tip, base + across * px(9.0), base - across * px(9.0)];
-        canvas.polygon(&corners.map(|corner| self.at(corner)), colours::neighbour(number));
+        canvas.polygon(&corners.map(|corner| self.at(corner)), colour);
     }
 
-    fn label(
-        &self,
-        canvas: &mut Canvas<'_>,
-        labels: &mut Labels,
-        neighbour: &NeighbourRecord,
-        number: usize,
-    ) {
-        let distance = &neighbour.distance_m;
-        let way = self.ground.of(&neighbour.bearing.into());
-        let rim_m = self.rim_m(way);
-        let at = self.at(way * distance.estimate.unwrap_or(distance.min).min(rim_m));
-        let text = match distance.estimate {
-            Some(estimate_m) => format!("{}  {estimate_m:.1} m", name(number)),
-            None => name(number),
-        };
+    /// Words beside a place, camera frame, m.
+    fn label(&self, canvas: &mut Canvas<'_>, labels: &mut Labels, place_m: &Vector3<f64>, text: &str) {
+        let distance_m = place_m.norm();
+        let way = self.ground.of(place_m) / distance_m.max(f64::MIN_POSITIVE);
+        let at = self.at(way * distance_m.min(self.rim_m(way)));
         let size = 13.0 * self.unit;
-        let words = Words { text: &text, size, colour: colours::INK, halo: Some(colours::PAPER) };
+        let words = Words { text, size, colour: colours::INK, halo: Some(colours::PAPER) };
         labels.take(at, 6.0 * self.unit);
         let room = (canvas.width_of(words), size);
         if let Some((corner, times)) = labels.place_near(at, (10.0 * self.unit, 10.0 * self.unit), room) {
@@ -206,6 +213,24 @@ impl<'a> MapPanel<'a> {
                 canvas.line(&[at, end], Pen::new(colours::FAINT_INK, self.unit));
             }
             canvas.words(words, Point::from_xy(corner.x, corner.y + 0.86 * size), Align::Left);
+        }
+    }
+
+    /// Its tail, its way ahead, and a ring where it is thought to be unseen; what is past the rim is not drawn.
+    fn followed(&self, canvas: &mut Canvas<'_>, followed: &Followed<'_>) {
+        let colour = followed.name.colour();
+        let shown = |place_m: &Vector3<f64>| {
+            let place_m = self.ground.of(place_m);
+            (place_m.norm() <= self.range_m).then(|| self.at(place_m))
+        };
+        let tail: Vec<Point> = followed.tail_m.iter().filter_map(shown).collect();
+        canvas.line(&tail, Pen::new(colour, 1.2 * self.unit));
+        let Some(at) = shown(&followed.position_m) else { return };
+        if followed.is_unseen {
+            canvas.circle(at, 6.0 * self.unit, Pen::new(colour, 1.6 * self.unit));
+        }
+        if let Some(ahead) = shown(&followed.ahead_m) {
+            canvas.arrow(at, ahead, Pen::new(colour, 2.0 * self.unit), 7.0 * self.unit);
         }
     }
 

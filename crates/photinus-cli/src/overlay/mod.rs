@@ -5,6 +5,7 @@
 //! map_panel    the same from above (the plane of ground.rs): what can be where
 //! legend       what the marks mean
 //! names        what neighbours are called from picture to picture
+//! followed     where tracks were, are and go
 //! place        where pictures go
 //! palette      the colours of a PNG
 //! zoom         how large a pixel of the frame is drawn
@@ -15,6 +16,7 @@
 
 mod canvas;
 mod colours;
+mod followed;
 mod frame_panel;
 mod ground;
 mod labels;
@@ -34,6 +36,7 @@ use photinus_io::{Error, Result};
 use tiny_skia::{Pixmap, Point, Rect};
 
 use canvas::{Align, Canvas, Words};
+use followed::Tails;
 use frame_panel::FramePanel;
 use ground::Ground;
 use map_panel::MapPanel;
@@ -66,6 +69,7 @@ pub(crate) struct Overlay {
 #[derive(Default)]
 struct Last {
     names: Names,
+    tails: Tails,
     range_m: Option<f64>,
 }
 
@@ -112,14 +116,13 @@ impl Overlay {
         gravity: Option<&Unit<Vector3<f64>>>,
         truth_m: &[Vector3<f64>],
     ) -> Result<()> {
-        let (names, range_m) = match self.last.get_mut(camera) {
-            Some(last) => {
-                let range_m = map_panel::range_after(last.range_m, record);
-                last.range_m = Some(range_m);
-                (last.names.follow(&record.neighbours), range_m)
-            }
-            None => ((0..record.neighbours.len()).collect(), 0.0),
-        };
+        let mut alone = Last::default();
+        let last = self.last.get_mut(camera).unwrap_or(&mut alone);
+        let range_m = map_panel::range_after(last.range_m, record);
+        last.range_m = Some(range_m);
+        let called = last.names.follow(record);
+        let followed = last.tails.follow(record, &called.tracks);
+        let names = &called.neighbours;
         let camera = self.cameras.get(camera);
         let layout = Layout::new(size(camera, record, frame), camera.is_some());
         let ground = Ground::new(gravity);
@@ -127,7 +130,11 @@ impl Overlay {
         let map = layout.map.map(|area| MapPanel::new(area, ground, &field, range_m, layout.unit));
         let under = Under {
             frame_px: layout.frame.size,
-            kinds: legend::Kinds { neighbours: camera.is_some(), truth: !truth_m.is_empty() },
+            kinds: legend::Kinds {
+                neighbours: camera.is_some(),
+                followed: camera.is_some() && !followed.is_empty(),
+                truth: !truth_m.is_empty(),
+            },
             map: map.as_ref().map(|_| (range_m, ground.is_level, field.clone())),
         };
         let no_memory = || Error::format(&record.source, "no memory for a picture of this size");
@@ -143,12 +150,12 @@ impl Overlay {
         picture.data_mut().copy_from_slice(under.data());
         let mut canvas = Canvas::on(picture, &mut self.font);
         layout.heading(&mut canvas, record);
-        layout.frame.draw(&mut canvas, record, &names, frame);
         let seen =
             |place_m: &Vector3<f64>| Bearing::new(*place_m).and_then(|bearing| camera?.pixel(&bearing));
+        layout.frame.draw(&mut canvas, record, names, frame, (&followed, &seen));
         truth_m.iter().filter_map(seen).for_each(|place| layout.frame.truth(&mut canvas, place));
         if let Some(map) = map {
-            map.draw(&mut canvas, record, &names);
+            map.draw(&mut canvas, record, names, &followed);
             truth_m.iter().for_each(|place_m| map.truth(&mut canvas, place_m));
         }
         self.place.write(picture, &self.palette, record, &mut self.bytes)

@@ -3,7 +3,7 @@ use std::path::PathBuf;
 use nalgebra::Vector3;
 use photinus::camera::{Bearing, Ideal, IdealLaw, Model, Pixel};
 use photinus_io::image::{GreyImage, read_image};
-use photinus_io::results::{Distance, NeighbourRecord, RejectedRecord, SpotRecord};
+use photinus_io::results::{Distance, NeighbourRecord, RejectedRecord, SpotRecord, TrackRecord};
 
 use super::*;
 
@@ -216,6 +216,48 @@ fn numbers_that_are_none_do_no_harm() {
         record.neighbours[2].distance_m.sigma = Some(b);
         record.neighbours[2].spots = vec![0, 999];
         record.rejected[1].area_px = u32::MAX;
+        record.tracks = vec![TrackRecord { velocity_m_s: [b, a, 0.0], ..track([a, b, 2.0]) }];
         picture(&folder, &record, None, Some(camera()));
     }
+}
+
+fn track(position_m: [f64; 3]) -> TrackRecord {
+    let covariance = [[0.01, 0.0, 0.0], [0.0, 0.01, 0.0], [0.0, 0.0, 0.01]];
+    TrackRecord {
+        track: 4,
+        airframe: "hexarotor-0.4".to_owned(),
+        probability: 1.0,
+        id: Some(7),
+        id_probability: Some(1.0),
+        ids: Vec::new(),
+        predicted: true,
+        spots: Vec::new(),
+        position_m,
+        position_covariance_m2: covariance,
+        position_body_m: None,
+        position_body_covariance_m2: None,
+        velocity_m_s: [1.0, 0.0, 0.5],
+        velocity_covariance_m2_s2: covariance,
+        orientation_xyzw: [0.0, 0.0, 0.0, 1.0],
+        orientation_covariance_rad2: covariance,
+    }
+}
+
+#[test]
+fn who_is_followed_is_drawn_with_a_tail_also_unseen() {
+    let folder = Folder::new("followed");
+    std::fs::create_dir_all(&folder.0).unwrap();
+    let mut overlay = Overlay::new(Place::folder(folder.0.clone()), vec![camera()]).unwrap();
+    let picture = |overlay: &mut Overlay, time_s: f64, position_m: [f64; 3]| {
+        let record = FrameRecord { time_s: Some(time_s), tracks: vec![track(position_m)], ..record() };
+        overlay.draw(0, &record, None, None, &[]).unwrap();
+        read_image(folder.0.join("overlay-000017.png")).unwrap().image
+    };
+    let begun = picture(&mut overlay, 0.0, [-1.0, 0.5, 4.0]);
+    let gone_on = picture(&mut overlay, 1.0, [0.0, 0.5, 4.5]);
+    let later = picture(&mut overlay, 3.5, [0.0, 0.5, 4.5]);
+    let marked =
+        |image: &GreyImage| image.pixels().iter().filter(|&&level| (90..200).contains(&level)).count();
+    assert!(marked(&gone_on) > marked(&begun) + 200, "the tail shows where it was");
+    assert!(marked(&later) < marked(&gone_on), "and is forgotten after two seconds");
 }

@@ -103,6 +103,9 @@ impl Stepper {
         self.first_predicted.push(self.predicted.len());
         let scene = Scene { model, watched, moment, interval_s };
         self.ways.begin(&scene, before.clutter);
+        for (vehicle, range) in self.first_predicted.windows(2).enumerate() {
+            self.ways.may_screen(vehicle, &self.predicted[range[0]..range[1]]);
+        }
         for (vehicle, target) in before.targets.iter().enumerate() {
             let components =
                 &self.predicted[self.first_predicted[vehicle]..self.first_predicted[vehicle + 1]];

@@ -129,12 +129,21 @@ pub(crate) struct Vehicle {
     pub(crate) yaw_rad: f64,
     /// About the world's horizontal axes, rad.
     pub(crate) tilt_rad: [f64; 2],
+    /// Radius of what hides markers behind it, m.
+    pub(crate) body_m: f64,
 }
 
 impl Vehicle {
     pub(crate) fn at(position_m: [f64; 3], velocity_m_s: [f64; 3], yaw_rad: f64) -> Self {
         let [position_m, velocity_m_s] = [position_m, velocity_m_s].map(Vector3::from);
-        Self { position_m, velocity_m_s, yaw_rad, tilt_rad: [0.0; 2] }
+        Self { position_m, velocity_m_s, yaw_rad, tilt_rad: [0.0; 2], body_m: 0.0 }
+    }
+
+    /// Whether it hides a place from the camera.
+    fn hides(&self, place_m: &Vector3<f64>) -> bool {
+        let ahead = place_m.normalize();
+        let along_m = ahead.dot(&self.position_m);
+        along_m < place_m.norm() && (self.position_m - ahead * along_m).norm() < self.body_m
     }
 
     pub(crate) fn world_from_body(&self) -> Rotation3<f64> {
@@ -202,7 +211,9 @@ pub(crate) fn look(
             let flux = POWER * airframe.intensity(number, &camera_m) / at_m.norm_squared();
             let within = |pixel: &Pixel| (3.0..748.0).contains(&pixel.u) && (3.0..476.0).contains(&pixel.v);
             let pixel = Bearing::new(at_m).and_then(|bearing| camera.pixel(&bearing)).filter(within);
-            if let Some(pixel) = pixel.filter(|_| flux >= FAINTEST) {
+            let at_m = camera_from_world.inverse() * at_m;
+            let is_hidden = vehicles.iter().any(|other| other.hides(&at_m));
+            if let Some(pixel) = pixel.filter(|_| flux >= FAINTEST && !is_hidden) {
                 points.push((flux, pixel, number));
             }
         }

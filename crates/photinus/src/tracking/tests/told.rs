@@ -111,5 +111,6 @@ fn vehicle(state: &State) -> Vehicle {
         velocity_m_s: state.fixed_rows::<3>(3).into_owned(),
         yaw_rad: state[6],
         tilt_rad: [state[7], state[8]],
+        body_m: 0.0,
     }
 }

@@ -6,6 +6,7 @@
 
 mod blinking;
 mod located;
+mod screening;
 
 use super::branches::{Around, Branches, Pairs};
 use super::component::Component;
@@ -20,6 +21,7 @@ use crate::camera::{Bearing, Watched};
 use crate::pose::{self, Assignment, Known, Measurement, Observation, Pose, Seen, Visible, Whitened};
 use crate::ranging::Interval;
 use blinking::Blinking;
+use screening::Screens;
 
 /// Neighbours at half of the sphere.
 const FIELD_SR: f64 = core::f64::consts::TAU;
@@ -69,8 +71,11 @@ pub(super) struct Ways {
     per_frame: pose::Settings,
     correlated: f64,
     whitened: Vec<Whitened>,
+    /// How likely each marker of a vehicle is lit as told, and as a pose has it.
+    told_lit: Vec<f64>,
     lit: Vec<f64>,
     blinking: Blinking,
+    screens: Screens,
     branches: Branches,
     tried: Vec<Pairs>,
     markers: Vec<Option<u16>>,
@@ -97,8 +102,10 @@ impl Ways {
             per_frame: pose::Settings::default(),
             correlated: 1.0,
             whitened: Vec::new(),
+            told_lit: Vec::with_capacity(markers),
             lit: Vec::with_capacity(markers),
             blinking: Blinking::default(),
+            screens: Screens::default(),
             branches: Branches::with_room(markers),
             tried: Vec::with_capacity(16),
             markers: Vec::new(),
@@ -125,10 +132,16 @@ impl Ways {
         self.unseen_of[self.first_unseen[vehicle]..].iter().copied()
     }
 
+    /// A vehicle that may stand before others: all of them, before the first is added.
+    pub(super) fn may_screen(&mut self, vehicle: usize, components: &[Component]) {
+        self.screens.add(vehicle, components);
+    }
+
     /// Begins a frame with so many points of clutter.
     pub(super) fn begin(&mut self, scene: &Scene<'_>, clutter: f64) {
         let Scene { model, moment, interval_s, .. } = *scene;
         self.all.clear();
+        self.screens.clear();
         self.choices.clear();
         self.log_unseen.clear();
         self.unseen_if_shown.clear();
@@ -171,7 +184,7 @@ impl Ways {
         let log_shown = libm::log(existence.shown.max(f64::MIN_POSITIVE));
         let mut unseen_if_shown = 0.0;
         for (from, component) in components.iter().enumerate() {
-            let unseen = self.unseen(scene, target, component);
+            let unseen = self.unseen(scene, vehicle, target, component);
             self.unseen_of.push(unseen);
             unseen_if_shown += component.weight * unseen;
             let Some(prior) = Prior::of(component) else { continue };
@@ -197,10 +210,10 @@ impl Ways {
         let extra_rad2 = self.correlated * angle_rad * angle_rad;
         self.whitened.clear();
         self.whitened.extend(self.observations.iter().map(|seen| Whitened::of(seen, extra_rad2)));
-        self.lit.clear();
-        self.lit.resize(model.airframe.markers().len(), 1.0);
+        self.told_lit.clear();
+        self.told_lit.resize(model.airframe.markers().len(), 1.0);
         for told in moment.lit.iter().filter(|told| told.track == target.id) {
-            if let Some(place) = self.lit.get_mut(usize::from(told.marker)) {
+            if let Some(place) = self.told_lit.get_mut(usize::from(told.marker)) {
                 *place = told.probability.clamp(0.0, 1.0);
             }
         }
@@ -212,16 +225,20 @@ impl Ways {
         }
     }
 
-    /// How likely each marker is lit at a pose, where markers blink.
-    fn light(&mut self, scene: &Scene<'_>, pose: &Pose) {
+    /// How likely each marker of a vehicle is lit at a pose, and not behind another vehicle.
+    fn light(&mut self, scene: &Scene<'_>, vehicle: usize, from: &Component, pose: &Pose) {
+        self.lit.clone_from(&self.told_lit);
         if let Some(others_lit) = scene.moment.others_lit {
             self.blinking.light(scene.model, pose, others_lit, &mut self.lit);
+        }
+        if is_known_aside(from, scene.model.airframe.max_radius_m()) {
+            self.screens.dim(vehicle, &scene.model.airframe, pose, &mut self.lit);
         }
     }
 
     /// How likely no marker of a vehicle is seen that nothing hides.
-    fn unseen(&mut self, scene: &Scene<'_>, target: &Target, component: &Component) -> f64 {
-        self.light(scene, &component.pose);
+    fn unseen(&mut self, scene: &Scene<'_>, vehicle: usize, target: &Target, component: &Component) -> f64 {
+        self.light(scene, vehicle, component, &component.pose);
         self.markers.clear();
         self.markers.resize(self.observations.len(), None);
         self.gather_others(scene, component);
@@ -234,7 +251,7 @@ impl Ways {
     /// The ways that the prediction offers.
     fn grow(&mut self, scene: &Scene<'_>, origin: &Origin<'_>) {
         let Scene { model, moment, .. } = *scene;
-        self.light(scene, &origin.prior.component.pose);
+        self.light(scene, origin.vehicle, &origin.prior.component, &origin.prior.component.pose);
         let around = Around {
             airframe: &model.airframe,
             observations: &self.observations,
@@ -265,7 +282,7 @@ impl Ways {
             signals += signal_nats(model, moment, usize::from(spot), usize::from(marker));
         }
         self.gather_others(scene, &start);
-        self.light(scene, &start.pose);
+        self.light(scene, origin.vehicle, &origin.prior.component, &start.pose);
         let updated =
             self.measured(scene, &start.pose, |measurement| origin.prior.update(measurement, &start));
         let Some(updated) = updated else { return };
@@ -333,6 +350,15 @@ struct Origin<'a> {
     /// Logarithm of how likely the vehicle is shown, as this distribution.
     log_weight: f64,
     prior: &'a Prior,
+}
+
+/// Whether a vehicle is known across the line of sight to less than its radius: else it may be beside what stands before it as well as behind, and a
+/// marker alone would be any.
+fn is_known_aside(component: &Component, radius_m: f64) -> bool {
+    let ahead = component.pose.position_m.normalize();
+    let covariance_m2 = component.block(0);
+    let across_m2 = covariance_m2.trace() - ahead.dot(&(covariance_m2 * ahead));
+    across_m2 < radius_m * radius_m
 }
 
 /// What it costs that a spot is a marker, for the signal that it blinks.

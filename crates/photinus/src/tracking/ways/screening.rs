@@ -1,0 +1,59 @@
+//! Vehicles ahead of each other -> which markers may be hidden by a nearer one: nobody describes its body, but it may fill the sphere on which its
+//! markers sit.
+
+use nalgebra::Vector3;
+
+use super::super::component::Component;
+use crate::airframe::Airframe;
+use crate::pose::Pose;
+
+/// How likely a marker shows past a vehicle in whose sphere its line of sight lies: rings of markers are open, bodies are not.
+const SHOWS: f64 = 0.5;
+
+/// Where vehicles are that may hide others. Keeps its room.
+#[derive(Debug, Default)]
+pub(super) struct Screens(Vec<Screen>);
+
+#[derive(Debug)]
+struct Screen {
+    vehicle: usize,
+    ahead: Vector3<f64>,
+    distance_m: f64,
+}
+
+impl Screens {
+    /// Forgets all of them.
+    pub(super) fn clear(&mut self) {
+        self.0.clear();
+    }
+
+    /// Adds a vehicle, where it most likely is.
+    pub(super) fn add(&mut self, vehicle: usize, components: &[Component]) {
+        let likeliest = components.iter().max_by(|a, b| a.weight.total_cmp(&b.weight));
+        let Some(distance_m) = likeliest.map(|component| component.pose.position_m.norm()) else { return };
+        if let Some(component) = likeliest.filter(|_| distance_m > 0.0) {
+            self.0.push(Screen { vehicle, ahead: component.pose.position_m / distance_m, distance_m });
+        }
+    }
+
+    /// Lowers how likely each marker of a vehicle shows at a pose by who is before it.
+    pub(super) fn dim(&self, vehicle: usize, airframe: &Airframe, pose: &Pose, lit: &mut [f64]) {
+        let radius_m = airframe.max_radius_m();
+        let range_m = pose.position_m.norm();
+        let may_hide = |screen: &&Screen| {
+            let reach = radius_m / screen.distance_m + radius_m / range_m.max(radius_m);
+            screen.vehicle != vehicle
+                && screen.distance_m + 2.0 * radius_m < range_m
+                && (screen.ahead * range_m - pose.position_m).norm() < reach * range_m
+        };
+        for screen in self.0.iter().filter(may_hide) {
+            for (marker, lit) in airframe.markers().iter().zip(lit.iter_mut()) {
+                let place_m = pose.camera_from_body * marker.position_m + pose.position_m;
+                let before_m = screen.ahead * (screen.ahead.dot(&place_m));
+                if (place_m - before_m).norm() * screen.distance_m < radius_m * before_m.norm() {
+                    *lit *= SHOWS;
+                }
+            }
+        }
+    }
+}

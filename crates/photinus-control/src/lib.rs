@@ -9,7 +9,9 @@
 //! is in the *level frame* of the vehicle that acts, see [`OwnState`].
 
 mod controller;
+pub mod controllers;
 mod own;
+pub mod safety;
 mod seen;
 mod setpoint;
 

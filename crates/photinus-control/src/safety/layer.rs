@@ -1,0 +1,172 @@
+//! The layer itself: the wanted set-point where it is safe, the safe one nearest to it, or braking.
+
+use nalgebra::{Rotation3, Vector3};
+
+use super::alternatives::alternatives;
+use super::commitment::{Commitment, Underway};
+use super::places::{Ground, Place};
+use super::told::Told;
+use super::{Limits, LimitsError, Obstacle, Sector, Watch};
+use crate::{Motion, OwnState, Seen, Setpoint};
+
+/// How fast a wanted velocity is approached, 1/s.
+const APPROACH_PER_S: f64 = 3.0;
+
+/// What a guarded set-point rests upon.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Basis {
+    /// The commitment keeps clear of everything: the proof holds.
+    Proven,
+    /// It leads towards where nothing is known, slowly: no proof, unless nobody is there.
+    Slow,
+    /// Nothing else was allowed: it brakes, or stands. The commitment before stays, and so does what it rested upon.
+    Braking,
+}
+
+/// What may be flown.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Guarded {
+    /// An acceleration, with the yaw rate that was wanted.
+    pub setpoint: Setpoint,
+    /// What it rests upon.
+    pub basis: Basis,
+}
+
+/// Stands in front of any controller.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Safety {
+    limits: Limits,
+    told: Told,
+    underway: Underway,
+    /// For how long it has been slow enough to part, s.
+    slow_s: f64,
+    places: Vec<Place>,
+}
+
+impl Safety {
+    /// A layer for a vehicle at rest in a group with these limits.
+    pub fn new(limits: Limits) -> Result<Self, LimitsError> {
+        limits.check()?;
+        let (told, underway) = (Told::default(), Underway::default());
+        Ok(Self { limits, told, underway, slow_s: 0.0, places: Vec::new() })
+    }
+
+    /// The limits of the group.
+    pub fn limits(&self) -> &Limits {
+        &self.limits
+    }
+
+    /// What to fly instead of `wanted`, `dt_s` after the last call. `watch` says where nobody is who is not in `seen`, `obstacles`
+    /// are what a map shows, in the level frame. A vehicle that does not know its own velocity is told to stand.
+    pub fn guard(
+        &mut self,
+        own: &OwnState,
+        seen: &[Seen],
+        watch: &Watch,
+        obstacles: &[Obstacle],
+        wanted: &Setpoint,
+        dt_s: f64,
+    ) -> Guarded {
+        let level_from_before = Rotation3::from_axis_angle(&Vector3::z_axis(), -own.turn_rad_s() * dt_s);
+        self.told.pass(&level_from_before, dt_s, self.limits.delay_s);
+        let yaw_rate_rad_s = if wanted.yaw_rate_rad_s.is_finite() { wanted.yaw_rate_rad_s } else { 0.0 };
+        let velocity = own.velocity_m_s.map(|v| v.mean).filter(|v| v.iter().all(|x| x.is_finite()));
+        let Some(velocity) = velocity else {
+            self.told.tell(Vector3::zeros());
+            self.slow_s = 0.0;
+            return Guarded { setpoint: Setpoint::stand().turning(yaw_rate_rad_s), basis: Basis::Braking };
+        };
+        let is_slow = velocity.norm() + self.limits.velocity_error_m_s <= self.limits.parting_speed_m_s();
+        self.slow_s = if is_slow { self.slow_s + dt_s } else { 0.0 };
+        self.told.carry_out(&mut self.underway, velocity, &self.limits);
+        self.gather(velocity, seen, watch, obstacles);
+        let (acceleration, basis) = self.choose(wanted);
+        self.told.tell(acceleration);
+        Guarded { setpoint: Setpoint::acceleration(acceleration).turning(yaw_rate_rad_s), basis }
+    }
+
+    /// Collects what a commitment has to keep clear of.
+    fn gather(&mut self, velocity: Vector3<f64>, seen: &[Seen], watch: &Watch, obstacles: &[Obstacle]) {
+        let limits = self.limits;
+        // Both may have moved since a sight that is so old.
+        let own_speed = |age_s: f64| {
+            (velocity.norm() + limits.velocity_error_m_s + limits.acceleration_m_s2 * age_s)
+                .min(limits.speed_m_s)
+        };
+        let grown_m = |age_s: f64| (limits.speed_m_s + own_speed(age_s)) * age_s;
+        let parts = self.slow_s > limits.stopping_s();
+        self.places.clear();
+        for s in seen {
+            let sector = Sector {
+                axis: s.bearing,
+                half_angle_rad: s.bearing_bound_rad.clamp(0.0, core::f64::consts::PI),
+                distances: s.distance.bounds,
+            };
+            self.places.push(Place::Neighbour { sector, grown_m: grown_m(s.age_s.max(0.0)), parts });
+        }
+        let unknown =
+            watch.unknown().map(|(sector, age_s)| Place::Unknown { sector, grown_m: grown_m(age_s) });
+        self.places.extend(unknown);
+        self.places.extend(obstacles.iter().map(|body| Place::Body(*body)));
+        self.places.retain(|place| place.matters(&limits));
+    }
+
+    /// The acceleration nearest to the wanted one that leads into a commitment that is allowed.
+    fn choose(&self, wanted: &Setpoint) -> (Vector3<f64>, Basis) {
+        let limits = &self.limits;
+        let then = self.underway.velocity();
+        let brake = within(-then / limits.period_s, limits.braking_m_s2);
+        let wanted = match wanted.motion {
+            Motion::Acceleration(acceleration) => acceleration,
+            Motion::Velocity(wanted) => (wanted - then) * APPROACH_PER_S,
+        };
+        if !wanted.iter().all(|x| x.is_finite()) {
+            return (brake, Basis::Braking);
+        }
+        let most = limits.speed_m_s - limits.velocity_error_m_s;
+        let slowed = |acceleration: Vector3<f64>| {
+            let acceleration = within(acceleration, limits.acceleration_m_s2);
+            (within(then + acceleration * limits.period_s, most) - then) / limits.period_s
+        };
+        let wanted = slowed(wanted);
+        if let Some(basis) = self.basis(wanted) {
+            return (wanted, basis);
+        }
+        let mut best: Option<(f64, Vector3<f64>, Basis)> = None;
+        for acceleration in alternatives(wanted, brake, limits.acceleration_m_s2).map(slowed) {
+            let off = (acceleration - wanted).norm_squared();
+            if best.is_some_and(|(least, ..)| least <= off) {
+                continue;
+            }
+            if let Some(basis) = self.basis(acceleration) {
+                best = Some((off, acceleration, basis));
+            }
+        }
+        best.map_or((brake, Basis::Braking), |(_, acceleration, basis)| (acceleration, basis))
+    }
+
+    /// What a commitment to an acceleration rests upon; `None` where it is not allowed.
+    fn basis(&self, next: Vector3<f64>) -> Option<Basis> {
+        let limits = &self.limits;
+        let path = Commitment::new(limits, &self.underway, next);
+        if next.norm() > limits.acceleration_m_s2 * (1.0 + 1e-9)
+            || path.top_speed_m_s() > limits.speed_m_s * (1.0 + 1e-9)
+        {
+            return None;
+        }
+        let mut ground = Ground::Clear;
+        for place in &self.places {
+            ground = ground.max(place.allows(limits, &path));
+            if ground == Ground::Blocked {
+                return None;
+            }
+        }
+        Some(if ground == Ground::Slow { Basis::Slow } else { Basis::Proven })
+    }
+}
+
+/// A vector shortened to a length.
+fn within(vector: Vector3<f64>, most: f64) -> Vector3<f64> {
+    let norm = vector.norm();
+    if norm > most { vector * (most / norm) } else { vector }
+}

@@ -1,0 +1,213 @@
+//! What the cameras watch -> per direction, the range within which nobody is who was not seen.
+//!
+//! What is not seen is not free: a direction is known to be empty out to a range only after so many looks that somebody there would
+//! have been missed in all of them with a probability below a stated one; that knowledge then grows old, and a vehicle may come in
+//! at full speed. Where no camera looks, nothing is known.
+
+use nalgebra::{Rotation3, UnitVector3, Vector3};
+use photinus::ranging::Interval;
+
+use super::Sector;
+
+/// Cells along each edge of a cube's faces.
+const EDGE: usize = 6;
+const CELLS: usize = 6 * EDGE * EDGE;
+
+/// All directions within an angle of an axis, in the level frame: what a camera covers, or what hides behind the own airframe.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cone {
+    /// The middle.
+    pub axis: UnitVector3<f64>,
+    /// The angle, rad.
+    pub half_angle_rad: f64,
+}
+
+/// How likely one frame shows a neighbour that is no further than a range.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Detection {
+    /// The range, m.
+    pub range_m: f64,
+    /// The probability, 0 to 1; misses of frame after frame are taken as independent.
+    pub probability: f64,
+}
+
+/// A part of the directions, in axes that do not turn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Cell {
+    cone: Cone,
+    /// In how many looks in a row all of it was watched.
+    looks: u32,
+    /// Nobody was nearer than that, so long ago.
+    empty_m: f64,
+    age_s: f64,
+}
+
+/// The range to which absence is known, per direction.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Watch {
+    cells: Vec<Cell>,
+    /// Range and how many looks it takes.
+    ranges: Vec<(f64, u32)>,
+    period_s: f64,
+    closing_m_s: f64,
+    /// How far the level frame has turned since the beginning, rad.
+    turned_rad: f64,
+}
+
+impl Watch {
+    /// Nothing is known yet. Frames come every `period_s` or faster, vehicles close in at `closing_m_s` or slower, and somebody is
+    /// missed for good with probability `missed` at the most.
+    pub fn new(detections: &[Detection], missed: f64, period_s: f64, closing_m_s: f64) -> Self {
+        let looks = |d: &Detection| -> Option<(f64, u32)> {
+            let p = d.probability.clamp(0.0, 1.0);
+            // Written so that what is no number gives no knowledge.
+            let looks = if p >= 1.0 { 1.0 } else { libm::ceil(libm::log(missed) / libm::log1p(-p)).max(1.0) };
+            (p > 0.0 && d.range_m > 0.0 && looks < 1e6).then_some((d.range_m, looks as u32))
+        };
+        let cells = (0..CELLS).map(|k| Cell { cone: cone(k), looks: 0, empty_m: 0.0, age_s: 0.0 }).collect();
+        Self {
+            cells,
+            ranges: detections.iter().filter_map(looks).collect(),
+            period_s,
+            closing_m_s,
+            turned_rad: 0.0,
+        }
+    }
+
+    /// Somebody else answers for it that nobody unseen is nearer than `range_m`, anywhere.
+    pub fn empty_to(range_m: f64) -> Self {
+        let mut all = Self::new(&[], 0.0, 0.0, 0.0);
+        all.cells.iter_mut().for_each(|cell| cell.empty_m = range_m);
+        all
+    }
+
+    /// Another frame of all cameras, `dt_s` after the last and `age_s` old, while the level frame turned by `turned_rad`: what
+    /// `eyes` cover and nothing of `dead` hides was watched.
+    pub fn look(&mut self, eyes: &[Cone], dead: &[Cone], turned_rad: f64, dt_s: f64, age_s: f64) {
+        self.turned_rad += turned_rad;
+        let still_from_level = Rotation3::from_axis_angle(&Vector3::z_axis(), self.turned_rad);
+        for cell in &mut self.cells {
+            cell.age_s += dt_s;
+            let off = |other: &Cone| {
+                let axis = still_from_level * other.axis;
+                libm::atan2(axis.cross(&cell.cone.axis).norm(), axis.dot(&cell.cone.axis))
+            };
+            let watched = eyes.iter().any(|eye| off(eye) + cell.cone.half_angle_rad <= eye.half_angle_rad)
+                && !dead.iter().any(|cone| off(cone) < cone.half_angle_rad + cell.cone.half_angle_rad);
+            cell.looks = if watched { cell.looks.saturating_add(1) } else { 0 };
+            for &(range_m, looks) in self.ranges.iter().filter(|(_, looks)| *looks <= cell.looks) {
+                let since_s = age_s + f64::from(looks - 1) * self.period_s;
+                if range_m - self.closing_m_s * since_s > cell.empty_m - self.closing_m_s * cell.age_s {
+                    (cell.empty_m, cell.age_s) = (range_m, since_s);
+                }
+            }
+        }
+    }
+
+    /// How far nobody is in a direction of the level frame, m, whoever has come in since.
+    pub fn empty_m(&self, direction: &UnitVector3<f64>) -> f64 {
+        let still_from_level = Rotation3::from_axis_angle(&Vector3::z_axis(), self.turned_rad);
+        let cell = &self.cells[index(&(still_from_level * direction))];
+        (cell.empty_m - self.closing_m_s * cell.age_s).max(0.0)
+    }
+
+    /// Where somebody may be who was not seen, in the level frame of now, and how long ago that was known, s.
+    pub(super) fn unknown(&self) -> impl Iterator<Item = (Sector, f64)> {
+        let level_from_still = Rotation3::from_axis_angle(&Vector3::z_axis(), -self.turned_rad);
+        self.cells.iter().filter_map(move |cell| {
+            let distances = Interval::new(cell.empty_m.max(0.0), f64::INFINITY)?;
+            let axis = level_from_still * cell.cone.axis;
+            Some((Sector { axis, half_angle_rad: cell.cone.half_angle_rad, distances }, cell.age_s))
+        })
+    }
+}
+
+/// The cone around a cell: face by face of a cube, line by line.
+fn cone(index: usize) -> Cone {
+    let (face, line, column) = (index / (EDGE * EDGE), index / EDGE % EDGE, index % EDGE);
+    let at = |row: f64, col: f64| {
+        let place = |step: f64| 2.0 * step / EDGE as f64 - 1.0;
+        let side = if face % 2 == 0 { 1.0 } else { -1.0 };
+        let mut vector = Vector3::zeros();
+        vector[face / 2] = side;
+        vector[(face / 2 + 1) % 3] = place(row);
+        vector[(face / 2 + 2) % 3] = place(col);
+        UnitVector3::new_normalize(vector)
+    };
+    let (row, col) = (line as f64, column as f64);
+    let axis = at(row + 0.5, col + 0.5);
+    let corner_rad = |(r, c): (f64, f64)| {
+        let corner = at(row + r, col + c);
+        libm::atan2(corner.cross(&axis).norm(), corner.dot(&axis))
+    };
+    let half_angle_rad =
+        [(0.0, 0.0), (0.0, 1.0), (1.0, 0.0), (1.0, 1.0)].into_iter().map(corner_rad).fold(0.0, f64::max);
+    Cone { axis, half_angle_rad }
+}
+
+/// The cell of a direction.
+fn index(direction: &Vector3<f64>) -> usize {
+    let axis = direction.iamax();
+    let face = 2 * axis + usize::from(direction[axis] < 0.0);
+    let step = |x: f64| {
+        let place = 0.5 * (x / direction[axis].abs() + 1.0) * EDGE as f64;
+        (place.max(0.0) as usize).min(EDGE - 1)
+    };
+    face * EDGE * EDGE + step(direction[(axis + 1) % 3]) * EDGE + step(direction[(axis + 2) % 3])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn towards(x: f64, y: f64, z: f64) -> UnitVector3<f64> {
+        UnitVector3::new_normalize(Vector3::new(x, y, z))
+    }
+
+    proptest! {
+        #[test]
+        fn every_direction_is_in_the_cone_of_its_cell(x in -1.0..1.0_f64, y in -1.0..1.0_f64, z in -1.0..1.0_f64) {
+            prop_assume!(Vector3::new(x, y, z).norm() > 1e-3);
+            let direction = towards(x, y, z);
+            let cone = cone(index(&direction));
+            prop_assert!(direction.angle(&cone.axis) <= cone.half_angle_rad + 1e-9);
+        }
+    }
+
+    #[test]
+    fn absence_takes_looks_and_grows_old() {
+        let (near, far) =
+            (Detection { range_m: 5.0, probability: 0.99 }, Detection { range_m: 10.0, probability: 0.5 });
+        // Missed twice in a million: 3 looks at 0.99, 19 at 0.5.
+        let mut watch = Watch::new(&[near, far], 2e-6, 0.1, 4.0);
+        let ahead = Cone { axis: towards(1.0, 0.0, 0.0), half_angle_rad: 1.6 };
+        let dead = Cone { axis: towards(0.0, 0.0, -1.0), half_angle_rad: 0.3 };
+        let mut known = Vec::new();
+        for _ in 0..30 {
+            watch.look(&[ahead], &[dead], 0.0, 0.1, 0.0);
+            known.push(watch.empty_m(&towards(1.0, 0.1, 0.1)));
+        }
+        assert!(known[1].abs() < 1e-12 && (known[2] - (5.0 - 4.0 * 0.2)).abs() < 1e-9, "{known:?}");
+        // After 19 looks they came in for 1.8 s: 2.8 m is less than what three looks tell.
+        assert!(known[3..].iter().all(|m| (m - 4.2).abs() < 1e-9), "{known:?}");
+        for direction in [towards(-1.0, 0.0, 0.0), towards(0.0, 0.0, -1.0), towards(0.3, 0.0, -1.0)] {
+            assert!(watch.empty_m(&direction).abs() < 1e-12, "{direction:?}");
+        }
+        // Turned to the left by a right angle, what was ahead is on the right, and no longer looked at by an eye that is narrow.
+        let narrow = Cone { half_angle_rad: 0.6, ..ahead };
+        watch.look(&[narrow], &[], core::f64::consts::FRAC_PI_2, 0.1, 0.0);
+        assert!((watch.empty_m(&towards(0.0, -1.0, 0.1)) - (4.2 - 0.4)).abs() < 1e-9);
+        assert!(watch.empty_m(&towards(-1.0, 0.0, 0.1)).abs() < 1e-12);
+    }
+
+    #[test]
+    fn what_is_no_probability_gives_no_knowledge() {
+        for probability in [0.0, -1.0, f64::NAN] {
+            let mut watch = Watch::new(&[Detection { range_m: 5.0, probability }], 1e-6, 0.1, 4.0);
+            let all = Cone { axis: towards(1.0, 0.0, 0.0), half_angle_rad: 4.0 };
+            (0..100).for_each(|_| watch.look(&[all], &[], 0.0, 0.1, 0.0));
+            assert!(watch.empty_m(&towards(1.0, 0.0, 0.0)).abs() < 1e-12);
+        }
+    }
+}

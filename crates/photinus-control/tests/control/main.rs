@@ -1,0 +1,4 @@
+//! Controllers, the safety layer and mutual localization, tried on point masses that share no code with them.
+
+mod flight;
+mod safety;

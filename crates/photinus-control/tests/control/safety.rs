@@ -25,7 +25,7 @@ fn path(
             p += v * h + u * (0.5 * h * h);
             v += u * h;
             places.push(p);
-            if v.norm() > limits.speed_m_s {
+            if v.norm() > limits.speed_m_s + 1e-6 {
                 return None;
             }
         }

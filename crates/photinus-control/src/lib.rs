@@ -10,6 +10,7 @@
 
 mod controller;
 pub mod controllers;
+pub mod mutual;
 mod own;
 pub mod safety;
 mod seen;

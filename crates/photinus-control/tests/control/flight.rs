@@ -2,9 +2,9 @@
 
 use nalgebra::{Matrix3, Rotation3, UnitVector3, Vector3};
 use photinus::locator::Distance;
-use photinus::ranging::Interval;
+use photinus::ranging::{Estimate, Interval};
 use photinus_control::safety::{Basis, Limits, Obstacle, Safety, Watch};
-use photinus_control::{Motion, Normal, OwnState, Seen, Setpoint};
+use photinus_control::{Heading, Motion, Normal, OwnState, Seen, Setpoint};
 use rand_pcg::Pcg64Mcg;
 use rand_pcg::rand_core::Rng;
 
@@ -40,11 +40,13 @@ pub(crate) struct Sight {
     pub(crate) lie: f64,
     /// How often a neighbour is not seen.
     pub(crate) missed: f64,
+    /// Positions as UVDAR's own simulator believes them; else exact to a centimetre.
+    pub(crate) is_uvdar: bool,
 }
 
 impl Sight {
     pub(crate) const GOOD: Self =
-        Self { loose: 0.3, bearing_bound_rad: 0.1, most_age_s: 0.05, lie: 1.0, missed: 0.0 };
+        Self { loose: 0.3, bearing_bound_rad: 0.1, most_age_s: 0.05, lie: 1.0, missed: 0.0, is_uvdar: false };
 }
 
 pub(crate) type Wish = Box<dyn FnMut(&OwnState, &[Seen], f64) -> Setpoint>;
@@ -60,7 +62,11 @@ pub(crate) struct Vehicle {
     /// The share of commanded braking that it manages.
     pub(crate) brakes: f64,
     pub(crate) bases: [usize; 3],
-    u: Vector3<f64>,
+    /// Where it is at a time, whatever anybody says.
+    pub(crate) script: Option<Box<dyn Fn(f64) -> Vector3<f64>>>,
+    /// Acceleration that is flown, m/s^2.
+    pub(crate) u: Vector3<f64>,
+    yaw_rate: f64,
     pending: Vec<(u64, Vector3<f64>)>,
     stands: bool,
     phase: u64,
@@ -99,7 +105,9 @@ impl Flight {
             past,
             brakes: 1.0,
             bases: [0; 3],
+            script: None,
             u: Vector3::zeros(),
+            yaw_rate: 0.0,
             pending: vec![],
             stands: false,
         });
@@ -139,6 +147,8 @@ impl Flight {
         let level_from_world = Rotation3::from_axis_angle(&Vector3::z_axis(), -vehicle.heading);
         let own = OwnState {
             velocity_m_s: Some(Normal::exactly(level_from_world * vehicle.v + error)),
+            heading: Some(Heading { angle_rad: vehicle.heading, sigma_rad: 0.0 }),
+            rates_rad_s: Vector3::z() * vehicle.yaw_rate,
             ..OwnState::resting()
         };
         let period_s = self.limits.period_s;
@@ -154,6 +164,7 @@ impl Flight {
             }
             None => wanted,
         };
+        vehicle.yaw_rate = told.yaw_rate_rad_s.clamp(-4.0, 4.0);
         let u = match told.motion {
             Motion::Acceleration(u) => u,
             Motion::Velocity(w) => {
@@ -185,13 +196,23 @@ impl Flight {
         let axis = UnitVector3::new_normalize(offset.cross(&in_ball(rng, 1.0)));
         let turn = Rotation3::from_axis_angle(&axis, sight.bearing_bound_rad * uniform(rng));
         let bounds = Interval::new(near, far).unwrap();
+        let position = if sight.is_uvdar {
+            uvdar(rng, &offset)
+        } else {
+            Normal { mean: offset, covariance: Matrix3::identity() * 1e-4 }
+        };
         Some(Seen {
             track: j as u64,
             identity: Some(j as u32),
             bearing: UnitVector3::new_normalize(turn * offset),
             bearing_bound_rad: sight.bearing_bound_rad,
-            distance: Distance { estimate: None, bounds, perpendicular_m: Some(far), inline_m: Some(near) },
-            position_m: Some(Normal { mean: offset, covariance: Matrix3::identity() * 1e-4 }),
+            distance: Distance {
+                estimate: Some(Estimate { distance_m: range, sigma_m: 0.1 * range }),
+                bounds,
+                perpendicular_m: Some(far),
+                inline_m: Some(near),
+            },
+            position_m: Some(position),
             velocity_m_s: Some(Normal::exactly(level_from_world * (self.vehicles[j].v - self.vehicles[i].v))),
             heading: None,
             probability: 1.0,
@@ -215,9 +236,37 @@ impl Vehicle {
         let next =
             if self.stands && next.norm() < 2.0 * limits.velocity_error_m_s { next * 0.0 } else { next };
         let next = if next.norm() > self.top_m_s { next * (self.top_m_s / next.norm()) } else { next };
-        self.p += (self.v + next) * (0.5 * TICK_S);
-        self.v = next;
+        match &self.script {
+            Some(script) => {
+                let p = script(tick as f64 * TICK_S);
+                (self.v, self.p) = ((p - self.p) / TICK_S, p);
+            }
+            None => {
+                self.p += (self.v + next) * (0.5 * TICK_S);
+                self.v = next;
+            }
+        }
+        self.heading += self.yaw_rate * TICK_S;
         self.past.push(self.p);
+    }
+}
+
+/// What UVDAR's simulator makes of an offset nearer than 12 m: two or three markers by chance, uniform in an ellipsoid whose half
+/// axes it gives out as standard deviations.
+fn uvdar(rng: &mut Pcg64Mcg, offset: &Vector3<f64>) -> Normal {
+    let range = offset.norm();
+    let (along, across) = if uniform(rng) < 0.5 {
+        (between(rng, 0.07, 0.13) * range, 3.0 * 0.004 * range)
+    } else {
+        (between(rng, 0.13, 0.27) * range, 1.5 * 0.25)
+    };
+    let axis = offset / range;
+    let normal = axis.cross(&in_ball(rng, 1.0)).normalize();
+    let axes = Matrix3::from_columns(&[axis, normal, axis.cross(&normal)]);
+    let half = Matrix3::from_diagonal(&Vector3::new(along, across, across));
+    Normal {
+        mean: offset + axes * half * in_ball(rng, 1.0),
+        covariance: axes * half * half * axes.transpose(),
     }
 }
 

@@ -1,4 +1,6 @@
 //! Controllers, the safety layer and mutual localization, tried on point masses that share no code with them.
 
+mod controllers;
 mod flight;
+mod mutual;
 mod safety;

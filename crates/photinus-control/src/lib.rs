@@ -10,6 +10,7 @@
 
 mod controller;
 pub mod controllers;
+mod from_camera;
 pub mod mutual;
 mod own;
 pub mod safety;
@@ -17,6 +18,7 @@ mod seen;
 mod setpoint;
 
 pub use controller::Controller;
+pub use from_camera::Held;
 pub use own::OwnState;
 pub use seen::{Heading, Normal, Seen};
 pub use setpoint::{Motion, Setpoint};

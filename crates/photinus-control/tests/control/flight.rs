@@ -40,13 +40,22 @@ pub(crate) struct Sight {
     pub(crate) lie: f64,
     /// How often a neighbour is not seen.
     pub(crate) missed: f64,
-    /// Positions as UVDAR's own simulator believes them; else exact to a centimetre.
-    pub(crate) is_uvdar: bool,
+    /// Nobody further than that is seen, and it is known that nobody unseen is nearer.
+    pub(crate) range_m: f64,
+    /// Positions as UVDAR's own simulator makes them, their errors times a factor; else exact to a centimetre.
+    pub(crate) uvdar: Option<f64>,
 }
 
 impl Sight {
-    pub(crate) const GOOD: Self =
-        Self { loose: 0.3, bearing_bound_rad: 0.1, most_age_s: 0.05, lie: 1.0, missed: 0.0, is_uvdar: false };
+    pub(crate) const GOOD: Self = Self {
+        loose: 0.3,
+        bearing_bound_rad: 0.1,
+        most_age_s: 0.05,
+        lie: 1.0,
+        missed: 0.0,
+        range_m: 1e3,
+        uvdar: None,
+    };
 }
 
 pub(crate) type Wish = Box<dyn FnMut(&OwnState, &[Seen], f64) -> Setpoint>;
@@ -119,7 +128,7 @@ impl Flight {
 
     /// Flies for a time; who acts and when is each vehicle's own affair.
     pub(crate) fn fly(&mut self, time_s: f64) {
-        let watch = Watch::empty_to(1e3);
+        let watch = Watch::empty_to(self.sight.range_m);
         for _ in 0..(time_s / TICK_S) as u64 {
             for i in 0..self.vehicles.len() {
                 if (self.tick + self.vehicles[i].phase) % self.period_ticks() == 0 {
@@ -180,7 +189,8 @@ impl Flight {
     pub(crate) fn see(&mut self, i: usize, j: usize) -> Option<Seen> {
         let rng = &mut self.rng;
         let sight = self.sight;
-        if uniform(rng) < sight.missed {
+        let apart = (self.vehicles[i].p - self.vehicles[j].p).norm();
+        if uniform(rng) < sight.missed || apart > sight.range_m {
             return None;
         }
         let age_ticks = (uniform(rng) * sight.most_age_s / TICK_S) as usize;
@@ -196,11 +206,8 @@ impl Flight {
         let axis = UnitVector3::new_normalize(offset.cross(&in_ball(rng, 1.0)));
         let turn = Rotation3::from_axis_angle(&axis, sight.bearing_bound_rad * uniform(rng));
         let bounds = Interval::new(near, far).unwrap();
-        let position = if sight.is_uvdar {
-            uvdar(rng, &offset)
-        } else {
-            Normal { mean: offset, covariance: Matrix3::identity() * 1e-4 }
-        };
+        let exact = || Normal { mean: offset, covariance: Matrix3::identity() * 1e-4 };
+        let position = sight.uvdar.map(|factor| uvdar(rng, &offset, factor)).unwrap_or_else(exact);
         Some(Seen {
             track: j as u64,
             identity: Some(j as u32),
@@ -213,7 +220,11 @@ impl Flight {
                 inline_m: Some(near),
             },
             position_m: Some(position),
-            velocity_m_s: Some(Normal::exactly(level_from_world * (self.vehicles[j].v - self.vehicles[i].v))),
+            // UVDAR tells no velocities.
+            velocity_m_s: sight
+                .uvdar
+                .is_none()
+                .then(|| Normal::exactly(level_from_world * (self.vehicles[j].v - self.vehicles[i].v))),
             heading: None,
             probability: 1.0,
             age_s: age_ticks as f64 * TICK_S,
@@ -253,7 +264,7 @@ impl Vehicle {
 
 /// What UVDAR's simulator makes of an offset nearer than 12 m: two or three markers by chance, uniform in an ellipsoid whose half
 /// axes it gives out as standard deviations.
-fn uvdar(rng: &mut Pcg64Mcg, offset: &Vector3<f64>) -> Normal {
+fn uvdar(rng: &mut Pcg64Mcg, offset: &Vector3<f64>, factor: f64) -> Normal {
     let range = offset.norm();
     let (along, across) = if uniform(rng) < 0.5 {
         (between(rng, 0.07, 0.13) * range, 3.0 * 0.004 * range)
@@ -265,7 +276,7 @@ fn uvdar(rng: &mut Pcg64Mcg, offset: &Vector3<f64>) -> Normal {
     let axes = Matrix3::from_columns(&[axis, normal, axis.cross(&normal)]);
     let half = Matrix3::from_diagonal(&Vector3::new(along, across, across));
     Normal {
-        mean: offset + axes * half * in_ball(rng, 1.0),
+        mean: offset + axes * half * in_ball(rng, factor),
         covariance: axes * half * half * axes.transpose(),
     }
 }

@@ -195,6 +195,10 @@ fn nobody_collides_however_they_attack() {
     assert_eq!(collisions, 0, "{smallest} m");
     // The attacks do come near: without the layer they hit.
     assert!(smallest < limits().clearance_m() + 0.5, "{smallest} m");
+    // The range of sight that the claim states is enough: who is further away need not be seen.
+    let short = Sight { range_m: limits().sight_m(Sight::GOOD.most_age_s), ..Sight::GOOD };
+    assert!(short.range_m < 3.0, "{}", short.range_m);
+    assert_eq!(brawls(20..26, limits(), short, |_| {}).1, 0);
     let (_, hits) = brawls(0..6, limits(), Sight::GOOD, |flight| {
         flight.vehicles.iter_mut().for_each(|vehicle| vehicle.safety = None);
     });

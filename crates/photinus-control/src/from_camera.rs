@@ -18,7 +18,8 @@ pub struct Held {
 
 impl Held {
     /// A neighbour of a frame that was just taken, as the vehicle sees it. `sightings` are those that belong to it, `radius_m` is
-    /// the distance of its furthest marker from its origin, `track` what it was followed as, if it was.
+    /// the distance of its furthest marker from its origin, `track` what it was followed as, if it was, and `number` the one to
+    /// give it where it was not.
     ///
     /// The bearing's bound is strict: the origin is within `radius_m` of every marker, whose direction is strictly bounded, and no
     /// nearer than the near bound of the distance.
@@ -27,6 +28,7 @@ impl Held {
         neighbour: &Neighbour,
         sightings: impl Iterator<Item = &'a Sighting>,
         radius_m: f64,
+        number: u64,
         track: Option<&Track>,
         identity: Option<u32>,
     ) -> Seen {
@@ -45,7 +47,7 @@ impl Held {
             (None, position) => position.map(|position| turned(position.mean_m, position.covariance_m2)),
         };
         Seen {
-            track: track.map_or(u64::MAX, |track| track.id),
+            track: track.map_or(number, |track| track.id),
             identity,
             bearing: UnitVector3::new_unchecked(turn * neighbour.bearing.vector()),
             bearing_bound_rad: bound_rad,

@@ -12,6 +12,8 @@ use super::Sector;
 /// Cells along each edge of a cube's faces.
 const EDGE: usize = 6;
 const CELLS: usize = 6 * EDGE * EDGE;
+/// Parts along each edge of a cell where eyes overlap.
+const PARTS: usize = 6;
 
 /// All directions within an angle of an axis, in the level frame: what a camera covers, or what hides behind the own airframe.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -86,14 +88,18 @@ impl Watch {
     pub fn look(&mut self, eyes: &[Cone], dead: &[Cone], turned_rad: f64, dt_s: f64, age_s: f64) {
         self.turned_rad += turned_rad;
         let still_from_level = Rotation3::from_axis_angle(&Vector3::z_axis(), self.turned_rad);
-        for cell in &mut self.cells {
+        let off = |other: &Cone, cone: &Cone| angle_rad(&(still_from_level * other.axis), &cone.axis);
+        let covered =
+            |cone: &Cone| eyes.iter().any(|eye| off(eye, cone) + cone.half_angle_rad <= eye.half_angle_rad);
+        let touched = |by: &[Cone], cone: &Cone| {
+            by.iter().any(|other| off(other, cone) < other.half_angle_rad + cone.half_angle_rad)
+        };
+        for (index, cell) in self.cells.iter_mut().enumerate() {
             cell.age_s += dt_s;
-            let off = |other: &Cone| {
-                let axis = still_from_level * other.axis;
-                libm::atan2(axis.cross(&cell.cone.axis).norm(), axis.dot(&cell.cone.axis))
-            };
-            let watched = eyes.iter().any(|eye| off(eye) + cell.cone.half_angle_rad <= eye.half_angle_rad)
-                && !dead.iter().any(|cone| off(cone) < cone.half_angle_rad + cell.cone.half_angle_rad);
+            // Two eyes may cover a cell together, part by part.
+            let is_covered =
+                covered(&cell.cone) || touched(eyes, &cell.cone) && parts(index).all(|part| covered(&part));
+            let watched = is_covered && !touched(dead, &cell.cone);
             cell.looks = if watched { cell.looks.saturating_add(1) } else { 0 };
             for &(range_m, looks) in self.ranges.iter().filter(|(_, looks)| *looks <= cell.looks) {
                 let since_s = age_s + f64::from(looks - 1) * self.period_s;
@@ -124,25 +130,38 @@ impl Watch {
 
 /// The cone around a cell: face by face of a cube, line by line.
 fn cone(index: usize) -> Cone {
-    let (face, line, column) = (index / (EDGE * EDGE), index / EDGE % EDGE, index % EDGE);
-    let at = |row: f64, col: f64| {
+    let (line, column) = (index / EDGE % EDGE, index % EDGE);
+    patch(index / (EDGE * EDGE), [line as f64, column as f64], 1.0)
+}
+
+/// The cones around the parts of a cell, which together cover it.
+fn parts(index: usize) -> impl Iterator<Item = Cone> {
+    let (line, column) = (index / EDGE % EDGE, index % EDGE);
+    let size = 1.0 / PARTS as f64;
+    (0..PARTS * PARTS).map(move |part| {
+        let at = [line as f64 + size * (part / PARTS) as f64, column as f64 + size * (part % PARTS) as f64];
+        patch(index / (EDGE * EDGE), at, size)
+    })
+}
+
+/// The cone around a square of a cube's face, from a corner on, in lengths of a cell.
+fn patch(face: usize, [row, column]: [f64; 2], size: f64) -> Cone {
+    let at = |r: f64, c: f64| {
         let place = |step: f64| 2.0 * step / EDGE as f64 - 1.0;
-        let side = if face % 2 == 0 { 1.0 } else { -1.0 };
         let mut vector = Vector3::zeros();
-        vector[face / 2] = side;
-        vector[(face / 2 + 1) % 3] = place(row);
-        vector[(face / 2 + 2) % 3] = place(col);
+        vector[face / 2] = if face.is_multiple_of(2) { 1.0 } else { -1.0 };
+        vector[(face / 2 + 1) % 3] = place(row + r * size);
+        vector[(face / 2 + 2) % 3] = place(column + c * size);
         UnitVector3::new_normalize(vector)
     };
-    let (row, col) = (line as f64, column as f64);
-    let axis = at(row + 0.5, col + 0.5);
-    let corner_rad = |(r, c): (f64, f64)| {
-        let corner = at(row + r, col + c);
-        libm::atan2(corner.cross(&axis).norm(), corner.dot(&axis))
-    };
-    let half_angle_rad =
-        [(0.0, 0.0), (0.0, 1.0), (1.0, 0.0), (1.0, 1.0)].into_iter().map(corner_rad).fold(0.0, f64::max);
-    Cone { axis, half_angle_rad }
+    let axis = at(0.5, 0.5);
+    let corners = [at(0.0, 0.0), at(0.0, 1.0), at(1.0, 0.0), at(1.0, 1.0)];
+    Cone { axis, half_angle_rad: corners.iter().map(|corner| angle_rad(corner, &axis)).fold(0.0, f64::max) }
+}
+
+/// Accurate from 0 to pi.
+fn angle_rad(a: &UnitVector3<f64>, b: &UnitVector3<f64>) -> f64 {
+    libm::atan2(a.cross(b).norm(), a.dot(b))
 }
 
 /// The cell of a direction.
@@ -199,6 +218,18 @@ mod tests {
         watch.look(&[narrow], &[], core::f64::consts::FRAC_PI_2, 0.1, 0.0);
         assert!((watch.empty_m(&towards(0.0, -1.0, 0.1)) - (4.2 - 0.4)).abs() < 1e-9);
         assert!(watch.empty_m(&towards(-1.0, 0.0, 0.1)).abs() < 1e-12);
+    }
+
+    #[test]
+    fn two_lenses_of_185_degrees_leave_no_gap_and_two_of_178_do() {
+        for (degrees, gap) in [(185.0_f64, false), (178.0, true)] {
+            let sure = Detection { range_m: 5.0, probability: 1.0 };
+            let mut watch = Watch::new(&[sure], 1e-6, 0.1, 4.0);
+            let eye =
+                |x: f64| Cone { axis: towards(x, 0.2 * x, 0.0), half_angle_rad: 0.5 * degrees.to_radians() };
+            watch.look(&[eye(1.0), eye(-1.0)], &[], 0.0, 0.1, 0.0);
+            assert_eq!(watch.unknown().any(|(sector, _)| sector.distances.min_m() < 5.0), gap, "{degrees}");
+        }
     }
 
     #[test]

@@ -2,5 +2,6 @@
 
 mod controllers;
 mod flight;
+mod from_camera;
 mod mutual;
 mod safety;

@@ -51,7 +51,7 @@ impl Held {
             identity,
             bearing: UnitVector3::new_unchecked(turn * neighbour.bearing.vector()),
             bearing_bound_rad: bound_rad,
-            distance: self.from_origin(&neighbour.distance),
+            distance: self.seen_from_origin(&neighbour.distance),
             position_m: position.map(|position| Normal { mean: position.mean + self.camera_m, ..position }),
             velocity_m_s: track.map(|track| turned(track.velocity_m_s, track.velocity_covariance_m2_s2)),
             heading: None,
@@ -61,7 +61,7 @@ impl Held {
     }
 
     /// Distances from the vehicle's origin instead of the camera's centre: bounds grow by how far these are apart.
-    fn from_origin(&self, distance: &Distance) -> Distance {
+    fn seen_from_origin(&self, distance: &Distance) -> Distance {
         let lever_m = self.camera_m.norm();
         let bounds = distance.bounds;
         let grown = Interval::new((bounds.min_m() - lever_m).max(0.0), bounds.max_m() + lever_m);

@@ -107,12 +107,15 @@ impl<'a> Commitment<'a> {
     }
 
     /// A lower bound, along the path and for all that the vehicle's own velocity may be off by, of what changes by no more than the
-    /// length of a way, such as the distance from anything.
+    /// length of a way, such as the distance from anything. What is no number is taken for the worst.
     pub(super) fn clear_of_m(&self, distance_m: impl Fn(&Vector3<f64>) -> f64) -> f64 {
         let mut before = f64::INFINITY;
         let mut least = f64::INFINITY;
         for step in self.steps() {
             let here = distance_m(&step.place) - self.velocity_error_m_s * step.time_s;
+            if here.is_nan() {
+                return f64::NEG_INFINITY;
+            }
             least = least.min(here).min(0.5 * (before + here - step.length_m));
             before = here;
         }

@@ -4,6 +4,7 @@ use nalgebra::{Rotation3, Vector3};
 
 use super::alternatives::alternatives;
 use super::commitment::{Commitment, Underway};
+use super::lost::Lost;
 use super::places::{Ground, Place};
 use super::told::Told;
 use super::{Limits, LimitsError, Obstacle, Sector, Watch};
@@ -37,6 +38,7 @@ pub struct Guarded {
 pub struct Safety {
     limits: Limits,
     told: Told,
+    lost: Lost,
     underway: Underway,
     /// For how long it has been slow enough to part, s.
     slow_s: f64,
@@ -47,8 +49,8 @@ impl Safety {
     /// A layer for a vehicle at rest in a group with these limits.
     pub fn new(limits: Limits) -> Result<Self, LimitsError> {
         limits.check()?;
-        let (told, underway) = (Told::default(), Underway::default());
-        Ok(Self { limits, told, underway, slow_s: 0.0, places: Vec::new() })
+        let (told, lost, underway) = (Told::default(), Lost::default(), Underway::default());
+        Ok(Self { limits, told, lost, underway, slow_s: 0.0, places: Vec::new() })
     }
 
     /// The limits of the group.
@@ -56,7 +58,8 @@ impl Safety {
         &self.limits
     }
 
-    /// What to fly instead of `wanted`, `dt_s` after the last call. `watch` says where nobody is who is not in `seen`, `obstacles`
+    /// What to fly instead of `wanted`, `dt_s` after the last call. `watch` says where nobody is who is not in `seen`; a track that is
+    /// missing is taken to be still there for as long as the watch takes to tell absence. `obstacles`
     /// are what a map shows, in the level frame. A vehicle that does not know its own velocity is told to stand.
     pub fn guard(
         &mut self,
@@ -67,8 +70,10 @@ impl Safety {
         wanted: &Setpoint,
         dt_s: f64,
     ) -> Guarded {
+        let dt_s = if dt_s >= 0.0 { dt_s } else { self.limits.period_s };
         let level_from_before = Rotation3::from_axis_angle(&Vector3::z_axis(), -own.turn_rad_s() * dt_s);
         self.told.pass(&level_from_before, dt_s, self.limits.delay_s);
+        self.lost.update(seen, &level_from_before, dt_s, watch.patience_s());
         let yaw_rate_rad_s = if wanted.yaw_rate_rad_s.is_finite() { wanted.yaw_rate_rad_s } else { 0.0 };
         let velocity = own.velocity_m_s.map(|v| v.mean).filter(|v| v.iter().all(|x| x.is_finite()));
         let Some(velocity) = velocity else {
@@ -76,17 +81,19 @@ impl Safety {
             self.slow_s = 0.0;
             return Guarded { setpoint: Setpoint::stand().turning(yaw_rate_rad_s), basis: Basis::Braking };
         };
-        let is_slow = velocity.norm() + self.limits.velocity_error_m_s <= self.limits.parting_speed_m_s();
-        self.slow_s = if is_slow { self.slow_s + dt_s } else { 0.0 };
         self.told.carry_out(&mut self.underway, velocity, &self.limits);
-        self.gather(velocity, seen, watch, obstacles);
+        self.gather(velocity, watch, obstacles);
         let (acceleration, basis) = self.choose(wanted);
+        let path = Commitment::new(&self.limits, &self.underway, acceleration);
+        let is_slow =
+            path.top_speed_m_s() + self.limits.velocity_error_m_s <= self.limits.parting_speed_m_s();
+        self.slow_s = if is_slow { self.slow_s + dt_s } else { 0.0 };
         self.told.tell(acceleration);
         Guarded { setpoint: Setpoint::acceleration(acceleration).turning(yaw_rate_rad_s), basis }
     }
 
     /// Collects what a commitment has to keep clear of.
-    fn gather(&mut self, velocity: Vector3<f64>, seen: &[Seen], watch: &Watch, obstacles: &[Obstacle]) {
+    fn gather(&mut self, velocity: Vector3<f64>, watch: &Watch, obstacles: &[Obstacle]) {
         let limits = self.limits;
         // Both may have moved since a sight that is so old.
         let own_speed = |age_s: f64| {
@@ -96,13 +103,12 @@ impl Safety {
         let grown_m = |age_s: f64| (limits.speed_m_s + own_speed(age_s)) * age_s;
         let parts = self.slow_s > limits.stopping_s();
         self.places.clear();
-        for s in seen {
-            let sector = Sector {
-                axis: s.bearing,
-                half_angle_rad: s.bearing_bound_rad.clamp(0.0, core::f64::consts::PI),
-                distances: s.distance.bounds,
-            };
-            self.places.push(Place::Neighbour { sector, grown_m: grown_m(s.age_s.max(0.0)), parts });
+        for s in self.lost.all() {
+            let sector =
+                Sector { axis: s.bearing, half_angle_rad: bound_rad(s), distances: s.distance.bounds };
+            // An age that is no number may be any.
+            let age_s = if s.age_s.is_nan() { f64::INFINITY } else { s.age_s.max(0.0) };
+            self.places.push(Place::Neighbour { sector, grown_m: grown_m(age_s), parts });
         }
         let unknown =
             watch.unknown().map(|(sector, age_s)| Place::Unknown { sector, grown_m: grown_m(age_s) });
@@ -163,6 +169,12 @@ impl Safety {
         }
         Some(if ground == Ground::Slow { Basis::Slow } else { Basis::Proven })
     }
+}
+
+/// How far a neighbour's direction is from its bearing, rad: anywhere, where that is no number.
+fn bound_rad(seen: &Seen) -> f64 {
+    let is_known = seen.bearing_bound_rad >= 0.0 && seen.bearing.iter().all(|x| x.is_finite());
+    if is_known { seen.bearing_bound_rad.min(core::f64::consts::PI) } else { core::f64::consts::PI }
 }
 
 /// A vector shortened to a length.

@@ -10,6 +10,7 @@ mod alternatives;
 mod commitment;
 mod layer;
 mod limits;
+mod lost;
 mod obstacle;
 mod places;
 mod sector;

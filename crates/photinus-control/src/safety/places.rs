@@ -26,12 +26,14 @@ impl Place {
     /// Whether anything at all that a vehicle could do touches the place.
     pub(super) fn matters(&self, limits: &Limits) -> bool {
         let reach = limits.longest_reach_m() + limits.longest_stray_m();
-        match self {
+        // What is no number matters.
+        let is_far = match self {
             Self::Neighbour { sector, grown_m, .. } | Self::Unknown { sector, grown_m } => {
-                sector.distances.min_m() - grown_m < limits.clearance_m() + reach
+                sector.distances.min_m() - grown_m >= limits.clearance_m() + reach
             }
-            Self::Body(body) => body.distance_m(&nalgebra::Vector3::zeros()) < limits.radius_m + reach,
-        }
+            Self::Body(body) => body.distance_m(&nalgebra::Vector3::zeros()) >= limits.radius_m + reach,
+        };
+        !is_far
     }
 
     /// What the place says to a commitment.

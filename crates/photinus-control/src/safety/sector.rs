@@ -17,12 +17,12 @@ pub struct Sector {
 impl Sector {
     /// How far `point` is from the nearest place of the sector, m; zero inside.
     pub fn distance_m(&self, point: &Vector3<f64>) -> f64 {
-        let along = point.dot(&self.axis);
-        let across = point.cross(&self.axis).norm();
         let (near, far) = (self.distances.min_m(), self.distances.max_m());
-        let range = libm::sqrt(along * along + across * across);
-        let outside_rad = libm::atan2(across, along) - self.half_angle_rad;
-        if outside_rad <= 0.0 {
+        let range = point.norm();
+        let outside_rad =
+            libm::atan2(point.cross(&self.axis).norm(), point.dot(&self.axis)) - self.half_angle_rad;
+        // Every direction is in a half angle of pi, whatever the axis.
+        if outside_rad <= 0.0 || self.half_angle_rad >= core::f64::consts::PI {
             return (near - range).max(range - far).max(0.0);
         }
         // The nearest place is on the edge of the cone, in the plane of point and axis.

@@ -110,6 +110,11 @@ impl Watch {
         }
     }
 
+    /// How long it takes to know that somebody is gone, s.
+    pub fn patience_s(&self) -> f64 {
+        self.ranges.iter().map(|(_, looks)| f64::from(*looks) * self.period_s).fold(0.0, f64::max)
+    }
+
     /// How far nobody is in a direction of the level frame, m, whoever has come in since.
     pub fn empty_m(&self, direction: &UnitVector3<f64>) -> f64 {
         let still_from_level = Rotation3::from_axis_angle(&Vector3::z_axis(), self.turned_rad);

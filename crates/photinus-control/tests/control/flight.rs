@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, Rotation3, UnitVector3, Vector3};
 use photinus::locator::Distance;
 use photinus::ranging::{Estimate, Interval};
-use photinus_control::safety::{Basis, Limits, Obstacle, Safety, Watch};
+use photinus_control::safety::{Basis, Cone, Detection, Limits, Obstacle, Safety, Watch};
 use photinus_control::{Heading, Motion, Normal, OwnState, Seen, Setpoint};
 use rand_pcg::Pcg64Mcg;
 use rand_pcg::rand_core::Rng;
@@ -42,6 +42,8 @@ pub(crate) struct Sight {
     pub(crate) missed: f64,
     /// Nobody further than that is seen, and it is known that nobody unseen is nearer.
     pub(crate) range_m: f64,
+    /// Whether vehicles know how often they miss each other; else they believe that they do not.
+    pub(crate) honest: bool,
     /// Positions as UVDAR's own simulator makes them, their errors times a factor; else exact to a centimetre.
     pub(crate) uvdar: Option<f64>,
 }
@@ -54,6 +56,7 @@ impl Sight {
         lie: 1.0,
         missed: 0.0,
         range_m: 1e3,
+        honest: false,
         uvdar: None,
     };
 }
@@ -76,6 +79,7 @@ pub(crate) struct Vehicle {
     /// Acceleration that is flown, m/s^2.
     pub(crate) u: Vector3<f64>,
     yaw_rate: f64,
+    watch: Watch,
     pending: Vec<(u64, Vector3<f64>)>,
     stands: bool,
     phase: u64,
@@ -102,6 +106,13 @@ impl Flight {
         let heading = between(&mut self.rng, -3.0, 3.0);
         let phase = self.rng.next_u64() % self.period_ticks();
         let safety = is_guarded.then(|| Safety::new(self.limits).unwrap());
+        let Sight { missed, range_m, .. } = self.sight;
+        let watch = if self.sight.honest {
+            let detection = Detection { range_m, probability: 1.0 - missed };
+            Watch::new(&[detection], 1e-6, self.limits.period_s, 2.0 * self.limits.speed_m_s)
+        } else {
+            Watch::empty_to(range_m)
+        };
         let (top_m_s, past) = (self.limits.speed_m_s, vec![p]);
         self.vehicles.push(Vehicle {
             p,
@@ -117,6 +128,7 @@ impl Flight {
             script: None,
             u: Vector3::zeros(),
             yaw_rate: 0.0,
+            watch,
             pending: vec![],
             stands: false,
         });
@@ -128,11 +140,10 @@ impl Flight {
 
     /// Flies for a time; who acts and when is each vehicle's own affair.
     pub(crate) fn fly(&mut self, time_s: f64) {
-        let watch = Watch::empty_to(self.sight.range_m);
         for _ in 0..(time_s / TICK_S) as u64 {
             for i in 0..self.vehicles.len() {
-                if (self.tick + self.vehicles[i].phase) % self.period_ticks() == 0 {
-                    self.act(i, &watch);
+                if (self.tick + self.vehicles[i].phase).is_multiple_of(self.period_ticks()) {
+                    self.act(i);
                 }
             }
             self.tick += 1;
@@ -147,7 +158,7 @@ impl Flight {
         }
     }
 
-    fn act(&mut self, i: usize, watch: &Watch) {
+    fn act(&mut self, i: usize) {
         let seen: Vec<Seen> =
             (0..self.vehicles.len()).filter(|j| *j != i).filter_map(|j| self.see(i, j)).collect();
         let error = in_ball(&mut self.rng, self.limits.velocity_error_m_s);
@@ -161,12 +172,16 @@ impl Flight {
             ..OwnState::resting()
         };
         let period_s = self.limits.period_s;
+        if self.sight.honest {
+            let all = Cone { axis: Vector3::x_axis(), half_angle_rad: 4.0 };
+            vehicle.watch.look(&[all], &[], vehicle.yaw_rate * period_s, period_s, 0.0);
+        }
         let wanted = (vehicle.wish)(&own, &seen, period_s);
         let placed: Vec<Obstacle> =
             self.obstacles.iter().map(|body| moved(body, &level_from_world, &vehicle.p)).collect();
         let told = match &mut vehicle.safety {
             Some(safety) => {
-                let guarded = safety.guard(&own, &seen, watch, &placed, &wanted, period_s);
+                let guarded = safety.guard(&own, &seen, &vehicle.watch, &placed, &wanted, period_s);
                 vehicle.bases[guarded.basis as usize] += 1;
                 vehicle.stands = guarded.basis == Basis::Braking;
                 guarded.setpoint

@@ -105,7 +105,7 @@ fn a_named_group_is_located_as_well_as_can_be() {
     for vehicles in [2, 3, 5, 10] {
         let mut rng = Pcg64Mcg::new(vehicles as u128 + 40);
         let runs = if vehicles < 10 { 600 } else { 150 };
-        let (mut error2, mut bound2, mut heading2, mut nees, mut count) = (0.0, 0.0, 0.0, 0.0, 0.0);
+        let (mut error2, mut bound2, mut heading2, mut nees, mut count) = (0.0_f64, 0.0, 0.0_f64, 0.0, 0.0);
         for _ in 0..runs {
             let truth = Truth::random(&mut rng, vehicles);
             let (reports, _) = truth.reports(&mut rng, true);
@@ -122,7 +122,7 @@ fn a_named_group_is_located_as_well_as_can_be() {
             }
         }
         let (ratio, heading_deg, nees) =
-            ((error2 / bound2).sqrt(), (heading2 / count as f64).sqrt().to_degrees(), nees / count);
+            ((error2 / bound2).sqrt(), (heading2 / count).sqrt().to_degrees(), nees / count);
         println!(
             "{vehicles} vehicles: {:.3} m, {ratio:.3} of the bound, heading {heading_deg:.3} deg, NEES {nees:.2}",
             (error2 / count).sqrt()
@@ -225,7 +225,7 @@ fn brute_force_finds_the_same_way() {
                     assert_eq!(misfits[0].1, orders);
                 }
                 Err(Unclear::Ambiguous { .. }) => {
-                    assert!(!is_unique, "{:?}", &misfits[..2].iter().map(|m| m.0).collect::<Vec<_>>())
+                    assert!(!is_unique, "{:?}", &misfits[..2].iter().map(|m| m.0).collect::<Vec<_>>());
                 }
                 Err(other) => panic!("{other}"),
             }

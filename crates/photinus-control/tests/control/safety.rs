@@ -199,6 +199,9 @@ fn nobody_collides_however_they_attack() {
     let short = Sight { range_m: limits().sight_m(Sight::GOOD.most_age_s), ..Sight::GOOD };
     assert!(short.range_m < 3.0, "{}", short.range_m);
     assert_eq!(brawls(20..26, limits(), short, |_| {}).1, 0);
+    // So are neighbours that are missed in three frames of ten, where that is known.
+    let missing = Sight { missed: 0.3, honest: true, range_m: 15.0, ..Sight::GOOD };
+    assert_eq!(brawls(30..36, limits(), missing, |_| {}).1, 0);
     let (_, hits) = brawls(0..6, limits(), Sight::GOOD, |flight| {
         flight.vehicles.iter_mut().for_each(|vehicle| vehicle.safety = None);
     });
@@ -325,4 +328,40 @@ fn nothing_known_means_slow() {
     let blind = OwnState { velocity_m_s: None, ..OwnState::resting() };
     let guarded = safety.guard(&blind, &[], &Watch::empty_to(30.0), &[], &fast, limits.period_s);
     assert_eq!(guarded.setpoint, Setpoint::stand());
+}
+
+/// What is no number is the worst that it could be.
+#[test]
+fn numbers_that_are_none_stop_a_vehicle() {
+    let limits = Limits::small_multirotor();
+    let (watch, nan) = (Watch::empty_to(1e3), f64::NAN);
+    let mut flight = Flight::new(1, limits, Sight::GOOD);
+    for x in [0.0, 30.0] {
+        flight.add(Vector3::x() * x, Vector3::zeros(), false, Box::new(|_, _, _| Setpoint::stand()));
+    }
+    let far = flight.see(0, 1).unwrap();
+    let wanted = Setpoint::acceleration(Vector3::x() * 5.0);
+    let guard = |seen: Seen, obstacles: &[Obstacle], wanted: &Setpoint| {
+        let mut safety = Safety::new(limits).unwrap();
+        safety.guard(&OwnState::resting(), &[seen], &watch, obstacles, wanted, limits.period_s).basis
+    };
+    assert_eq!(guard(far, &[], &wanted), Basis::Proven);
+    let pole = Obstacle::Capsule { from: Vector3::repeat(nan), to: Vector3::zeros(), radius_m: 0.1 };
+    assert_eq!(guard(far, &[pole], &wanted), Basis::Braking);
+    assert_eq!(guard(far, &[], &Setpoint::velocity(Vector3::repeat(nan))), Basis::Braking);
+    assert_eq!(guard(Seen { age_s: nan, ..far }, &[], &wanted), Basis::Braking);
+    // Just outside the clearance, who is behind allows to go ahead; who may be anywhere does not.
+    let bounds = Interval::new(limits.clearance_m() + 0.03, 2.0).unwrap();
+    let distance = Distance { bounds, ..far.distance };
+    let behind = Seen { bearing: -Vector3::x_axis(), bearing_bound_rad: 0.1, distance, age_s: 0.0, ..far };
+    let ahead = |seen: Seen| {
+        let mut safety = Safety::new(limits).unwrap();
+        let guarded = safety.guard(&OwnState::resting(), &[seen], &watch, &[], &wanted, limits.period_s);
+        let Motion::Acceleration(u) = guarded.setpoint.motion else { unreachable!() };
+        u.x
+    };
+    let nowhere = UnitVector3::new_unchecked(Vector3::repeat(nan));
+    assert!(ahead(Seen { bearing_bound_rad: nan, ..behind }) < 1.0);
+    assert!(ahead(Seen { bearing: nowhere, ..behind }) < 1.0);
+    assert!(ahead(behind) > 4.0, "{}", ahead(behind));
 }

@@ -4,8 +4,8 @@
 //! 2304.03057): no command that noise alone calls for. Covariances restrain it three times. Where each neighbour is, is carried on by
 //! the own motion and corrected by the gain of Kalman, small where a sight is bad. Each neighbour says where the vehicle shall be;
 //! these are weighed by their information, so that the bearings of several neighbours, which are good, decide what their
-//! distances, which are bad, leave open. What is left of the error may be shortened by some of its sigmas, so that an overshoot
-//! has a stated probability.
+//! distances, which are bad, leave open. What is left of the error is shortened by some of its sigmas, so that an overshoot has a
+//! stated probability.
 
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
@@ -56,13 +56,13 @@ pub struct PoseFormation {
 }
 
 impl PoseFormation {
-    /// Restrained by filter and weights.
+    /// Restrained so that an overshoot has a probability of 0.2.
     pub fn new(wanted: Vec<WantedOffset>) -> Self {
         Self {
             wanted,
             cruise_m_s: Vector3::zeros(),
-            gain_per_s: 0.8,
-            restraint: Restraint::Sigmas(0.0),
+            gain_per_s: 1.2,
+            restraint: Restraint::Sigmas(0.84),
             drift_m_s: 0.03,
             speed_m_s: 2.0,
             believed: Vec::new(),
@@ -105,20 +105,27 @@ impl PoseFormation {
     }
 
     fn restrained(&self, own: &OwnState, sigmas: f64) -> Vector3<f64> {
+        // Neighbours are off their own places by about as much as the vehicle is: far from the shape all count alike.
+        let (sum, count) =
+            self.errors(own).fold((0.0, 0.0), |(sum, n), (e, _)| (sum + e.norm_squared(), n + 1.0));
+        let own_places = Matrix3::identity() * if count > 0.0 { sum / count } else { 0.0 };
         let (mut information, mut weighed) = (Matrix3::zeros(), Vector3::zeros());
+        let mut scatter = Matrix3::zeros();
         for (error, covariance) in self.errors(own) {
-            let Some(inverse) = covariance.try_inverse() else { continue };
-            information += inverse;
-            weighed += inverse * error;
+            let Some(weight) = (covariance + own_places).try_inverse() else { continue };
+            information += weight;
+            weighed += weight * error;
+            scatter += weight * covariance * weight;
         }
-        let Some(covariance) = information.try_inverse() else { return Vector3::zeros() };
-        let error = covariance * weighed;
+        let Some(inverse) = information.try_inverse() else { return Vector3::zeros() };
+        let error = inverse * weighed;
         let size = error.norm();
         if size <= 0.0 {
             return error;
         }
+        // How much of it, along itself, is noise of the sights.
         let along = error / size;
-        let sigma = libm::sqrt(along.dot(&(covariance * along)).max(0.0));
+        let sigma = libm::sqrt(along.dot(&(inverse * scatter * inverse * along)).max(0.0));
         along * (size - sigmas * sigma).max(0.0)
     }
 

@@ -134,13 +134,18 @@ fn a_named_group_is_located_as_well_as_can_be() {
     }
 }
 
+/// How often to try: more by hand.
+fn cases(ordinary: u32) -> u32 {
+    std::env::var("PHOTINUS_CASES").ok().and_then(|cases| cases.parse().ok()).unwrap_or(ordinary)
+}
+
 /// Nobody is named; each is told where it is, or that it is not clear.
 #[test]
 fn anonymous_groups_are_told_apart() {
     for vehicles in 2..=10 {
         let mut rng = Pcg64Mcg::new(vehicles as u128 + 900);
         let (mut right, mut unclear) = (0, 0);
-        let runs = 15;
+        let runs = cases(15);
         for run in 0..runs {
             let truth = Truth::random(&mut rng, vehicles);
             let (reports, _) = truth.reports(&mut rng, false);

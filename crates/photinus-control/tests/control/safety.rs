@@ -208,6 +208,18 @@ fn nobody_collides_however_they_attack() {
     assert!(hits >= 4, "{hits} of 6");
 }
 
+/// The same flight, bit for bit, on every machine.
+#[test]
+fn a_brawl_is_the_same_everywhere() {
+    let mut flight = brawl(3, 5, limits(), Sight::GOOD);
+    flight.fly(4.0);
+    let bits =
+        flight.vehicles.iter().flat_map(|v| [v.p, v.v]).flat_map(|v| [v.x, v.y, v.z]).map(f64::to_bits);
+    let hash =
+        bits.fold(0xcbf2_9ce4_8422_2325_u64, |hash, bits| (hash ^ bits).wrapping_mul(0x0100_0000_01b3));
+    assert_eq!(hash, 0x3dfc_6706_89dd_c174, "{hash:#x}");
+}
+
 /// `cargo test --release -p photinus-control --test control thousand_brawls -- --ignored --nocapture`
 #[test]
 #[ignore = "minutes in release"]

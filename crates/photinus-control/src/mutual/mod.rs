@@ -17,6 +17,7 @@ mod group;
 mod heading;
 mod hypotheses;
 mod identify;
+mod message;
 mod report;
 
 pub use heading::heading_from_bearing;

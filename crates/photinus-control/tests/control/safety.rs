@@ -130,7 +130,7 @@ fn a_million_states_renew_without_collision() {
     assert!(renewed > 300_000);
 }
 
-/// Flies at another vehicle as fast as it can, or anywhere, and changes its mind.
+/// Flies at another vehicle as fast as it can, or anywhere, turns meanwhile, and changes its mind.
 fn attack(seed: u64) -> Wish {
     let mut rng = Pcg64Mcg::new(u128::from(seed) * 2 + 77);
     let (mut mood, mut left, mut random) = (0.0, 0, Vector3::zeros());
@@ -142,13 +142,14 @@ fn attack(seed: u64) -> Wish {
         left -= 1;
         let nearest =
             seen.iter().min_by(|a, b| a.distance.bounds.min_m().total_cmp(&b.distance.bounds.min_m()));
-        match nearest {
+        let told = match nearest {
             Some(nearest) if mood < 0.5 => Setpoint::velocity(nearest.bearing.into_inner() * 10.0),
             Some(nearest) if mood < 0.7 => {
                 Setpoint::acceleration(nearest.bearing.cross(&random) + nearest.bearing.into_inner() * 5.0)
             }
             _ => Setpoint::acceleration(random),
-        }
+        };
+        told.turning(0.3 * random.x)
     })
 }
 
@@ -217,7 +218,7 @@ fn a_brawl_is_the_same_everywhere() {
         flight.vehicles.iter().flat_map(|v| [v.p, v.v]).flat_map(|v| [v.x, v.y, v.z]).map(f64::to_bits);
     let hash =
         bits.fold(0xcbf2_9ce4_8422_2325_u64, |hash, bits| (hash ^ bits).wrapping_mul(0x0100_0000_01b3));
-    assert_eq!(hash, 0x3dfc_6706_89dd_c174, "{hash:#x}");
+    assert_eq!(hash, 0xb1be_061d_f531_baee, "{hash:#x}");
 }
 
 /// `cargo test --release -p photinus-control --test control thousand_brawls -- --ignored --nocapture`
@@ -239,12 +240,13 @@ fn a_thousand_brawls_without_collision() {
 
 #[test]
 fn broken_assumptions_end_in_collisions() {
-    let count = |sight: Sight, change: &dyn Fn(&mut Flight)| brawls(0..10, limits(), sight, change).1;
+    let count = |sight: Sight, change: &dyn Fn(&mut Flight)| brawls(0..16, limits(), sight, change).1;
     let nothing = |_: &mut Flight| {};
     // Bounds that do not hold: everybody seems to be three times as far.
     assert!(count(Sight { lie: 3.0, ..Sight::GOOD }, &nothing) > 0, "lying bounds");
     // Neighbours that are not seen, while absence is claimed.
-    assert!(count(Sight { missed: 0.97, ..Sight::GOOD }, &nothing) > 0, "missed neighbours");
+    let missed = [0.8, 0.9, 0.95].map(|missed| count(Sight { missed, ..Sight::GOOD }, &nothing));
+    assert!(missed.iter().any(|collisions| *collisions > 0), "missed neighbours");
     // Brakes that do less than said.
     assert!(
         count(Sight::GOOD, &|flight| flight.vehicles.iter_mut().for_each(|v| v.brakes = 0.3)) > 0,

@@ -294,7 +294,7 @@ pub(super) fn range_after(last_m: Option<f64>, record: &FrameRecord) -> f64 {
     last_m.filter(|last_m| (needed_m..2.0 * needed_m + 1e-9).contains(last_m)).unwrap_or(needed_m)
 }
 
-/// The least range that shows every estimate with its sigma, and every far bound that is not out of all proportion.
+/// The least range that shows every estimate with its sigma, every far bound that is not out of all proportion, and who is likely followed.
 fn range_for(record: &FrameRecord) -> f64 {
     let need = |neighbour: &NeighbourRecord| {
         let distance = &neighbour.distance_m;
@@ -302,8 +302,10 @@ fn range_for(record: &FrameRecord) -> f64 {
         let bound_m = distance.max.unwrap_or(1.15 * likely_m).min(1.5 * likely_m);
         likely_m.max(bound_m)
     };
-    let farthest_m = record.neighbours.iter().map(need).fold(0.0, f64::max);
-    let needed_m = if record.neighbours.is_empty() { EMPTY_RANGE_M } else { farthest_m };
+    let likely = record.tracks.iter().filter(|track| track.probability > 0.5);
+    let followed = likely.map(|track| 1.15 * Vector3::from(track.position_m).norm());
+    let farthest_m = record.neighbours.iter().map(need).chain(followed).fold(0.0, f64::max);
+    let needed_m = if farthest_m > 0.0 { farthest_m } else { EMPTY_RANGE_M };
     RANGES_M.into_iter().find(|&range_m| range_m >= needed_m).unwrap_or(RANGES_M[RANGES_M.len() - 1])
 }
 

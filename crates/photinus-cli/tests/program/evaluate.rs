@@ -342,6 +342,21 @@ fn two_logs_are_a_truth() {
     assert!((number("/alignment/clock_offset_s") - late_s).abs() < 0.005, "{}", done.out);
     assert!((number("/alignment/camera_m/0") - camera_m.x).abs() < 0.02, "{}", done.out);
     assert!(number("/neighbours/overall/recall") > 0.999 && number("/distance/overall/error_m/rms") < 0.02);
+    // The same logs, the target's by a clock that is 1.3 s ahead.
+    let ahead = target.lines().skip(1).map(|row| {
+        let (time_s, rest) = row.split_once(',').unwrap();
+        format!("{},{rest}\n", time_s.parse::<f64>().unwrap() + 1.3)
+    });
+    stage.file("ahead.csv", format!("{}\n{}", target.lines().next().unwrap(), ahead.collect::<String>()));
+    let done = stage.run(
+        "evaluate observer.csv results.jsonl --target ahead.csv --target-clock-offset 0 --json own.json",
+    );
+    assert!(done.code == 0 && done.out.contains("target's clock offset s"), "{}{}", done.out, done.err);
+    let scores: serde_json::Value = serde_json::from_str(&stage.read("own.json")).unwrap();
+    let number = |place: &str| scores.pointer(place).and_then(serde_json::Value::as_f64).unwrap();
+    assert!((number("/alignment/clock_offset_s") - late_s).abs() < 0.01, "{}", done.out);
+    assert!((number("/alignment/target_clock_offset_s") - 1.3).abs() < 0.01, "{}", done.out);
+    assert!(number("/neighbours/overall/recall") > 0.999 && number("/distance/overall/error_m/rms") < 0.02);
     stage.refuses(
         "evaluate observer.csv results.jsonl --target target.csv --clock-offset 500",
         &["the logs have 0.000 to 69.980 s in common, the frames 0.000 to 59.950 s; give the logs of this flight"],

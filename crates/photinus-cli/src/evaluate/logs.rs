@@ -40,6 +40,12 @@ pub(super) fn truth(
                 "give the logs of this flight, or about how far the clocks differ as --clock-offset S, and as \
                  --target-clock-offset S where the target's log has a clock of its own"
             }
+            AlignError::Clocks => {
+                "give about how far the clocks differ as --clock-offset S and --target-clock-offset S"
+            }
+            AlignError::Still => {
+                "give logs of a flight in which both vehicles move, or, of logs on one clock, leave out --target-clock-offset"
+            }
             AlignError::Few(_) => "give results of a longer flight, with positions",
             _ => "check that the logs share one world frame and which vehicle is which",
         };

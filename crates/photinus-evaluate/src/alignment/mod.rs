@@ -18,6 +18,8 @@ use photinus_io::results::{FrameRecord, NeighbourRecord};
 
 /// The fewest frames that an alignment is estimated from.
 pub const FEWEST_FRAMES: usize = 30;
+/// Clock offsets are looked for this far around the expected ones, s.
+const SEARCH_S: f64 = 2.0;
 
 /// How the clocks, the camera and the target's airframe fit the logs.
 #[derive(Clone, Debug, PartialEq)]
@@ -73,6 +75,12 @@ pub enum AlignError {
         "{0} frames have a time within both logs and a neighbour with a position, {FEWEST_FRAMES} are needed"
     )]
     Few(usize),
+    /// The best offsets are not among those that were looked for.
+    #[error("no clock offsets within {SEARCH_S} s of the expected ones fit the results")]
+    Clocks,
+    /// The vehicles hardly move, so that other offsets fit as well.
+    #[error("the vehicles move too little to tell how far the clocks are apart")]
+    Still,
     /// No clock offset and no turn of the camera make sense of the bearings.
     #[error("no turn of the camera brings the neighbours of the results to where the logs have the target")]
     NoTurn,
@@ -128,8 +136,25 @@ impl Logs<'_> {
             few if few < FEWEST_FRAMES => Err(AlignError::Few(few)),
             _ => {
                 let start = start::from_bearings(self, &seen, near_s).ok_or(AlignError::NoTurn)?;
-                fit::refined(self, &seen, start)
+                let found = fit::refined(self, &seen, start)?;
+                self.check_clocks(&found, near_s).map(|()| found)
             }
+        }
+    }
+
+    fn check_clocks(&self, found: &Alignment, near_s: f64) -> Result<(), AlignError> {
+        let sigma = &found.sigma;
+        let clocks = [
+            (found.clock_offset_s - near_s, sigma.clock_offset_s),
+            (found.target_clock_offset_s - self.target_clock.near_s(), sigma.target_clock_offset_s),
+        ];
+        // Where nothing tells an offset its variance is huge, or rounding makes it negative.
+        if clocks.iter().any(|clock| clock.1.is_nan() || clock.1 > SEARCH_S) {
+            return Err(AlignError::Still);
+        }
+        match clocks.iter().any(|clock| clock.0.abs() > SEARCH_S) {
+            true => Err(AlignError::Clocks),
+            false => Ok(()),
         }
     }
 

@@ -3,10 +3,10 @@
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
 
 use super::fit::Parameters;
-use super::{Logs, Seen, TargetClock};
+use super::{Logs, SEARCH_S, Seen, TargetClock};
 
 /// Offsets are tried this far around the expected one and in such steps, s: first coarsely, for vehicles need some tenths of a second to turn.
-const COARSE_S: (f64, f64) = (2.0, 0.1);
+const COARSE_S: (f64, f64) = (SEARCH_S, 0.1);
 const FINE_S: (f64, f64) = (0.1, 0.02);
 /// No more frames than this are asked.
 const FRAMES: usize = 400;

@@ -206,3 +206,30 @@ fn a_clock_that_is_far_off_is_told_and_found_with_a_hint() {
     assert!((found.clock_offset_s - (OFFSET_S - 1e6)).abs() < 0.01, "{}", found.clock_offset_s);
     assert!(matches!(logs.align(&late[..20], -1e6), Err(AlignError::Few(20))));
 }
+
+#[test]
+fn clocks_that_nothing_tells_are_no_alignment() {
+    let (observer, mut target) = (log(0), log(1));
+    // An observer that hangs still looks the same at any time of its clock.
+    let still: Vec<TimedPose> =
+        observer.iter().map(|row| TimedPose { time_s: row.time_s, pose: observer[0].pose }).collect();
+    let mut seen = results(9, 0.02, usize::MAX);
+    let camera = Isometry3::from_parts(Translation3::from(Vector3::from(CAMERA_M)), body_from_camera());
+    for record in &mut seen {
+        let airframe = flown(record.time_s.unwrap() + OFFSET_S)[1] * nalgebra::Point3::from(AIRFRAME_M);
+        let place = (still[0].pose * camera).inverse_transform_point(&airframe);
+        record.neighbours[0].position_m = Some(place.coords.into());
+    }
+    let own = TargetClock::Own { near_s: 0.0 };
+    let logs = Logs { observer: &still, target: &target, target_clock: own };
+    assert_eq!(logs.align(&seen, 0.0).unwrap_err(), AlignError::Still);
+    assert!(Logs { target_clock: TargetClock::Shared, ..logs }.align(&seen, 0.0).is_ok());
+
+    // A clock that is farther off than is looked for.
+    for row in &mut target {
+        row.time_s += 6.0;
+    }
+    let logs = Logs { observer: &observer, target: &target, target_clock: own };
+    let error = logs.align(&results(10, 0.02, usize::MAX), 0.0).unwrap_err();
+    assert!(matches!(error, AlignError::Clocks | AlignError::Still | AlignError::NoTurn), "{error}");
+}

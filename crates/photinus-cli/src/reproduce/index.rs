@@ -39,8 +39,13 @@ fn anchor(figure: Figure) -> String {
 fn heading(figure: Figure) -> String {
     match figure.name().parse::<u32>() {
         Ok(number) => format!("Figure {number}: {}", figure.title()),
-        Err(_) => figure.title().to_owned(),
+        Err(_) => capitalised(figure.title()),
     }
+}
+
+fn capitalised(words: &str) -> String {
+    let mut letters = words.chars();
+    letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
 }
 
 fn of_figure(page: Page, report: &Report, player: Option<&Player>) -> Page {

@@ -80,7 +80,9 @@ pub(super) fn part_of_a_scene(path: &Path, kind: Kind, table: &str) -> Result<Re
 /// What is looked at elsewhere.
 pub(super) fn shown(path: &Path, kind: Kind) -> Report {
     let mut report = Report::new(kind.to_string());
-    report.notes.extend(kind.remedy(path));
+    if let Some(remedy) = kind.remedy(path) {
+        report.fact("next", remedy);
+    }
     report
 }
 

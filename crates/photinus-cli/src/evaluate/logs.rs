@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use photinus_evaluate::alignment::{AlignError, Alignment, Logs};
+use photinus_evaluate::alignment::{AlignError, Alignment, Logs, TargetClock};
 use photinus_io::Error;
 use photinus_io::dataset::read_poses;
 use photinus_io::results::FrameRecord;
@@ -22,6 +22,7 @@ pub(super) fn truth(
     target_path: &Path,
     results: &[FrameRecord],
     near_s: f64,
+    target_clock: TargetClock,
 ) -> Result<GroundTruth, Failure> {
     let cameras: BTreeSet<&Option<String>> = results.iter().map(|record| &record.camera).collect();
     if cameras.len() > 1 {
@@ -32,11 +33,18 @@ pub(super) fn truth(
     let [observer, target] =
         [observer_path, target_path].map(|path| read_poses(path).map_err(Failure::input));
     let (observer, target) = (observer?, target?);
-    let logs = Logs { observer: &observer, target: &target };
+    let logs = Logs { observer: &observer, target: &target, target_clock };
     let refuse = |error: AlignError| {
         let advice = match error {
             AlignError::Times { .. } => {
-                "give the logs of this flight, or about how far the clocks differ as --clock-offset S"
+                "give the logs of this flight, or about how far the clocks differ as --clock-offset S, and as \
+                 --target-clock-offset S where the target's log has a clock of its own"
+            }
+            AlignError::Clocks => {
+                "give about how far the clocks differ as --clock-offset S and --target-clock-offset S"
+            }
+            AlignError::Still => {
+                "give logs of a flight in which both vehicles move, or, of logs on one clock, leave out --target-clock-offset"
             }
             AlignError::Few(_) => "give results of a longer flight, with positions",
             _ => "check that the logs share one world frame and which vehicle is which",
@@ -65,6 +73,11 @@ pub(super) fn table(alignment: &Alignment) -> String {
         |name: &str, value: String, error: String| table.row([name.to_owned(), value, format!("+- {error}")]);
     let offset = (alignment.clock_offset_s, sigma.clock_offset_s);
     row("clock offset s", format!("{:.4}", offset.0), format!("{:.4}", offset.1));
+    // A clock that both logs share has no offset to be unsure of.
+    if sigma.target_clock_offset_s > 0.0 {
+        let (offset_s, error_s) = (alignment.target_clock_offset_s, sigma.target_clock_offset_s);
+        row("target's clock offset s", format!("{offset_s:.4}"), format!("{error_s:.4}"));
+    }
     let places = [
         ("camera on the observer", &alignment.camera_m, &sigma.camera_m),
         ("airframe on the target", &alignment.airframe_m, &sigma.airframe_m),
@@ -90,6 +103,8 @@ pub(super) struct AlignmentReport {
     frames: usize,
     clock_offset_s: f64,
     clock_offset_sigma_s: f64,
+    target_clock_offset_s: f64,
+    target_clock_offset_sigma_s: f64,
     body_from_camera_xyzw: [f64; 4],
     rotation_sigma_rad: [f64; 3],
     camera_m: [f64; 3],
@@ -105,6 +120,8 @@ impl AlignmentReport {
             frames: alignment.frames,
             clock_offset_s: alignment.clock_offset_s,
             clock_offset_sigma_s: sigma.clock_offset_s,
+            target_clock_offset_s: alignment.target_clock_offset_s,
+            target_clock_offset_sigma_s: sigma.target_clock_offset_s,
             body_from_camera_xyzw: alignment.body_from_camera.coords.into(),
             rotation_sigma_rad: sigma.rotation_rad.into(),
             camera_m: alignment.camera_m.into(),

@@ -10,6 +10,7 @@ mod truth;
 
 use std::path::{Path, PathBuf};
 
+use photinus_evaluate::alignment::TargetClock;
 use photinus_evaluate::{EvaluateError, RangeBins, Scores, Settings, Side, evaluate};
 use photinus_io::results::{FrameRecord, read_results};
 use photinus_io::{Cause, Error, Place};
@@ -35,6 +36,9 @@ Examples:
   photinus evaluate flight results.jsonl -q --json - | jq .distance.overall
   # truth from the poses that two vehicles logged
   photinus evaluate observer.csv results.jsonl --target target.csv
+  # each on a clock of its own, at most 2 s apart
+  photinus evaluate observer.csv results.jsonl --target target.csv \\
+      --target-clock-offset 0
 
 Frames of truth that the results do not hold count as missed.";
 
@@ -51,13 +55,17 @@ pub(crate) struct Args {
     /// What `photinus locate --out` wrote for it
     #[arg(value_name = "RESULTS")]
     results: PathBuf,
-    /// The log of the vehicle that is seen: a CSV of poses, in the world frame and on the clock of the log given as TRUTH. Clock offset
-    /// and lever arms are estimated and told
+    /// The log of the vehicle that is seen: a CSV of poses, in the world frame of the log given as TRUTH. Clock offsets and lever arms
+    /// are estimated and told
     #[arg(long, value_name = "FILE.csv")]
     target: Option<PathBuf>,
-    /// With --target: about how much to add to the times of frames to get those of the logs; looked for within 2 s of it
+    /// With --target: about how much to add to the times of frames to get those of the log given as TRUTH; looked for within 2 s of it
     #[arg(long, value_name = "S", default_value_t = 0.0, allow_hyphen_values = true, requires = "target")]
     clock_offset: f64,
+    /// The target's log has a clock of its own: about how much to add to the times of the log given as TRUTH to get those of the
+    /// target's; looked for within 2 s of it. Without this option both logs share a clock
+    #[arg(long, value_name = "S", allow_hyphen_values = true, requires = "target")]
+    target_clock_offset: Option<f64>,
     /// Write every number as JSON, described in docs/file-formats.md; - is standard output, in place of the tables
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
@@ -195,7 +203,13 @@ impl<'a> Source<'a> {
     fn truth(self, args: &Args, results: &[FrameRecord]) -> Result<GroundTruth, Failure> {
         match self {
             Self::Known(truth) => check_frames(args, &truth, results).map(|()| *truth),
-            Self::Logs { target } => logs::truth(&args.dataset, target, results, args.clock_offset),
+            Self::Logs { target } => {
+                let target_clock = match args.target_clock_offset {
+                    Some(near_s) => TargetClock::Own { near_s },
+                    None => TargetClock::Shared,
+                };
+                logs::truth(&args.dataset, target, results, args.clock_offset, target_clock)
+            }
         }
     }
 }

@@ -292,7 +292,7 @@ fn followed(f: &mut fmt::Formatter<'_>, score: Option<&FollowedScore>) -> fmt::R
         let cells = [name.to_owned(), error.count.to_string()].into_iter().chain(sizes);
         errors.row(cells.chain(consistency(kept)));
     }
-    write!(f, "{errors}\n")?;
+    writeln!(f, "{errors}")?;
     for (name, gospa) in [("GOSPA", &score.gospa), ("probabilistic GOSPA", &score.probabilistic_gospa)] {
         writeln!(f, "  {name} {}", told(gospa))?;
     }

@@ -120,6 +120,7 @@ fn report(path: &Path) -> Result<Report> {
         Kind::CalibrationReport => own::calibration_report(path),
         Kind::SpotSizeReport => own::spot_size_report(path),
         Kind::Table(table) => tables::report(path, table),
+        shown @ (Kind::Page | Kind::Drawing) => Ok(own::shown(path, shown)),
         other @ (Kind::Folder
         | Kind::Foreign(_)
         | Kind::Keys(_)

@@ -77,6 +77,15 @@ pub(super) fn part_of_a_scene(path: &Path, kind: Kind, table: &str) -> Result<Re
     Ok(report)
 }
 
+/// What is looked at elsewhere.
+pub(super) fn shown(path: &Path, kind: Kind) -> Report {
+    let mut report = Report::new(kind.to_string());
+    if let Some(remedy) = kind.remedy(path) {
+        report.fact("next", remedy);
+    }
+    report
+}
+
 pub(super) fn scores(path: &Path) -> Result<Report> {
     let scores = json(path)?;
     let mut report = Report::new(Kind::Scores.to_string());

@@ -22,6 +22,9 @@ const MOST_TOLD: usize = 10;
 /// The strongest lift, as an exponent.
 const STRONGEST_LIFT: f64 = 0.35;
 
+/// What tells where a place of the camera frame, m, is in the frame.
+type Seen<'a> = dyn Fn(&Vector3<f64>) -> Option<Pixel> + 'a;
+
 /// Where the frame stands in the picture.
 #[derive(Clone, Copy)]
 pub(super) struct FramePanel {
@@ -43,7 +46,7 @@ impl FramePanel {
         record: &FrameRecord,
         names: &[Name],
         frame: Option<FrameView<'_>>,
-        (followed, seen): (&[Followed<'_>], &dyn Fn(&Vector3<f64>) -> Option<Pixel>),
+        (followed, seen): (&[Followed<'_>], &Seen<'_>),
     ) {
         let Some(area) = self.area() else { return };
         match frame {
@@ -146,7 +149,7 @@ impl FramePanel {
         canvas: &mut Canvas<'_>,
         labels: &mut Labels,
         followed: &Followed<'_>,
-        seen: &dyn Fn(&Vector3<f64>) -> Option<Pixel>,
+        seen: &Seen<'_>,
     ) {
         let colour = followed.name.colour();
         let shown = |place_m: &Vector3<f64>| seen(place_m).map(|pixel| self.at(pixel.u, pixel.v));

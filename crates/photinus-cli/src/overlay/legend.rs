@@ -15,6 +15,8 @@ enum Mark {
     Estimate,
     Followed,
     Truth,
+    /// Words without a mark.
+    Words,
 }
 
 /// Which marks there are besides those of spots.
@@ -33,6 +35,8 @@ const NEIGHBOUR_MARKS: [(Mark, &str); 5] = [
     (Mark::Bounds, "bounds: truth is within"),
     (Mark::Estimate, "estimate ± 1 σ"),
 ];
+/// What stands beside spots; last, for it may lie outside of a narrow picture.
+const NUMBER: (Mark, &str) = (Mark::Words, "7 42 %: spot 7, a marker with 42 %");
 
 /// Draws the legend to the right of `at`, through its middle; that of neighbours where they are looked for.
 pub(super) fn draw(canvas: &mut Canvas<'_>, at: Point, kinds: Kinds, unit: f32) {
@@ -40,7 +44,7 @@ pub(super) fn draw(canvas: &mut Canvas<'_>, at: Point, kinds: Kinds, unit: f32) 
     let followed = kinds.followed.then_some((Mark::Followed, "2 s ago to 0.5 s ahead; # is its id"));
     let truth = kinds.truth.then_some((Mark::Truth, "truth"));
     let mut x = at.x;
-    for (mark, text) in marks.iter().copied().chain(followed).chain(truth) {
+    for (mark, text) in marks.iter().copied().chain(followed).chain(truth).chain([NUMBER]) {
         let width = mark.draw(canvas, Point::from_xy(x, at.y), unit);
         let words = Words { text, size: 13.0 * unit, colour: colours::INK, halo: None };
         let begin = x + width + 7.0 * unit;
@@ -72,6 +76,7 @@ impl Mark {
                 canvas.arrow(x(20.0), x(36.0), Pen::new(colour, 2.0 * unit), 6.0 * unit);
                 36.0 * unit
             }
+            Mark::Words => 0.0,
             Mark::Truth => {
                 canvas.square(x(7.0), 6.0 * unit, Pen::new(colours::INK, 1.8 * unit));
                 14.0 * unit

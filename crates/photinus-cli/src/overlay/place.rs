@@ -64,14 +64,10 @@ impl Place {
             }
             Self::Video { sink, name, writer } => {
                 let size = (size.0 as usize, size.1 as usize);
-                bytes.clear();
-                bytes.extend(
-                    picture.pixels().iter().flat_map(|pixel| [pixel.red(), pixel.green(), pixel.blue()]),
-                );
                 if let Some(sink) = sink.take() {
                     *writer = Some(ColourY4mWriter::new(sink, &name, size)?);
                 }
-                writer.as_mut().map_or(Ok(()), |writer| writer.write(bytes, size))
+                writer.as_mut().map_or(Ok(()), |writer| writer.write(picture.data(), size))
             }
         }
     }

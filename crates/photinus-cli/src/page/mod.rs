@@ -42,6 +42,21 @@ impl Page {
         self
     }
 
+    /// A heading that [`Page::contents`] leads to.
+    pub(crate) fn chapter(mut self, anchor: &str, text: &str) -> Self {
+        self.body += &format!("<h2 id=\"{}\">{}</h2>\n", escaped(anchor), escaped(text));
+        self
+    }
+
+    /// What is on the page: anchors and texts of its chapters.
+    pub(crate) fn contents(mut self, chapters: &[(String, String)]) -> Self {
+        let item = |(anchor, text): &(String, String)| {
+            format!("<li><a href=\"#{}\">{}</a></li>\n", escaped(anchor), escaped(text))
+        };
+        self.body += &format!("<nav><ul>\n{}</ul></nav>\n", chapters.iter().map(item).collect::<String>());
+        self
+    }
+
     /// Lines whose columns stand below each other.
     pub(crate) fn lines(mut self, text: &str) -> Self {
         self.body += &format!("<pre>{}</pre>\n", escaped(text));

@@ -19,7 +19,9 @@ pub(super) fn write(folder: &Path, reports: &[Report], player: Option<&Player>) 
          in simulation. {within} of {held} numbers with a tolerance are within it. A number out of its tolerance is a finding, not a \
          failure: its note says why."
     ));
-    let page = reports.iter().fold(page, |page, report| of_figure(page, report, player));
+    let chapters: Vec<(String, String)> =
+        reports.iter().map(|report| (anchor(report.figure), heading(report.figure))).collect();
+    let page = reports.iter().fold(page.contents(&chapters), |page, report| of_figure(page, report, player));
     let links: Vec<(String, &str)> = reports
         .iter()
         .map(|report| (format!("figure-{}.csv", report.figure.name()), report.figure.title()))
@@ -30,16 +32,28 @@ pub(super) fn write(folder: &Path, reports: &[Report], player: Option<&Player>) 
     page.heading("Data").links(&links.collect::<Vec<_>>()).write(folder)
 }
 
+fn anchor(figure: Figure) -> String {
+    format!("figure-{}", figure.name())
+}
+
+fn heading(figure: Figure) -> String {
+    match figure.name().parse::<u32>() {
+        Ok(number) => format!("Figure {number}: {}", figure.title()),
+        Err(_) => capitalised(figure.title()),
+    }
+}
+
+fn capitalised(words: &str) -> String {
+    let mut letters = words.chars();
+    letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
+}
+
 fn of_figure(page: Page, report: &Report, player: Option<&Player>) -> Page {
-    let name = report.figure.name();
-    let heading = match name.parse::<u32>() {
-        Ok(number) => format!("Figure {number}: {}", report.figure.title()),
-        Err(_) => report.figure.title().to_owned(),
-    };
-    let page = page.heading(&heading);
+    let (anchor, heading) = (anchor(report.figure), heading(report.figure));
+    let page = page.chapter(&anchor, &heading);
     let page = match player.filter(|_| report.figure == Figure::Overlay) {
         Some(player) => page.player(player),
         None => page,
     };
-    page.figure(&format!("figure-{name}.svg"), &heading, report.figure.caption()).html(&tables::html(report))
+    page.figure(&format!("{anchor}.svg"), &heading, report.figure.caption()).html(&tables::html(report))
 }

@@ -69,6 +69,9 @@ pub(super) fn held(reports: &[Report]) -> (usize, usize) {
 
 /// The numbers of a figure as a table of a page.
 pub(super) fn html(report: &Report) -> String {
+    if report.rows.is_empty() {
+        return String::new();
+    }
     let heads = ["quantity", "paper", "reproduced", "ratio", "tolerance", "within", "note"];
     let head: String = heads.iter().map(|head| format!("<th>{head}</th>")).collect();
     let row = |row: &Row| {
@@ -77,7 +80,7 @@ pub(super) fn html(report: &Report) -> String {
         format!("<tr>{cells}</tr>\n")
     };
     let rows: String = report.rows.iter().map(row).collect();
-    format!("<div class=\"wide\"><table>\n<tr>{head}</tr>\n{rows}</table></div>")
+    format!("<div class=\"wide\"><table class=\"worded\">\n<tr>{head}</tr>\n{rows}</table></div>")
 }
 
 fn rows(reports: &[Report]) -> impl Iterator<Item = (&Report, &Row)> {

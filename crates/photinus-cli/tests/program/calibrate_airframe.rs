@@ -10,10 +10,10 @@ use crate::stage::Stage;
 const SQUARE: &str = "0.2 0.2 0 0 0 0 0\n0.2 -0.2 0 0 0 0 0\n-0.2 -0.2 0 0 0 0 0\n-0.2 0.2 0 0 0 0 0\n0 0 0.15 2 0 0 0\n\
                       0.3 0 0.1 2 0 0 0\n";
 
-/// Photos of an airframe whose last LED sits 3 cm from where it should, and is not seen in every photo.
-fn sightings(stage: &Stage) -> String {
+/// Photos of an airframe whose LED 5 sits 3 cm from where it should, and is not seen in every photo.
+pub(crate) fn sightings(stage: &Stage, airframe: &str) -> String {
     let camera = read_camera(&stage.path("camera.toml")).unwrap().camera;
-    let mut leds_m: Vec<Vector3<f64>> = read_airframe(stage.path("square.txt"))
+    let mut leds_m: Vec<Vector3<f64>> = read_airframe(stage.path(airframe))
         .unwrap()
         .airframe
         .leds()
@@ -38,7 +38,7 @@ fn sightings(stage: &Stage) -> String {
 fn photos_from_all_around_give_the_airframe() {
     let stage = Stage::new("airframe-measured");
     stage.file("square.txt", SQUARE);
-    stage.file("seen.csv", sightings(&stage));
+    stage.file("seen.csv", sightings(&stage, "square.txt"));
     let words = "calibrate airframe seen.csv --camera camera.toml --nominal square.txt --distance 0-1=0.4 --out measured.toml";
     let done = stage.run(words);
     assert_eq!(done.code, 0);
@@ -61,7 +61,7 @@ fn photos_from_all_around_give_the_airframe() {
 fn what_gives_no_airframe_is_refused() {
     let stage = Stage::new("airframe-refused");
     stage.file("square.txt", SQUARE);
-    let good = sightings(&stage);
+    let good = sightings(&stage, "square.txt");
     stage.file("seen.csv", &good);
     stage.file("seven.csv", format!("{good}photo1.png,7,30,30\n"));
     stage.file("few.csv", good.lines().take(8).collect::<Vec<_>>().join("\n"));

@@ -12,14 +12,16 @@ fn body_from_camera() -> Rotation3<f64> {
     Rotation3::from_scaled_axis(Vector3::new(-1.1, 1.3, -1.0))
 }
 
-/// Places over the image with their directions in the body frame, to 0.1 px.
-fn directions(stage: &Stage) -> String {
+/// Places over the image of camera.toml with their directions in the body frame, to 0.1 px.
+pub(crate) fn directions(stage: &Stage) -> String {
     let camera = read_camera(&stage.path("camera.toml")).unwrap().camera;
     let mut table = "u_px,v_px,x,y,z\n".to_owned();
     for index in 0..12 {
         let share = |step: f64| (f64::from(index) * step).fract();
-        let pixel = Pixel::new(10.0 + 76.0 * share(0.618), 8.0 + 48.0 * share(0.7549));
-        let ray = body_from_camera() * camera.bearing(pixel).unwrap().vector();
+        let (width, height) = (camera.width() as f64, camera.height() as f64);
+        let pixel = Pixel::new(width * (0.1 + 0.8 * share(0.618)), height * (0.125 + 0.75 * share(0.7549)));
+        let Some(bearing) = camera.bearing(pixel) else { continue };
+        let ray = body_from_camera() * bearing.vector();
         table += &format!("{:.1},{:.1},{},{},{}\n", pixel.u, pixel.v, ray.x, ray.y, ray.z);
     }
     table

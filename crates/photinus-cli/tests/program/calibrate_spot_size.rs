@@ -5,7 +5,7 @@ use photinus_io::spot_curve::read_spot_curve;
 use crate::stage::Stage;
 
 /// A table of areas, of 1 + 30 / l^2 px at most.
-fn areas(exposures_us: &[f64]) -> String {
+pub(crate) fn areas(exposures_us: &[f64]) -> String {
     let mut table = "distance_m,area_px,exposure_us\n".to_owned();
     for exposure_us in exposures_us {
         for index in 0..200 {

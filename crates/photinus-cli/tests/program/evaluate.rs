@@ -302,11 +302,14 @@ fn flown(time_s: f64) -> [Isometry3<f64>; 2] {
     [pose(time_s, 0.0), pose(time_s + 11.0, 7.0)]
 }
 
-#[test]
-fn two_logs_are_a_truth() {
-    let stage = Stage::new("evaluate-logs");
-    let (late_s, camera_m) = (0.4, Vector3::new(0.1, 0.0, 0.05));
-    let camera = Isometry3::from_parts(camera_m.into(), UnitQuaternion::from_euler_angles(-1.6, 0.0, -1.5));
+/// What the clock of the logs is ahead of that of the frames.
+const LATE_S: f64 = 0.4;
+/// Where the camera sits on the observer.
+const CAMERA_M: Vector3<f64> = Vector3::new(0.1, 0.0, 0.05);
+
+/// A flight of a minute as observer.csv and target.csv, with results.jsonl, and the text of the target's log.
+pub(crate) fn two_logs(stage: &Stage) -> String {
+    let camera = Isometry3::from_parts(CAMERA_M.into(), UnitQuaternion::from_euler_angles(-1.6, 0.0, -1.5));
     let mut logs = ["time_s,x_m,y_m,z_m,qx,qy,qz,qw\n"; 2].map(str::to_owned);
     for step in 0..3500 {
         let time_s = f64::from(step) / 50.0;
@@ -321,7 +324,7 @@ fn two_logs_are_a_truth() {
     let mut records = Vec::new();
     for frame in 0..1200 {
         let time_s = f64::from(frame) / 20.0;
-        let [observer, target] = flown(time_s + late_s);
+        let [observer, target] = flown(time_s + LATE_S);
         let seen = (observer * camera).inv_mul(&target).translation.vector;
         let mut record = result(u64::from(frame as u32));
         record.time_s = Some(time_s);
@@ -335,12 +338,34 @@ fn two_logs_are_a_truth() {
         records.push(record);
     }
     stage.file("results.jsonl", lines(records.into_iter()));
+    target.clone()
+}
+
+#[test]
+fn two_logs_are_a_truth() {
+    let stage = Stage::new("evaluate-logs");
+    let target = two_logs(&stage);
     let done = stage.run("evaluate observer.csv results.jsonl --target target.csv --json s.json");
     assert!(done.code == 0 && done.out.contains("clock offset s"), "{}{}", done.out, done.err);
     let scores: serde_json::Value = serde_json::from_str(&stage.read("s.json")).unwrap();
     let number = |place: &str| scores.pointer(place).and_then(serde_json::Value::as_f64).unwrap();
-    assert!((number("/alignment/clock_offset_s") - late_s).abs() < 0.005, "{}", done.out);
-    assert!((number("/alignment/camera_m/0") - camera_m.x).abs() < 0.02, "{}", done.out);
+    assert!((number("/alignment/clock_offset_s") - LATE_S).abs() < 0.005, "{}", done.out);
+    assert!((number("/alignment/camera_m/0") - CAMERA_M.x).abs() < 0.02, "{}", done.out);
+    assert!(number("/neighbours/overall/recall") > 0.999 && number("/distance/overall/error_m/rms") < 0.02);
+    // The same logs, the target's by a clock that is 1.3 s ahead.
+    let ahead = target.lines().skip(1).map(|row| {
+        let (time_s, rest) = row.split_once(',').unwrap();
+        format!("{},{rest}\n", time_s.parse::<f64>().unwrap() + 1.3)
+    });
+    stage.file("ahead.csv", format!("{}\n{}", target.lines().next().unwrap(), ahead.collect::<String>()));
+    let done = stage.run(
+        "evaluate observer.csv results.jsonl --target ahead.csv --target-clock-offset 0 --json own.json",
+    );
+    assert!(done.code == 0 && done.out.contains("target's clock offset s"), "{}{}", done.out, done.err);
+    let scores: serde_json::Value = serde_json::from_str(&stage.read("own.json")).unwrap();
+    let number = |place: &str| scores.pointer(place).and_then(serde_json::Value::as_f64).unwrap();
+    assert!((number("/alignment/clock_offset_s") - LATE_S).abs() < 0.01, "{}", done.out);
+    assert!((number("/alignment/target_clock_offset_s") - 1.3).abs() < 0.01, "{}", done.out);
     assert!(number("/neighbours/overall/recall") > 0.999 && number("/distance/overall/error_m/rms") < 0.02);
     stage.refuses(
         "evaluate observer.csv results.jsonl --target target.csv --clock-offset 500",

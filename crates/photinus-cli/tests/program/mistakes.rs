@@ -11,6 +11,7 @@ fn stage(test: &str) -> Stage {
     stage.file("readme.md", "# Photinus\n\nPhotinus (the fireflies: they flash) tells a robot\n");
     stage.file("notes.txt", "hello\n");
     stage.file("empty.txt", "");
+    stage.file("page.html", "<!DOCTYPE html>\n<html lang=\"en\">\n");
     stage.file("comment.toml", "# nothing yet\n");
     stage.file("v.mp4", b"\0\0\0\x20ftypisom\0\0\x02\0");
     stage.file("v.mkv", b"\x1a\x45\xdf\xa3\x01");
@@ -42,7 +43,7 @@ type Mistake = (&'static str, i32, &'static [&'static str]);
 
 const LOCATE: &str = "locate frame.png --camera camera.toml --airframe hexa.toml";
 
-const FILES: [Mistake; 27] = [
+const FILES: [Mistake; 29] = [
     ("info readme.md", 2, &["this is text in no format that Photinus knows; name a camera"]),
     ("info notes.txt", 2, &["this is text in no format"]),
     ("info empty.txt", 2, &["a file that holds nothing"]),
@@ -51,6 +52,8 @@ const FILES: [Mistake; 27] = [
     ("info bag.mcap", 2, &["this is an MCAP recording; export its frames as images"]),
     ("info photos.zip", 2, &["this is a ZIP archive; unpack it first"]),
     ("info nothing", 2, &["this is a folder without frames"]),
+    ("info page.html", 0, &["page.html: a page for a browser", "open it in a browser"]),
+    ("detect page.html", 2, &["this is a page for a browser, not an image; open it in a browser"]),
     ("info other.csv", 2, &["no table of Photinus has the columns `a,b,c`; docs/file-formats.md"]),
     ("info keys.yaml", 2, &["YAML with keys that Photinus does not know"]),
     ("info camer.toml", 2, &["camer.toml: ", "check the path"]),

@@ -7,10 +7,11 @@ use photinus_io::image::{GreyImage, read_image, write_png};
 use photinus_io::video::Y4mWriter;
 
 use crate::stage::Stage;
+use crate::{calibrate_airframe, calibrate_mounting, calibrate_spot_size, evaluate};
 
 /// Commands whose examples are walked; the others calibrate from photos that cannot be part of the repository, or simulate for minutes,
 /// and have tests of their own.
-const WALKED: [&str; 11] = [
+const WALKED: [&str; 15] = [
     "locate",
     "detect",
     "info",
@@ -20,14 +21,27 @@ const WALKED: [&str; 11] = [
     "evaluate",
     "completions",
     "codes check",
+    "codes design",
     "codes preset",
+    "calibrate spot-size",
+    "calibrate mounting",
+    "calibrate airframe",
     "simulate",
 ];
 
-/// What an example has that a test cannot: other programs, minutes of simulation, a recording of a robot alone, a home folder, two logs of
-/// a flight (`evaluate::two_logs_are_a_truth` has them).
-const LEFT_OUT: [&str; 7] =
-    ["ffmpeg", "jq", "outdoor-flight.toml", "swarm-12.toml", "morning", "~/", "--target"];
+/// What an example has that a test cannot: other programs, minutes of simulation or of search, recordings of a robot or an LED alone, a
+/// home folder.
+const LEFT_OUT: [&str; 9] = [
+    "ffmpeg",
+    "jq",
+    "outdoor-flight.toml",
+    "swarm-12.toml",
+    "receding-led.toml",
+    "spot-size recording",
+    "morning",
+    "~/",
+    "--effort",
+];
 
 /// Options and commands whose next word is written to.
 const WRITES: [&str; 8] = ["--out", "--csv", "--overlay", "--json", "--plots", "--report", "--ocam", ">"];
@@ -48,8 +62,8 @@ fn copy(from: &Path, to: &Path) {
     }
 }
 
-/// A folder with every file that an example reads, but none of `written`.
-fn provide(stage: &Stage, written: &BTreeSet<String>) {
+/// A folder with every file that `example` reads, but none of `written`.
+fn provide(stage: &Stage, example: &str, written: &BTreeSet<String>) {
     for folder in ["recording", "flight", "bad-day", "other-flight", "examples/three-hexarotors"] {
         copy(flight(), &stage.path(folder));
     }
@@ -98,8 +112,26 @@ fn provide(stage: &Stage, written: &BTreeSet<String>) {
     ] {
         std::fs::copy(stage.path(from), stage.path(to)).unwrap();
     }
+    provide_measurements(stage, example);
     for name in written.iter().map(|name| stage.path(name)) {
         drop(if name.is_dir() { std::fs::remove_dir_all(name) } else { std::fs::remove_file(name) });
+    }
+}
+
+/// What somebody measured, in files whose content depends on the example.
+fn provide_measurements(stage: &Stage, example: &str) {
+    if example.contains("calibrate mounting") {
+        stage.file("seen.csv", calibrate_mounting::directions(stage));
+    }
+    if example.contains("calibrate airframe") {
+        stage.file("seen.csv", calibrate_airframe::sightings(stage, "quad.toml"));
+    }
+    if example.contains("areas.csv") || example.contains("spots.toml") {
+        stage.file("areas.csv", calibrate_spot_size::areas(&[1000.0]));
+        assert_eq!(stage.run("calibrate spot-size areas.csv --out spots.toml").code, 0);
+    }
+    if example.contains("--target") {
+        evaluate::two_logs(stage);
     }
 }
 
@@ -141,10 +173,10 @@ fn every_example_does_what_it_says() {
     let of_help = WALKED.iter().flat_map(|command| examples(&help.run(&format!("{command} --help")).out));
     let is_walked = |example: &String| !LEFT_OUT.iter().any(|part| example.contains(part));
     let walked: Vec<String> = of_readme().into_iter().chain(of_help).filter(is_walked).collect();
-    assert!(walked.len() >= 37, "{}", walked.len());
+    assert!(walked.len() >= 44, "{}", walked.len());
     for (number, example) in walked.iter().enumerate() {
         let stage = Stage::new(&format!("walk-{number}"));
-        provide(&stage, &written(example));
+        provide(&stage, example, &written(example));
         let done = stage.shell(&format!("photinus() {{ \"$photinus\" \"$@\"; }}; {example}"));
         assert_eq!(done.code, 0, "{example}\n{}{}", done.out, done.err);
         for name in written(example).iter().filter(|name| *name != "-") {

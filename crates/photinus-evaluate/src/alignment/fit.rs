@@ -1,10 +1,10 @@
-//! Ten numbers by robust least squares on positions, with standard errors that allow for errors which last.
+//! Ten numbers, eleven with a clock of the target's own, by robust least squares on positions, with standard errors that allow for errors which last.
 
 use nalgebra::{Cholesky, Isometry3, Matrix3, SMatrix, SVector, Translation3, UnitQuaternion, Vector3};
 
-use super::{AlignError, Alignment, AlignmentSigma, FEWEST_FRAMES, Logs, Seen, span_s};
+use super::{AlignError, Alignment, AlignmentSigma, FEWEST_FRAMES, Logs, Seen, TargetClock, span_s};
 
-const COUNT: usize = 10;
+const COUNT: usize = 11;
 type Numbers = SVector<f64, COUNT>;
 type Square = SMatrix<f64, COUNT, COUNT>;
 
@@ -18,18 +18,21 @@ const HUBER: f64 = 2.0;
 const BLOCKS: f64 = 30.0;
 const SHORTEST_BLOCK_S: f64 = 1.0;
 const MOST_STEPS: usize = 30;
+/// Which of the numbers is the offset of the target's clock.
+const TARGET_CLOCK: usize = 10;
 
 /// What is estimated.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Parameters {
     pub(super) clock_offset_s: f64,
+    pub(super) target_clock_offset_s: f64,
     pub(super) body_from_camera: UnitQuaternion<f64>,
     pub(super) camera_m: Vector3<f64>,
     pub(super) airframe_m: Vector3<f64>,
 }
 
 impl Parameters {
-    /// Changed by a step: the clock, a turn about the camera's axes, the camera's centre, the airframe's origin.
+    /// Changed by a step: the clock, a turn about the camera's axes, the camera's centre, the airframe's origin, the target's clock.
     fn stepped(&self, step: &Numbers) -> Self {
         let part = |from: usize| step.fixed_rows::<3>(from).into_owned();
         Self {
@@ -37,12 +40,13 @@ impl Parameters {
             body_from_camera: self.body_from_camera * UnitQuaternion::from_scaled_axis(part(1)),
             camera_m: self.camera_m + part(4),
             airframe_m: self.airframe_m + part(7),
+            target_clock_offset_s: self.target_clock_offset_s + step[TARGET_CLOCK],
         }
     }
 
     /// Where the airframe is in the camera frame at a time of the frames, m.
     fn seen_m(&self, logs: &Logs<'_>, time_s: f64) -> Option<Vector3<f64>> {
-        let [observer, target] = logs.at(time_s + self.clock_offset_s)?;
+        let [observer, target] = logs.at(time_s + self.clock_offset_s, self.target_clock_offset_s)?;
         let camera = Isometry3::from_parts(Translation3::from(self.camera_m), self.body_from_camera);
         let airframe = target * nalgebra::Point3::from(self.airframe_m);
         Some((observer * camera).inverse_transform_point(&airframe).coords)
@@ -67,22 +71,22 @@ struct Sums {
 
 /// The numbers that fit best, from a start that is near, with their standard errors.
 pub(super) fn refined(logs: &Logs<'_>, seen: &[Seen], start: Parameters) -> Result<Alignment, AlignError> {
-    let prior = prior();
+    let (prior, free) = (prior(), free(logs.target_clock));
     let cost = |parameters: &Parameters, blocks: &[Sums]| {
         let arms = parameters.lever_arms();
         blocks.iter().map(|block| block.cost).sum::<f64>() + arms.dot(&(prior * arms))
     };
     let mut now = start;
-    let mut blocks = sums(logs, seen, &now);
+    let mut blocks = sums(logs, seen, &now, &free);
     let mut damping = 1e-3;
     for _ in 0..MOST_STEPS {
-        let normal = blocks.iter().fold(prior, |sum, block| sum + block.normal);
+        let normal = blocks.iter().fold(solvable(prior, &free), |sum, block| sum + block.normal);
         let gradient = blocks.iter().fold(prior * now.lever_arms(), |sum, block| sum + block.gradient);
         let damped = normal + Square::from_diagonal(&(normal.diagonal() * damping));
         let Some(solver) = Cholesky::new(damped) else { return Err(AlignError::NoTurn) };
         let step = -solver.solve(&gradient);
         let next = now.stepped(&step);
-        let next_blocks = sums(logs, seen, &next);
+        let next_blocks = sums(logs, seen, &next, &free);
         if frames(&next_blocks) >= frames(&blocks) / 2 && cost(&next, &next_blocks) < cost(&now, &blocks) {
             let is_settled = cost(&now, &blocks) - cost(&next, &next_blocks) < 1e-9 * cost(&now, &blocks);
             (now, blocks, damping) = (next, next_blocks, damping / 10.0);
@@ -99,9 +103,17 @@ pub(super) fn refined(logs: &Logs<'_>, seen: &[Seen], start: Parameters) -> Resu
     if frames < FEWEST_FRAMES {
         return Err(AlignError::Few(frames));
     }
-    let Parameters { clock_offset_s, body_from_camera, camera_m, airframe_m } = now;
-    let sigma = sigma(&blocks, &prior).ok_or(AlignError::NoTurn)?;
-    Ok(Alignment { clock_offset_s, body_from_camera, camera_m, airframe_m, sigma, frames })
+    let Parameters { clock_offset_s, target_clock_offset_s, body_from_camera, camera_m, airframe_m } = now;
+    let sigma = sigma(&blocks, &prior, &free).ok_or(AlignError::NoTurn)?;
+    Ok(Alignment {
+        clock_offset_s,
+        target_clock_offset_s,
+        body_from_camera,
+        camera_m,
+        airframe_m,
+        sigma,
+        frames,
+    })
 }
 
 fn frames(blocks: &[Sums]) -> usize {
@@ -114,8 +126,22 @@ fn prior() -> Square {
     Square::from_diagonal(&weights)
 }
 
+/// One for each number that is estimated, zero for the target's clock where it is that of the observer.
+fn free(target_clock: TargetClock) -> Numbers {
+    let mut free = Numbers::repeat(1.0);
+    if target_clock == TargetClock::Shared {
+        free[TARGET_CLOCK] = 0.0;
+    }
+    free
+}
+
+/// Normal equations, in which what is not estimated has a one on the diagonal and no step.
+fn solvable(normal: Square, free: &Numbers) -> Square {
+    normal + Square::from_diagonal(&free.map(|free| 1.0 - free))
+}
+
 /// Normal equations by blocks of time; of a frame the neighbour that is nearest to where the target should be.
-fn sums(logs: &Logs<'_>, seen: &[Seen], at: &Parameters) -> Vec<Sums> {
+fn sums(logs: &Logs<'_>, seen: &[Seen], at: &Parameters, free: &Numbers) -> Vec<Sums> {
     let (first_s, last_s) = span_s(seen.iter().map(|frame| frame.time_s));
     let block_s = ((last_s - first_s) / BLOCKS).max(SHORTEST_BLOCK_S);
     let mut blocks: Vec<(i64, Sums)> = Vec::new();
@@ -130,7 +156,7 @@ fn sums(logs: &Logs<'_>, seen: &[Seen], at: &Parameters) -> Vec<Sums> {
         });
         let nearest = whitened.min_by(|a, b| a.0.norm_squared().total_cmp(&b.0.norm_squared()));
         let Some((residual, root)) = nearest else { continue };
-        let Some(jacobian) = jacobian(logs, frame.time_s, at) else { continue };
+        let Some(jacobian) = jacobian(logs, frame.time_s, at, free) else { continue };
         let Some(jacobian) = root.l().solve_lower_triangular(&jacobian) else { continue };
         let length = residual.norm();
         let weight = if length > HUBER { HUBER / length } else { 1.0 };
@@ -149,32 +175,33 @@ fn sums(logs: &Logs<'_>, seen: &[Seen], at: &Parameters) -> Vec<Sums> {
 }
 
 /// How the predicted position changes with each number, by central differences.
-fn jacobian(logs: &Logs<'_>, time_s: f64, at: &Parameters) -> Option<SMatrix<f64, 3, COUNT>> {
+fn jacobian(logs: &Logs<'_>, time_s: f64, at: &Parameters, free: &Numbers) -> Option<SMatrix<f64, 3, COUNT>> {
     // Steps far above what rounding leaves, and far below what bends: s, rad, m.
-    let steps = [1e-3, 1e-5, 1e-5, 1e-5, 1e-4, 1e-4, 1e-4, 1e-4, 1e-4, 1e-4];
+    let steps = [1e-3, 1e-5, 1e-5, 1e-5, 1e-4, 1e-4, 1e-4, 1e-4, 1e-4, 1e-4, 1e-3];
     let mut jacobian = SMatrix::<f64, 3, COUNT>::zeros();
     for (column, step) in steps.into_iter().enumerate() {
         let mut small = Numbers::zeros();
         small[column] = step;
         let [ahead, behind] = [small, -small].map(|small| at.stepped(&small).seen_m(logs, time_s));
-        jacobian.set_column(column, &((ahead? - behind?) / (2.0 * step)));
+        jacobian.set_column(column, &((ahead? - behind?) * (free[column] / (2.0 * step))));
     }
     Some(jacobian)
 }
 
 /// Standard errors by the scatter of the blocks' gradients (the sandwich of Huber 1967, White 1980, with blocks as clusters).
-fn sigma(blocks: &[Sums], prior: &Square) -> Option<AlignmentSigma> {
-    let normal = blocks.iter().fold(*prior, |sum, block| sum + block.normal);
+fn sigma(blocks: &[Sums], prior: &Square, free: &Numbers) -> Option<AlignmentSigma> {
+    let normal = blocks.iter().fold(solvable(*prior, free), |sum, block| sum + block.normal);
     let bread = Cholesky::new(normal)?.inverse();
     let count = blocks.len() as f64;
     let scatter =
         blocks.iter().fold(Square::zeros(), |sum, block| sum + block.gradient * block.gradient.transpose());
-    // What the ten numbers took from the scatter is given back.
-    let filling = scatter * (count / (count - COUNT as f64).max(1.0)) + prior;
+    // What the numbers took from the scatter is given back.
+    let filling = scatter * (count / (count - free.sum()).max(1.0)) + prior;
     let of = (bread * filling * bread).diagonal().map(f64::sqrt);
     let part = |from: usize| of.fixed_rows::<3>(from).into_owned();
     Some(AlignmentSigma {
         clock_offset_s: of[0],
+        target_clock_offset_s: of[TARGET_CLOCK],
         rotation_rad: part(1),
         camera_m: part(4),
         airframe_m: part(7),

@@ -1,10 +1,11 @@
 //! Truth of a flight from two logs of poses: enter where the observer and its target were, and results; leave truth in the camera
 //! frame, and what had to be estimated for it, with standard errors.
 //!
-//! The logs share one world frame and one clock, as those of GNSS receivers or of a motion capture do. What nobody measures to the
-//! centimetre is estimated from the results themselves: how far the clock of the frames is from that of the logs, how the camera
-//! sits on the observer, and where the target's airframe has its origin. These ten numbers are the only way in which results
-//! enter their own truth: an error that is the same in all frames of a flight hides in them, what changes does not.
+//! The logs share one world frame, and one clock, as those of GNSS receivers or of a motion capture do; those of two flight
+//! controllers have clocks of their own. What nobody measures to the centimetre is estimated from the results themselves: how far the
+//! clocks are from each other, how the camera sits on the observer, and where the target's airframe has its origin. These ten or eleven
+//! numbers are the only way in which results enter their own truth: an error that is the same in all frames of a flight hides in them,
+//! what changes does not.
 
 mod fit;
 mod start;
@@ -15,14 +16,18 @@ use nalgebra::{Isometry3, Matrix3, Translation3, UnitQuaternion, Vector3};
 use photinus_io::dataset::{TimedPose, TruthFrame, TruthNeighbour};
 use photinus_io::results::{FrameRecord, NeighbourRecord};
 
-/// The fewest frames that ten numbers are estimated from.
+/// The fewest frames that an alignment is estimated from.
 pub const FEWEST_FRAMES: usize = 30;
+/// Clock offsets are looked for this far around the expected ones, s.
+const SEARCH_S: f64 = 2.0;
 
 /// How the clocks, the camera and the target's airframe fit the logs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Alignment {
-    /// Added to the time of a frame it gives the time of the logs, s.
+    /// Added to the time of a frame it gives the time of the observer's log, s.
     pub clock_offset_s: f64,
+    /// Added to a time of the observer's log it gives that of the target's, s; 0 where they share a clock.
+    pub target_clock_offset_s: f64,
     /// The rotation body_from_camera of the observer.
     pub body_from_camera: UnitQuaternion<f64>,
     /// The camera's centre in the observer's body frame, m.
@@ -41,6 +46,8 @@ pub struct Alignment {
 pub struct AlignmentSigma {
     /// Of the clock offset, s.
     pub clock_offset_s: f64,
+    /// Of the target's clock offset, s; 0 where the logs share a clock.
+    pub target_clock_offset_s: f64,
     /// Of the rotation, as a small turn about the camera's axes, rad.
     pub rotation_rad: Vector3<f64>,
     /// Of the camera's centre, m.
@@ -68,22 +75,52 @@ pub enum AlignError {
         "{0} frames have a time within both logs and a neighbour with a position, {FEWEST_FRAMES} are needed"
     )]
     Few(usize),
+    /// The best offsets are not among those that were looked for.
+    #[error("no clock offsets within {SEARCH_S} s of the expected ones fit the results")]
+    Clocks,
+    /// The vehicles hardly move, so that other offsets fit as well.
+    #[error("the vehicles move too little to tell how far the clocks are apart")]
+    Still,
     /// No clock offset and no turn of the camera make sense of the bearings.
     #[error("no turn of the camera brings the neighbours of the results to where the logs have the target")]
     NoTurn,
 }
 
-/// Two logs in one world frame, on one clock.
+/// What the clocks of two logs have to do with each other.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum TargetClock {
+    /// Both logs tell the same time.
+    Shared,
+    /// The target's log has a clock of its own.
+    Own {
+        /// About how much to add to a time of the observer's log to get that of the target's, s.
+        near_s: f64,
+    },
+}
+
+impl TargetClock {
+    /// What is known of the offset beforehand, s.
+    fn near_s(self) -> f64 {
+        match self {
+            Self::Shared => 0.0,
+            Self::Own { near_s } => near_s,
+        }
+    }
+}
+
+/// Two logs in one world frame.
 #[derive(Clone, Copy, Debug)]
 pub struct Logs<'a> {
     /// Of the vehicle that carries the camera.
     pub observer: &'a [TimedPose],
     /// Of the vehicle that is seen.
     pub target: &'a [TimedPose],
+    /// The clock of the target's log, beside that of the observer's.
+    pub target_clock: TargetClock,
 }
 
 impl Logs<'_> {
-    /// Estimates how the logs fit results; the clock offset is looked for within two seconds of `near_s`.
+    /// Estimates how the logs fit results; clock offsets are looked for within two seconds of `near_s` and of what `target_clock` says.
     ///
     /// # Errors
     /// [`AlignError`] when too little is in common.
@@ -99,8 +136,25 @@ impl Logs<'_> {
             few if few < FEWEST_FRAMES => Err(AlignError::Few(few)),
             _ => {
                 let start = start::from_bearings(self, &seen, near_s).ok_or(AlignError::NoTurn)?;
-                fit::refined(self, &seen, start)
+                let found = fit::refined(self, &seen, start)?;
+                self.check_clocks(&found, near_s).map(|()| found)
             }
+        }
+    }
+
+    fn check_clocks(&self, found: &Alignment, near_s: f64) -> Result<(), AlignError> {
+        let sigma = &found.sigma;
+        let clocks = [
+            (found.clock_offset_s - near_s, sigma.clock_offset_s),
+            (found.target_clock_offset_s - self.target_clock.near_s(), sigma.target_clock_offset_s),
+        ];
+        // Where nothing tells an offset its variance is huge, or rounding makes it negative.
+        if clocks.iter().any(|clock| clock.1.is_nan() || clock.1 > SEARCH_S) {
+            return Err(AlignError::Still);
+        }
+        match clocks.iter().any(|clock| clock.0.abs() > SEARCH_S) {
+            true => Err(AlignError::Clocks),
+            false => Ok(()),
         }
     }
 
@@ -111,7 +165,8 @@ impl Logs<'_> {
                 .inverse();
         let frame = |(record, index): (&FrameRecord, u64)| {
             let time_s = record.time_s?;
-            let [observer, target] = self.at(time_s + alignment.clock_offset_s)?;
+            let [observer, target] =
+                self.at(time_s + alignment.clock_offset_s, alignment.target_clock_offset_s)?;
             let airframe = target * Translation3::from(alignment.airframe_m);
             let seen = camera_from_body * observer.inv_mul(&airframe);
             let position_m = seen.translation.vector;
@@ -129,16 +184,17 @@ impl Logs<'_> {
         results.iter().zip(0..).filter_map(frame).collect()
     }
 
-    /// First and last time of both.
+    /// First and last time of both, by the observer's clock.
     fn common_s(&self) -> (f64, f64) {
         let [observer, target] =
             [self.observer, self.target].map(|log| span_s(log.iter().map(|row| row.time_s)));
-        (observer.0.max(target.0), observer.1.min(target.1))
+        let later_s = self.target_clock.near_s();
+        (observer.0.max(target.0 - later_s), observer.1.min(target.1 - later_s))
     }
 
-    /// The poses of both at a time of the logs; nothing outside of them.
-    fn at(&self, time_s: f64) -> Option<[Isometry3<f64>; 2]> {
-        Some([between(self.observer, time_s)?, between(self.target, time_s)?])
+    /// The poses of both at a time of the observer's log; nothing outside of them.
+    fn at(&self, time_s: f64, target_clock_offset_s: f64) -> Option<[Isometry3<f64>; 2]> {
+        Some([between(self.observer, time_s)?, between(self.target, time_s + target_clock_offset_s)?])
     }
 }
 

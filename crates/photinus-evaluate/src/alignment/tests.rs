@@ -9,6 +9,8 @@ use rand_pcg::Pcg64;
 use super::*;
 
 const OFFSET_S: f64 = 0.137;
+/// What the target's log is late by, where it has a clock of its own.
+const TARGET_OFFSET_S: f64 = -0.482;
 const CAMERA_M: [f64; 3] = [0.12, -0.03, 0.08];
 const AIRFRAME_M: [f64; 3] = [-0.05, 0.02, -0.11];
 
@@ -120,19 +122,42 @@ fn errors(found: &Alignment) -> Vec<(f64, f64)> {
 
 #[test]
 fn what_is_estimated_scatters_as_its_standard_errors_say() {
-    let (observer, target) = (log(0), log(1));
-    let logs = Logs { observer: &observer, target: &target };
-    let (runs, mut squares) = (24, [0.0; 10]);
+    scatter_is_as_claimed(TargetClock::Shared, 0.0);
+}
+
+#[test]
+fn a_target_with_a_clock_of_its_own_is_aligned_as_well() {
+    // A start that is off by most of what is searched.
+    scatter_is_as_claimed(TargetClock::Own { near_s: TARGET_OFFSET_S + 1.7 }, TARGET_OFFSET_S);
+}
+
+fn scatter_is_as_claimed(target_clock: TargetClock, target_offset_s: f64) {
+    let (observer, mut target) = (log(0), log(1));
+    for row in &mut target {
+        row.time_s += target_offset_s;
+    }
+    let logs = Logs { observer: &observer, target: &target, target_clock };
+    let (runs, mut squares) = (24, [0.0; 11]);
     for seed in 0..runs {
         let found = logs.align(&results(seed, 0.05, usize::MAX), 0.0).unwrap();
         assert_eq!(found.frames, 1200);
-        for (sum, (error, sigma)) in squares.iter_mut().zip(errors(&found)) {
+        let error_s = found.target_clock_offset_s - target_offset_s;
+        let target_clock = match target_clock {
+            TargetClock::Shared => None,
+            TargetClock::Own { .. } => Some((error_s, found.sigma.target_clock_offset_s)),
+        };
+        if target_clock.is_none() {
+            assert_eq!((error_s, found.sigma.target_clock_offset_s), (0.0, 0.0));
+        }
+        let all = errors(&found).into_iter().chain(target_clock);
+        for (sum, (error, sigma)) in squares.iter_mut().zip(all) {
             assert!(error.abs() < 5.0 * sigma, "{error} with sigma {sigma}");
             *sum += (error / sigma).powi(2);
         }
     }
+    let estimated = if target_clock == TargetClock::Shared { 10 } else { 11 };
     // The root of a mean of 24 squares is known to a seventh; three of them either way.
-    for (number, sum) in squares.iter().enumerate() {
+    for (number, sum) in squares.iter().take(estimated).enumerate() {
         let ratio = (sum / f64::from(runs as u32)).sqrt();
         assert!((0.57..1.45).contains(&ratio), "number {number}: scatter is {ratio} of what is claimed");
     }
@@ -141,7 +166,9 @@ fn what_is_estimated_scatters_as_its_standard_errors_say() {
 #[test]
 fn frames_that_are_wrong_pull_little() {
     let (observer, target) = (log(0), log(1));
-    let found = Logs { observer: &observer, target: &target }.align(&results(7, 0.02, 20), 0.0).unwrap();
+    let found = Logs { observer: &observer, target: &target, target_clock: TargetClock::Shared }
+        .align(&results(7, 0.02, 20), 0.0)
+        .unwrap();
     assert!((found.clock_offset_s - OFFSET_S).abs() < 0.005, "{}", found.clock_offset_s);
     assert!((found.camera_m - Vector3::from(CAMERA_M)).norm() < 0.03, "{}", found.camera_m);
     assert!((found.airframe_m - Vector3::from(AIRFRAME_M)).norm() < 0.03, "{}", found.airframe_m);
@@ -150,7 +177,7 @@ fn frames_that_are_wrong_pull_little() {
 #[test]
 fn truth_is_where_it_was() {
     let (observer, target) = (log(0), log(1));
-    let logs = Logs { observer: &observer, target: &target };
+    let logs = Logs { observer: &observer, target: &target, target_clock: TargetClock::Shared };
     let results = results(3, 0.02, usize::MAX);
     let truth = logs.truth(&logs.align(&results, 0.0).unwrap(), &results);
     assert_eq!(truth.len(), results.len());
@@ -168,7 +195,7 @@ fn truth_is_where_it_was() {
 #[test]
 fn a_clock_that_is_far_off_is_told_and_found_with_a_hint() {
     let (observer, target) = (log(0), log(1));
-    let logs = Logs { observer: &observer, target: &target };
+    let logs = Logs { observer: &observer, target: &target, target_clock: TargetClock::Shared };
     let mut late = results(5, 0.02, usize::MAX);
     for record in &mut late {
         record.time_s = record.time_s.map(|time_s| time_s + 1e6);
@@ -178,4 +205,31 @@ fn a_clock_that_is_far_off_is_told_and_found_with_a_hint() {
     let found = logs.align(&late, -1e6 + 0.8).unwrap();
     assert!((found.clock_offset_s - (OFFSET_S - 1e6)).abs() < 0.01, "{}", found.clock_offset_s);
     assert!(matches!(logs.align(&late[..20], -1e6), Err(AlignError::Few(20))));
+}
+
+#[test]
+fn clocks_that_nothing_tells_are_no_alignment() {
+    let (observer, mut target) = (log(0), log(1));
+    // An observer that hangs still looks the same at any time of its clock.
+    let still: Vec<TimedPose> =
+        observer.iter().map(|row| TimedPose { time_s: row.time_s, pose: observer[0].pose }).collect();
+    let mut seen = results(9, 0.02, usize::MAX);
+    let camera = Isometry3::from_parts(Translation3::from(Vector3::from(CAMERA_M)), body_from_camera());
+    for record in &mut seen {
+        let airframe = flown(record.time_s.unwrap() + OFFSET_S)[1] * nalgebra::Point3::from(AIRFRAME_M);
+        let place = (still[0].pose * camera).inverse_transform_point(&airframe);
+        record.neighbours[0].position_m = Some(place.coords.into());
+    }
+    let own = TargetClock::Own { near_s: 0.0 };
+    let logs = Logs { observer: &still, target: &target, target_clock: own };
+    assert_eq!(logs.align(&seen, 0.0).unwrap_err(), AlignError::Still);
+    assert!(Logs { target_clock: TargetClock::Shared, ..logs }.align(&seen, 0.0).is_ok());
+
+    // A clock that is farther off than is looked for.
+    for row in &mut target {
+        row.time_s += 6.0;
+    }
+    let logs = Logs { observer: &observer, target: &target, target_clock: own };
+    let error = logs.align(&results(10, 0.02, usize::MAX), 0.0).unwrap_err();
+    assert!(matches!(error, AlignError::Clocks | AlignError::Still | AlignError::NoTurn), "{error}");
 }

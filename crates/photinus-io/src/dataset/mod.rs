@@ -24,6 +24,7 @@ mod truth;
 mod vehicles;
 mod writer;
 
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use photinus::identity::CodeBook;
@@ -166,9 +167,10 @@ impl RigInfo {
 /// The text and the path of a file that the folder must hold.
 fn in_folder(folder: &Path, name: &Path) -> Result<(String, PathBuf)> {
     let path = folder.join(name);
-    match path.is_file() {
-        true => whole::read_text(&path).map(|text| (text, path)),
-        false => Err(Error::format(folder, format!("the folder holds no {}", name.display()))
+    match path.metadata() {
+        Ok(found) if found.is_file() => whole::read_text(&path).map(|text| (text, path)),
+        Err(error) if error.kind() == ErrorKind::PermissionDenied => Err(Error::io(&path, error)),
+        _ => Err(Error::format(folder, format!("the folder holds no {}", name.display()))
             .advise("name the folder of a dataset, or list the image files themselves")),
     }
 }

@@ -54,7 +54,7 @@ pub enum Kind {
     Mounting,
     /// The scene of a simulation.
     Scene,
-    /// A scene's table of what a lens makes of a point of light.
+    /// A scene's table of a lens, or of what it makes of a point of light.
     PointSpread,
     /// A scene's table of a sensor.
     Sensor,
@@ -72,6 +72,10 @@ pub enum Kind {
     CalibrationReport,
     /// Spot curves with their errors, as `calibrate spot-size --json` writes them.
     SpotSizeReport,
+    /// A page for a browser, as reports are.
+    Page,
+    /// A drawing as SVG, as figures are.
+    Drawing,
     /// A table with named columns.
     Table(Table),
     /// A text with keys that no file of Photinus has.
@@ -215,6 +219,11 @@ impl Kind {
                     .to_owned(),
             ),
             Self::Foreign(Foreign::Gzip | Foreign::Zip) => Some("unpack it first".to_owned()),
+            Self::Page | Self::Drawing => Some("open it in a browser".to_owned()),
+            Self::Folder => {
+                let page = path.join("index.html");
+                page.is_file().then(|| format!("open {} in a browser", page.display()))
+            }
             _ => None,
         }
     }
@@ -270,7 +279,7 @@ impl fmt::Display for Kind {
             Self::SpotCurve => "a curve of spot sizes",
             Self::Mounting => "the mounting of a camera",
             Self::Scene => "a scene for `photinus simulate`",
-            Self::PointSpread => "the point spread of a scene's lens",
+            Self::PointSpread => "the lens of a scene, or its point spread",
             Self::Sensor => "the sensor of a scene",
             Self::DatasetTable => "the dataset.toml of a dataset",
             Self::Vehicles => "the vehicles.toml of a dataset",
@@ -279,6 +288,8 @@ impl fmt::Display for Kind {
             Self::Scores => "scores of `photinus evaluate`",
             Self::CalibrationReport => "the report of a camera calibration",
             Self::SpotSizeReport => "the report of a spot size calibration",
+            Self::Page => "a page for a browser",
+            Self::Drawing => "a drawing as SVG",
             Self::Table(table) => table.what(),
             Self::Keys(Syntax::Toml) => "TOML with keys that Photinus does not know",
             Self::Keys(Syntax::Yaml) => "YAML with keys that Photinus does not know",

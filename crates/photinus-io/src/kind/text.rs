@@ -4,11 +4,17 @@ use super::keys;
 use super::{Kind, Syntax, Table};
 use crate::CameraFormat;
 
+/// The first element of a page or a drawing stands within so many bytes.
+const MARKUP_BYTES: usize = 1000;
+
 /// What a text is, from its beginning.
 pub(super) fn kind(text: &str) -> Kind {
     let text = text.trim_start_matches('\u{feff}');
     let says_something = |line: &&str| !line.is_empty() && !line.starts_with('#') && !line.starts_with("---");
     let Some(first) = text.lines().map(str::trim).find(says_something) else { return Kind::Empty };
+    if first.starts_with('<') {
+        return of_markup(text);
+    }
     if text.trim_start().starts_with(['{', '[']) && !first.starts_with("[[") && !is_toml_table(first) {
         return of_json(text);
     }
@@ -53,6 +59,15 @@ fn of_numbers(first: &str) -> Kind {
     }
 }
 
+fn of_markup(text: &str) -> Kind {
+    let begins = text.get(..text.len().min(MARKUP_BYTES)).unwrap_or(text).to_ascii_lowercase();
+    match (begins.contains("<html"), begins.contains("<svg")) {
+        (true, _) => Kind::Page,
+        (false, true) => Kind::Drawing,
+        (false, false) => Kind::Text,
+    }
+}
+
 fn of_json(text: &str) -> Kind {
     let keys = keys::of_json(text);
     let has = |key: &str| keys.contains(&key);
@@ -80,7 +95,7 @@ fn of_toml(keys: &[&str]) -> Kind {
         () if has("[[vehicle]]") => Kind::Vehicles,
         () if has("[[camera]]") || (has("camera") && has("airframe")) => Kind::DatasetTable,
         () if has("rate_hz") && has("exposure_us") => Kind::DatasetTable,
-        () if has("samples_per_px") => Kind::PointSpread,
+        () if has("samples_per_px") || has("spread") => Kind::PointSpread,
         () if has("electrons_per_dn") || has("full_reads_dn") => Kind::Sensor,
         () => Kind::Keys(Syntax::Toml),
     }

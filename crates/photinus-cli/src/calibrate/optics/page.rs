@@ -1,9 +1,10 @@
 //! What was learned as a page that opens anywhere: one file, its figures within; each figure also as PNG and SVG beside it.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use kuva::plot::scatter::MarkerShape;
-use kuva::prelude::{BarPlot, Heatmap, Plot};
+use kuva::prelude::{BarPlot, Heatmap, Plot, TickFormat};
 use photinus::camera::Pixel;
 use photinus::optics::PointSpread;
 use photinus_calibrate::optics::Learned;
@@ -52,9 +53,25 @@ fn over_the_image(learned: &Learned, [width, height]: [usize; 2]) -> Shown {
     let rows = PLACES.into_iter().flat_map(|y| steps.iter().map(move |&down| (y, down)));
     let mut data: Vec<Vec<f64>> = rows.map(|(y, down)| line_of(y, down)).collect();
     data.reverse();
-    let plots: Vec<Plot> = vec![Heatmap::new().with_data(data).with_legend("root of the share").into()];
-    let layout =
-        axes(&plots, "left, middle, right", "bottom, middle, top").with_width(640.0).with_height(600.0);
+    let (tile, side) = (steps.len() as f64, (PLACES.len() * steps.len()) as f64);
+    let map = Heatmap::new()
+        .with_data(data)
+        .with_x_range(0.0, side)
+        .with_y_range(0.0, side)
+        .with_cell_size(1.0)
+        .with_legend("root of the share");
+    let plots: Vec<Plot> = vec![map.into()];
+    let nameless = || TickFormat::Custom(Arc::new(|_| String::new()));
+    let layout = axes(&plots, "left, middle, right of the image", "bottom, middle, top")
+        .with_width(640.0)
+        .with_height(600.0)
+        .with_clamp_axis()
+        .with_x_axis_max(side)
+        .with_y_axis_max(side)
+        .with_x_tick_step(tile)
+        .with_y_tick_step(tile)
+        .with_x_tick_format(nameless())
+        .with_y_tick_format(nameless());
     Shown {
         title: "Point spread over the image",
         caption: "Share of the light that a pixel gets, by how far its centre is from the point, 4 px to every side, at nine \

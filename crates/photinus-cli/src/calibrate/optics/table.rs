@@ -27,12 +27,13 @@ impl fmt::Display for Told<'_> {
         }
         let error =
             Measured { value: 100.0 * spread.shape_error(), sigma: 100.0 * learned.shape_error_sigma };
-        line(f, "known to", error, "% of a pixel's light", "")?;
-        let seen =
-            |unseen: Unseen| if learned.unseen.contains(&unseen) { "  (unseen: believed)" } else { "" };
+        line(f, "shape known to", error, "% of a pixel's light", "")?;
+        let seen = |unseen: Unseen| {
+            if learned.unseen.contains(&unseen) { "  (not measured: the usual value)" } else { "" }
+        };
         match sensor.dark_dn {
             Some(dark) => line(f, "darkness", dark, "grey levels", "")?,
-            None => writeln!(f, "  darkness          unseen: clipped at 0")?,
+            None => writeln!(f, "  darkness          not measured: clipped at 0")?,
         }
         line(f, "read noise", sensor.read_noise_dn, "grey levels", seen(Unseen::ReadNoise))?;
         line(f, "shot noise", sensor.shot, "grey levels^2 per grey level", seen(Unseen::ShotNoise))?;
@@ -43,7 +44,7 @@ impl fmt::Display for Told<'_> {
         line(f, "full pixels read", full, "grey levels", seen(Unseen::Saturation))?;
         let spread_dn = sensor.saturation.spread_dn;
         if learned.saturation_sigma_dn.is_some() {
-            writeln!(f, "                    one from another by {spread_dn:.2} grey levels")?;
+            writeln!(f, "                    with a spread of {spread_dn:.2} grey levels")?;
         }
         line(f, "spill of excess", sensor.spill, "of it", seen(Unseen::Spill))?;
         if let Some(well) = sensor.full_well_dn {
@@ -53,7 +54,7 @@ impl fmt::Display for Told<'_> {
             line(f, "column smear", smear, "of a pixel's light", "")?;
         }
         let unseen: Vec<&str> = learned.unseen.iter().map(|unseen| unseen.name()).collect();
-        write!(f, "  unseen            {}", unseen.join(", "))
+        write!(f, "  not measured      {}", unseen.join(", "))
     }
 }
 

@@ -50,7 +50,7 @@ const DISTANCE_ERROR: About = (
 const BOUNDS_HELD: About = (
     "bounds",
     "Strict bounds",
-    "How far the bounds are from truth. Near bounds lie below zero and far bounds above it: a cross on the wrong side is a \
+    "How far the bounds are from truth. Near bounds lie below zero and far bounds above it: a mark on the wrong side is a \
      violation, and a bug.",
 );
 const NEES: About = (
@@ -213,7 +213,7 @@ fn position_nees(scores: &Scores) -> Option<Figure> {
     let expected: Vec<_> = error.iter().map(|&(x, error)| (x, (1.0 - error).max(0.0), 1.0 + error)).collect();
     let mut plots: Vec<Plot> = Vec::new();
     if expected.len() > 1 {
-        plots.push(band(&expected, FAINT).with_legend("95 % of means, were all right").into());
+        plots.push(band(&expected, FAINT).with_legend("95 % of means, if covariances are right").into());
     }
     plots.extend(marked(nees, ESTIMATE, MarkerShape::Circle, "mean NEES / 3"));
     let mut figure = figure(NEES, plots, "NEES of the position / 3")?;

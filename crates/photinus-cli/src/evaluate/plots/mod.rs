@@ -55,5 +55,10 @@ pub(crate) fn plot(folder: &Path, evaluation: &Evaluation<'_>, truth: &[TruthFra
         crate::plots::save(folder, &name, &scene)?;
         Ok(Drawn { name, title, caption })
     };
-    over_time.chain(by_range::figures(evaluation)).map(draw).collect()
+    let by_range = by_range::figures(evaluation).into_iter();
+    // One flight is looked at first; of many neighbours, what they have in common.
+    match is_only {
+        true => over_time.chain(by_range).map(draw).collect(),
+        false => by_range.chain(over_time).map(draw).collect(),
+    }
 }

@@ -53,6 +53,8 @@ fn distance(id: u32, whose: &str, there: &[(u64, f64, f64)], found: &Found<'_>) 
         .filter_map(|bounds| bounds.max)
         .fold(1.2 * farthest_m, f64::max)
         .min(MOST_TIMES * farthest_m);
+    // An axis from tick to tick has two of them at least.
+    let (lowest_m, highest_m) = (tick_below(lowest_m), tick_above(highest_m));
     let of = |value: fn(&Pair<'_>) -> Option<f64>| -> Vec<(f64, f64)> {
         let values = found.values().filter_map(|pair| Some((pair.time_s, value(pair)?)));
         values.filter(|point| (lowest_m..=highest_m).contains(&point.1)).collect()
@@ -119,10 +121,26 @@ fn error(id: u32, whose: &str, found: &Found<'_>) -> Option<Figure> {
     Some(Figure {
         name: format!("distance-error-over-time-{id}"),
         title: format!("Error of the distance{whose} over time"),
-        caption: "Of right sigmas, 95 of 100 points lie within the band.",
+        caption: "Where sigmas are right, 95 in 100 points lie within the band.",
         plots,
         layout,
     })
+}
+
+/// Ticks of a logarithmic axis: 1, 2 and 5 times the powers of ten.
+fn ticks_around(value: f64) -> [f64; 4] {
+    let decade = libm::exp10(libm::floor(libm::log10(value)));
+    [1.0, 2.0, 5.0, 10.0].map(|tick| tick * decade)
+}
+
+fn tick_below(value: f64) -> f64 {
+    let ticks = ticks_around(value);
+    ticks.into_iter().rfind(|tick| *tick <= value).unwrap_or(ticks[0])
+}
+
+fn tick_above(value: f64) -> f64 {
+    let ticks = ticks_around(value);
+    ticks.into_iter().find(|tick| *tick >= value).unwrap_or(ticks[3])
 }
 
 /// Truth, drawn wide, beneath what is to be seen on it.
@@ -149,4 +167,19 @@ fn runs(
     // One point has no area.
     runs.retain(|run| run.len() > 1);
     runs
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_axis_ends_at_the_ticks_around_its_values() {
+        for (value, below, above) in
+            [(2.1, 2.0, 5.0), (4.9, 2.0, 5.0), (0.07, 0.05, 0.1), (60.0, 50.0, 100.0)]
+        {
+            let off = (tick_below(value) / below - 1.0).abs().max((tick_above(value) / above - 1.0).abs());
+            assert!(off < 1e-12, "{value}: {} to {}", tick_below(value), tick_above(value));
+        }
+    }
 }

@@ -8,6 +8,7 @@
 //! evaluate: results against the truth of a dataset
 //! calibrate: photos of a grid -> a camera whose errors are known
 //! codes: what words must have -> books of words that LEDs blink
+//! swarm: a scenario -> robots that fly by what they see
 //! demo: all of it on a flight that the program carries along
 //! reproduce: the experiments of the founding paper, each number beside the paper's
 //! completions, man: the command line itself, for shells and manuals
@@ -47,6 +48,7 @@ mod shell;
 mod simulate;
 mod spot_options;
 mod summary;
+mod swarm;
 mod targets;
 mod terminal;
 mod time;
@@ -78,6 +80,8 @@ Examples:
   photinus locate recording --out results.jsonl --overlay seen
   # frames with truth, where there is no recording
   photinus simulate scene.toml --out recording
+  # robots that fly by what they see
+  photinus swarm three --out three
   # how well that went, where truth is known
   photinus evaluate recording results.jsonl
   # every figure of the founding paper, in simulation
@@ -98,6 +102,7 @@ enum Command {
     Doctor(doctor::Args),
     Convert(convert::Args),
     Simulate(simulate::Args),
+    Swarm(swarm::Args),
     Inject(inject::Args),
     Evaluate(evaluate::Args),
     Demo(demo::Args),
@@ -129,6 +134,7 @@ impl Command {
             Self::Locate(args) => args.quiet(),
             Self::Detect(args) => args.quiet(),
             Self::Simulate(args) => args.quiet(),
+            Self::Swarm(args) => args.quiet(),
             Self::Inject(args) => args.quiet(),
             Self::Evaluate(args) => args.quiet(),
             Self::Reproduce(args) => args.quiet(),
@@ -151,6 +157,7 @@ impl Command {
             Self::Doctor(args) => doctor::run(args, terminal),
             Self::Convert(args) => convert::run(args, terminal),
             Self::Simulate(args) => simulate::run(args, terminal),
+            Self::Swarm(args) => swarm::run(args, terminal),
             Self::Inject(args) => inject::run(args, terminal),
             Self::Evaluate(args) => evaluate::run(args, terminal),
             Self::Demo(args) => demo::run(args, terminal),

@@ -72,11 +72,11 @@ impl Args {
 /// More threads than this help nobody.
 const MOST_THREADS: usize = 256;
 
-fn processors() -> usize {
+pub(crate) fn processors() -> usize {
     std::thread::available_parallelism().map_or(1, usize::from).min(MOST_THREADS)
 }
 
-fn threads(text: &str) -> Result<usize, String> {
+pub(crate) fn threads(text: &str) -> Result<usize, String> {
     let number: Option<usize> = text.parse().ok().filter(|threads| (1..=MOST_THREADS).contains(threads));
     number.ok_or_else(|| {
         format!("give a number of threads, 1 to {MOST_THREADS}; this machine runs {} at once", processors())

@@ -109,6 +109,11 @@ impl Page {
         self
     }
 
+    /// What moves what is HTML already.
+    pub(crate) fn script(self, script: &'static str) -> Self {
+        Self { script, ..self }
+    }
+
     /// Writes `index.html` into `folder`.
     ///
     /// # Errors

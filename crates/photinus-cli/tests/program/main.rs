@@ -33,5 +33,6 @@ mod simulate;
 mod soak;
 mod stage;
 mod stopped;
+mod swarm;
 mod track;
 mod walk;

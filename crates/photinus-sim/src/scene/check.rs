@@ -6,18 +6,23 @@ use nalgebra::Vector3;
 use photinus_io::{Error, Place, Result, physics};
 
 /// Checks the numbers of one file.
-pub(super) struct Check<'a> {
-    pub(super) path: &'a Path,
+#[derive(Clone, Copy, Debug)]
+pub struct Check<'a> {
+    /// The file.
+    pub path: &'a Path,
 }
 
 impl Check<'_> {
     /// The error of a key.
-    pub(super) fn refuse(&self, key: &str, reason: impl Into<String>) -> Error {
+    pub fn refuse(&self, key: &str, reason: impl Into<String>) -> Error {
         Error::format(self.path, reason).at(Place::Key(key.to_owned()))
     }
 
     /// A number between two others.
-    pub(super) fn within(&self, key: &str, value: f64, (least, most): (f64, f64)) -> Result<f64> {
+    ///
+    /// # Errors
+    /// [`Error`] with the key and the range.
+    pub fn within(&self, key: &str, value: f64, (least, most): (f64, f64)) -> Result<f64> {
         if (least..=most).contains(&value) {
             return Ok(value);
         }
@@ -25,7 +30,10 @@ impl Check<'_> {
     }
 
     /// A number above 0.
-    pub(super) fn positive(&self, key: &str, value: f64, most: f64) -> Result<f64> {
+    ///
+    /// # Errors
+    /// [`Error`] with the key and the limit.
+    pub fn positive(&self, key: &str, value: f64, most: f64) -> Result<f64> {
         if value > 0.0 && value <= most {
             return Ok(value);
         }
@@ -35,17 +43,26 @@ impl Check<'_> {
     }
 
     /// Frames, bits or measurements per second.
-    pub(super) fn rate(&self, key: &str, value_hz: f64) -> Result<f64> {
+    ///
+    /// # Errors
+    /// [`Error`] with the key and the range.
+    pub fn rate(&self, key: &str, value_hz: f64) -> Result<f64> {
         physics::within(self.path, key, value_hz, &physics::RATE_HZ)
     }
 
     /// A share, 0 to 1.
-    pub(super) fn share(&self, key: &str, value: f64) -> Result<f64> {
+    ///
+    /// # Errors
+    /// [`Error`] with the key and the range.
+    pub fn share(&self, key: &str, value: f64) -> Result<f64> {
         self.within(key, value, (0.0, 1.0))
     }
 
     /// A place.
-    pub(super) fn place(&self, key: &str, place_m: [f64; 3]) -> Result<Vector3<f64>> {
+    ///
+    /// # Errors
+    /// [`Error`] with the key and the range.
+    pub fn place(&self, key: &str, place_m: [f64; 3]) -> Result<Vector3<f64>> {
         for value in place_m {
             physics::within(self.path, key, value, &physics::PLACE_M)?;
         }
@@ -53,7 +70,10 @@ impl Check<'_> {
     }
 
     /// An angle, rad from deg.
-    pub(super) fn angle(&self, key: &str, value_deg: f64) -> Result<f64> {
+    ///
+    /// # Errors
+    /// [`Error`] with the key and the range.
+    pub fn angle(&self, key: &str, value_deg: f64) -> Result<f64> {
         self.within(key, value_deg, (-360.0, 360.0)).map(f64::to_radians)
     }
 }

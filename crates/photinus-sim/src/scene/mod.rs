@@ -18,11 +18,13 @@ mod table;
 mod tests;
 
 pub(crate) use camera_table::parse_sampled;
+pub use check::Check;
 pub use files::files_of;
 use nalgebra::{Isometry3, Vector3};
 use photinus::airframe::Airframe;
 use photinus::camera::Camera;
 use photinus::identity::CodeBook;
+pub use read::mounting;
 
 use crate::background::{Daylight, Water};
 use crate::clock::Clock;

@@ -259,7 +259,7 @@ impl Reader<'_> {
 
 /// body_from_camera of a camera that looks along the body's x axis, then turned: yaw to the left, pitch down, roll
 /// clockwise about the view.
-fn mounting(yaw_rad: f64, pitch_rad: f64, roll_rad: f64) -> UnitQuaternion<f64> {
+pub fn mounting(yaw_rad: f64, pitch_rad: f64, roll_rad: f64) -> UnitQuaternion<f64> {
     let level = Rotation3::from_matrix_unchecked(Matrix3::new(0.0, 0.0, 1.0, -1.0, 0.0, 0.0, 0.0, -1.0, 0.0));
     let about = |axis: Vector3<f64>, angle_rad: f64| {
         let (sin, cos) = libm::sincos(0.5 * angle_rad);

@@ -1,0 +1,61 @@
+//! Fits the table that stands in for rendered frames, and prints it:
+//!
+//! ```text
+//! cargo run --release -p photinus-swarm --example fit_stand_in -- [FLIGHTS] > crates/photinus-swarm/src/perception/stand_in/table.toml
+//! ```
+//!
+//! Six vehicles fly figures of eight at distances of 2 to 30 m from each other (`fit.toml`), a flight a seed; their own instruments are without error, and
+//! every third flight is exposed twice or half as long, so that light and distance come apart.
+
+#![allow(clippy::print_stdout, clippy::print_stderr, reason = "an example prints")]
+
+use std::path::Path;
+use std::sync::Arc;
+
+use photinus_io::Result;
+use photinus_swarm::perception::{Sampling, StandInTable};
+use photinus_swarm::{Grade, Run, Scenario};
+
+fn main() -> Result<()> {
+    let flights: u64 = std::env::args().nth(1).and_then(|text| text.parse().ok()).unwrap_or(24);
+    let path = Path::new("fit.toml");
+    let mut sampling = Sampling::default();
+    for seed in 0..flights {
+        let mut scenario = Scenario::parse(include_str!("fit.toml"), path)?;
+        scenario.seed = seed;
+        scenario.exposure_us = [1000.0, 2000.0, 500.0][seed as usize % 3];
+        let run = Run {
+            scenario: Arc::new(scenario),
+            path: path.to_owned(),
+            grade: Grade::Rendered,
+            table: Arc::new(StandInTable::carried()),
+        };
+        sampling.begin();
+        run.fly(2, |world| {
+            sampling.take(world);
+            Ok(())
+        })?;
+        eprintln!("flight {seed}: {} samples", sampling.len());
+    }
+    println!("# Fitted by the example fit_stand_in to {flights} flights, {} samples.", sampling.len());
+    print!("{}", text(&sampling.table()));
+    Ok(())
+}
+
+/// A cell a line.
+fn text(table: &StandInTable) -> String {
+    let head = format!(
+        "name_s = {:?}\nphantoms_per_s = {:?}\nphantom_lasts_s = {:?}\n",
+        table.name_s, table.phantoms_per_s, table.phantom_lasts_s
+    );
+    head + &lines("error", &table.error) + &lines("following", &table.following)
+}
+
+fn lines<T: serde::Serialize>(name: &str, classes: &[Vec<T>]) -> String {
+    let cell = |cell: &T| {
+        let table = toml::Value::try_from(cell).map_or_else(|_| String::new(), |value| value.to_string());
+        format!("    {table},\n")
+    };
+    let class = |class: &Vec<T>| format!("  [\n{}  ],\n", class.iter().map(cell).collect::<String>());
+    format!("{name} = [\n{}]\n", classes.iter().map(class).collect::<String>())
+}

@@ -1,0 +1,75 @@
+//! Carried scenarios flown under many seeds: the tables of docs/swarm.md.
+//!
+//! ```text
+//! cargo run --release -p photinus-swarm --example flights -- GRADE SEEDS [SCENARIO...]
+//! ```
+
+#![allow(clippy::print_stdout, clippy::print_stderr, reason = "an example prints")]
+
+use std::path::Path;
+use std::sync::Arc;
+use std::time::Instant;
+
+use photinus_io::Result;
+use photinus_swarm::perception::StandInTable;
+use photinus_swarm::scenario::CARRIED;
+use photinus_swarm::{Grade, Metrics, Run};
+
+fn main() -> Result<()> {
+    let words: Vec<String> = std::env::args().skip(1).collect();
+    let grade = match words.first().map(String::as_str) {
+        Some("rendered") => Grade::Rendered,
+        Some("perfect") => Grade::Perfect,
+        _ => Grade::StandIn,
+    };
+    let seeds: usize = words.get(1).and_then(|word| word.parse().ok()).unwrap_or(10);
+    println!(
+        "| scenario | N | flights | with a collision | collisions | with obstacles | smallest distance, m | mean speed, m/s | order | extension, m | its sigma, m | connected, % | seen of those in view, % | leader seen, % | formation, m | settles, s | bounds broken, % |\n|{}",
+        "---|".repeat(17)
+    );
+    let wanted = |name: &&str| words.len() < 3 || words[2..].iter().any(|word| word == name);
+    for carried in CARRIED.iter().filter(|carried| wanted(&carried.name)) {
+        let scenario = Arc::new(carried.read()?);
+        let run = Run {
+            scenario: Arc::clone(&scenario),
+            path: Path::new(carried.name).to_owned(),
+            grade,
+            table: Arc::new(StandInTable::carried()),
+        };
+        let started = Instant::now();
+        let flights = run.monte_carlo(seeds, 2, |_| true)?;
+        let took_s = started.elapsed().as_secs_f64();
+        eprintln!("{}: {:.2} s of flight per s", carried.name, scenario.duration_s * seeds as f64 / took_s);
+        println!("{}", row(carried.name, scenario.vehicles.len(), &flights));
+    }
+    Ok(())
+}
+
+fn row(name: &str, vehicles: usize, flights: &[Metrics]) -> String {
+    let sum = |of: fn(&Metrics) -> usize| flights.iter().map(of).sum::<usize>();
+    let touched = flights.iter().filter(|m| m.collisions + m.obstacle_collisions > 0).count();
+    let smallest = flights.iter().filter_map(|m| m.smallest_distance_m).fold(f64::INFINITY, f64::min);
+    let mean = |of: fn(&Metrics) -> Option<f64>, scale: f64| {
+        let numbers: Vec<f64> = flights.iter().filter_map(of).collect();
+        match numbers.len() {
+            0 => "-".to_owned(),
+            count => format!("{:.2}", scale * numbers.iter().sum::<f64>() / count as f64),
+        }
+    };
+    let broken = 100.0 * sum(|m| m.bounds_broken) as f64 / sum(|m| m.bounds).max(1) as f64;
+    format!(
+        "| {name} | {vehicles} | {} | {touched} | {} | {} | {smallest:.2} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {broken:.2} |",
+        flights.len(),
+        sum(|m| m.collisions),
+        sum(|m| m.obstacle_collisions),
+        mean(|m| Some(m.mean_speed_m_s), 1.0),
+        mean(|m| m.final_order, 1.0),
+        mean(|m| m.final_extension_m, 1.0),
+        mean(|m| m.extension_sigma_m, 1.0),
+        mean(|m| Some(m.connected), 100.0),
+        mean(|m| m.contact, 100.0),
+        mean(|m| m.contact_with_leader.filter(|_| m.vehicles == 2), 100.0),
+        mean(|m| m.formation_error_m, 1.0),
+        mean(|m| m.formation_settles_s, 1.0),
+    )
+}

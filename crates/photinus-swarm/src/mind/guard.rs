@@ -1,0 +1,194 @@
+//! `safety` of a group: the layer in front of a controller, and what it may take for granted.
+
+use nalgebra::{Rotation3, Unit, UnitQuaternion, Vector3};
+use photinus_control::safety::{Basis, Cone, Detection, Limits, Obstacle as Body, Safety, Watch};
+use photinus_control::{OwnState, Seen, Setpoint};
+use photinus_io::Result;
+use photinus_sim::scene::Check;
+use serde::Deserialize;
+
+use crate::scenario::Mounted;
+use crate::world::Obstacle;
+
+/// `safety` as it stands.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct SafetyTable {
+    speed_m_s: f64,
+    acceleration_m_s2: f64,
+    braking_m_s2: f64,
+    delay_s: f64,
+    stray_m: f64,
+    velocity_error_m_s: f64,
+    unknown_speed_m_s: f64,
+    empty_m: Option<f64>,
+    detection: Option<DetectionTable>,
+}
+
+#[derive(Clone, Copy, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct DetectionTable {
+    range_m: f64,
+    probability: f64,
+    missed: f64,
+}
+
+/// The safety layer of a vehicle, as the scenario has it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SafetyPlan {
+    /// What every vehicle of the group keeps to; radius and period are the scenario's.
+    pub limits: Limits,
+    /// Who answers for it that nobody unseen is near.
+    pub unseen: Unseen,
+}
+
+/// Where nobody is who is not seen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Unseen {
+    /// The scenario answers for it that nobody unseen is nearer, m.
+    EmptyTo(f64),
+    /// The cameras answer for it: so far, with such a probability per frame, and missed for good no more often than this.
+    Watched {
+        /// How far, m.
+        range_m: f64,
+        /// With what probability a frame shows a neighbour that is no farther.
+        probability: f64,
+        /// How often somebody may be missed for good.
+        missed: f64,
+    },
+}
+
+impl SafetyTable {
+    /// Checks every number.
+    pub(crate) fn read(&self, check: &Check<'_>, key: &str) -> Result<SafetyPlan> {
+        let of = |name: &str| format!("{key}.{name}");
+        let positive = |name: &str, value: f64, most: f64| check.positive(&of(name), value, most);
+        let limits = Limits {
+            speed_m_s: positive("speed_m_s", self.speed_m_s, 100.0)?,
+            acceleration_m_s2: positive("acceleration_m_s2", self.acceleration_m_s2, 100.0)?,
+            braking_m_s2: positive("braking_m_s2", self.braking_m_s2, 100.0)?,
+            delay_s: check.within(&of("delay_s"), self.delay_s, (0.0, 10.0))?,
+            stray_m: check.within(&of("stray_m"), self.stray_m, (0.0, 10.0))?,
+            velocity_error_m_s: check.within(
+                &of("velocity_error_m_s"),
+                self.velocity_error_m_s,
+                (0.0, 10.0),
+            )?,
+            unknown_speed_m_s: check.within(
+                &of("unknown_speed_m_s"),
+                self.unknown_speed_m_s,
+                (0.0, 100.0),
+            )?,
+            ..Limits::small_multirotor()
+        };
+        limits.check().map_err(|error| check.refuse(key, error.to_string()))?;
+        let unseen = match (self.empty_m, self.detection) {
+            (Some(empty_m), None) => Unseen::EmptyTo(positive("empty_m", empty_m, 1e3)?),
+            (None, Some(DetectionTable { range_m, probability, missed })) => Unseen::Watched {
+                range_m: positive("detection.range_m", range_m, 1e3)?,
+                probability: check.share(&of("detection.probability"), probability)?,
+                missed: positive("detection.missed", missed, 0.5)?,
+            },
+            _ => {
+                let refused = check.refuse(key, "it does not say who answers for those who are not seen");
+                return Err(refused.advise("give one of empty_m and detection"));
+            }
+        };
+        Ok(SafetyPlan { limits, unseen })
+    }
+}
+
+/// The layer in front of a controller.
+#[derive(Clone, Debug)]
+pub struct Guard {
+    safety: Safety,
+    watch: Watch,
+    /// Cones that lie within the fields of the cameras, body frame; none where the scenario answers.
+    eyes: Vec<Cone>,
+    obstacles: Vec<Obstacle>,
+    /// What the set-points so far rested upon: proven, slow, braking.
+    pub rested: [usize; 3],
+}
+
+/// What the layer knows of where its vehicle is on the map: exact.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct OnMap {
+    pub(crate) position_m: Vector3<f64>,
+    pub(crate) heading_rad: f64,
+}
+
+impl Guard {
+    /// The layer of a vehicle; `None` where the limits are none.
+    pub(crate) fn new(
+        plan: &SafetyPlan,
+        (radius_m, period_s): (f64, f64),
+        cameras: &[Mounted],
+        obstacles: &[Obstacle],
+    ) -> Option<Self> {
+        let limits = Limits { radius_m, period_s, ..plan.limits };
+        let (watch, eyes) = match plan.unseen {
+            Unseen::EmptyTo(range_m) => (Watch::empty_to(range_m), Vec::new()),
+            Unseen::Watched { range_m, probability, missed } => {
+                let detection = Detection { range_m, probability };
+                let watch = Watch::new(&[detection], missed, period_s, 2.0 * limits.speed_m_s);
+                (watch, cameras.iter().flat_map(cones).collect())
+            }
+        };
+        let safety = Safety::new(limits).ok()?;
+        Some(Self { safety, watch, eyes, obstacles: obstacles.to_vec(), rested: [0; 3] })
+    }
+
+    /// What to fly instead of what is wanted.
+    pub(crate) fn guard(
+        &mut self,
+        own: &OwnState,
+        seen: &[Seen],
+        on_map: &OnMap,
+        wanted: &Setpoint,
+        dt_s: f64,
+    ) -> Setpoint {
+        let turned = |cone: &Cone| Cone {
+            axis: Unit::new_normalize(own.level_from_body * cone.axis.into_inner()),
+            ..*cone
+        };
+        let eyes: Vec<Cone> = self.eyes.iter().map(turned).collect();
+        self.watch.look(&eyes, &[], own.turn_rad_s() * dt_s, dt_s, 0.0);
+        let level = UnitQuaternion::from_scaled_axis(Vector3::z() * -on_map.heading_rad);
+        let body = |obstacle: &Obstacle| Body::Capsule {
+            from: level * (obstacle.from_m - on_map.position_m),
+            to: level * (obstacle.to_m - on_map.position_m),
+            radius_m: obstacle.radius_m,
+        };
+        let bodies: Vec<Body> = self.obstacles.iter().map(body).collect();
+        let guarded = self.safety.guard(own, seen, &self.watch, &bodies, wanted, dt_s);
+        self.rested[match guarded.basis {
+            Basis::Proven => 0,
+            Basis::Slow => 1,
+            Basis::Braking => 2,
+        }] += 1;
+        guarded.setpoint
+    }
+}
+
+/// Cones within the field of a camera: one about its axis, and one to either side as far as the image is wider than high. Each is as wide as all
+/// directions about its axis lie in the image, by trying them degree by degree.
+fn cones(mounted: &Mounted) -> Vec<Cone> {
+    let body_from_camera: Rotation3<f64> = mounted.body_from_camera.rotation.into();
+    let about = |yaw_rad: f64| {
+        let axis = Rotation3::from_axis_angle(&Vector3::y_axis(), yaw_rad) * Vector3::z();
+        let across = Rotation3::from_axis_angle(&Vector3::y_axis(), yaw_rad) * Vector3::x();
+        let is_seen = |half_rad: f64| {
+            (0..72).all(|step| {
+                let around = Rotation3::from_axis_angle(&Unit::new_normalize(axis), f64::from(step) * 0.0873);
+                let tilt = Unit::new_normalize(around * across);
+                let direction = Rotation3::from_axis_angle(&tilt, half_rad) * axis;
+                photinus::camera::Bearing::new(direction)
+                    .is_some_and(|bearing| mounted.camera.pixel(&bearing).is_some())
+            })
+        };
+        let degrees = (1..180).take_while(|degrees| is_seen(f64::from(*degrees).to_radians())).count();
+        let axis = Unit::new_normalize(body_from_camera * axis);
+        Cone { axis, half_angle_rad: (degrees as f64).to_radians() }
+    };
+    [-0.5, -0.25, 0.0, 0.25, 0.5].map(about).into_iter().filter(|cone| cone.half_angle_rad > 0.0).collect()
+}

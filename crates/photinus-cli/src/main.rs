@@ -17,7 +17,6 @@ mod aligned;
 mod arguments;
 mod beforehand;
 mod calibrate;
-mod clock;
 mod codes;
 mod convert;
 mod demo;
@@ -26,20 +25,17 @@ mod doctor;
 mod ending;
 mod evaluate;
 mod failure;
-mod fault;
 mod info;
 mod inject;
 mod input;
 mod interrupt;
 mod locate;
 mod number;
-mod odd_frame;
 mod output;
 mod overlay;
 mod page;
 mod plots;
 mod pose_options;
-mod quantiles;
 mod reproduce;
 mod resume;
 mod run;
@@ -49,7 +45,6 @@ mod spot_options;
 mod summary;
 mod targets;
 mod terminal;
-mod time;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::process::ExitCode;
@@ -57,6 +52,7 @@ use std::process::ExitCode;
 use clap::{CommandFactory, Parser, Subcommand};
 
 use failure::Failure;
+use photinus_run::fault;
 use terminal::Terminal;
 
 /// Tells a flying robot where its neighbours are, from one ultraviolet camera.

@@ -12,11 +12,12 @@ use super::dataset::DatasetSink;
 use crate::detect::in_frame;
 use crate::ending::Content;
 use crate::failure::Failure;
-use crate::input::{DatasetArgs, Entry, Input};
+use crate::input::{DatasetArgs, Input};
 use crate::interrupt;
 use crate::number;
 use crate::targets::{FileTarget, Targets};
 use crate::terminal::Terminal;
+use photinus_run::Entry;
 
 /// What frames do not say themselves.
 #[derive(Debug, clap::Args)]

@@ -25,11 +25,9 @@ use photinus_io::whole::WholeFolder;
 use photinus_io::{Error, Result};
 use photinus_sim::{Rendered, Scene, Simulator};
 
-use crate::clock::Clock;
 use crate::evaluate::plots::page::with_figures;
 use crate::evaluate::plots::{Drawn, plot};
 use crate::failure::Failure;
-use crate::input::Entry;
 use crate::locate;
 use crate::overlay::{self, Overlay, Place};
 use crate::page::{Moment, Page, Player, Shot, Timeline};
@@ -37,6 +35,8 @@ use crate::simulate::write_truth;
 use crate::targets::{Targets, WriteArgs};
 use crate::terminal::Terminal;
 use pace::Pace;
+use photinus_run::Clock;
+use photinus_run::Entry;
 
 const PICTURES: &str = "pictures";
 const FIGURES: &str = "figures";

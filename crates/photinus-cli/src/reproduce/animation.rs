@@ -7,7 +7,6 @@ use photinus_io::whole::WholeFolder;
 use photinus_reproduce::Effort;
 use photinus_sim::{Scene, Simulator};
 
-use crate::clock::Clock;
 use crate::demo::apart;
 use crate::demo::pace::Pace;
 use crate::failure::Failure;
@@ -15,6 +14,7 @@ use crate::locate;
 use crate::overlay::{self, Overlay, Place};
 use crate::page::{Player, Shot};
 use crate::terminal::Terminal;
+use photinus_run::Clock;
 
 const PICTURES: &str = "figure-17";
 /// Pictures of a quick run.

@@ -8,7 +8,7 @@ use photinus::locator::Settings;
 use photinus::lookout::Fleet;
 use photinus::ranging::SpotCurve;
 use photinus_io::airframe::{AirframeFile, Tolerances};
-use photinus_io::calibration::{MountingFile, read_mounting};
+use photinus_io::calibration::read_mounting;
 use photinus_io::dataset::{Dataset, DatasetCamera};
 use photinus_io::mask::MaskFile;
 use photinus_io::results::NeighbourRecord;

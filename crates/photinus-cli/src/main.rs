@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! input -> run: detect or locate, frame by frame -> output (JSON lines, CSV, overlay, lines to read) -> summary
+//! live: cameras -> the same, as `photinus run` says, for as long as it is asked
 //! info, doctor, convert: what a file holds, what is doubtful about it, and the same in another format
 //! simulate: a scene -> frames with truth
 //! inject: a dataset -> the same with faults
@@ -29,6 +30,7 @@ mod info;
 mod inject;
 mod input;
 mod interrupt;
+mod live;
 mod locate;
 mod number;
 mod output;
@@ -36,6 +38,7 @@ mod overlay;
 mod page;
 mod plots;
 mod pose_options;
+mod protocols;
 mod reproduce;
 mod resume;
 mod run;
@@ -72,6 +75,8 @@ Examples:
   # the spots of a photo, and a picture of them
   photinus detect photo.png --overlay seen
   photinus locate recording --out results.jsonl --overlay seen
+  # the same with the cameras of a robot, while it flies
+  photinus run photinus.toml
   # frames with truth, where there is no recording
   photinus simulate scene.toml --out recording
   # how well that went, where truth is known
@@ -89,6 +94,7 @@ interrupted.";
 #[derive(Subcommand)]
 enum Command {
     Locate(Box<locate::Args>),
+    Run(live::Args),
     Detect(detect::Args),
     Info(info::Args),
     Doctor(doctor::Args),
@@ -123,6 +129,7 @@ impl Command {
     fn quiet(&self) -> bool {
         match self {
             Self::Locate(args) => args.quiet(),
+            Self::Run(args) => args.quiet(),
             Self::Detect(args) => args.quiet(),
             Self::Simulate(args) => args.quiet(),
             Self::Inject(args) => args.quiet(),
@@ -142,6 +149,7 @@ impl Command {
     fn run(&self, terminal: &mut Terminal) -> Result<(), Failure> {
         match self {
             Self::Locate(args) => locate::run(args, terminal),
+            Self::Run(args) => live::run(args, terminal),
             Self::Detect(args) => detect::run(args, terminal),
             Self::Info(args) => info::run(args, terminal),
             Self::Doctor(args) => doctor::run(args, terminal),

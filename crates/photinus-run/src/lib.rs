@@ -12,9 +12,13 @@
 //! ```
 
 mod clock;
+pub mod config;
 mod entry;
+pub mod exposure;
 pub mod fault;
 pub mod health;
+mod host_clock;
+pub mod live;
 pub mod motion;
 mod odd_frame;
 mod quantiles;
@@ -27,6 +31,7 @@ mod work;
 
 pub use clock::{Clock, Stage};
 pub use entry::Entry;
+pub use host_clock::HostClock;
 pub use odd_frame::Oddity;
 pub use quantiles::Quantiles;
 pub use run::{Outlet, guarded, run, source_name};

@@ -2,15 +2,18 @@
 //!
 //! In: the dataset's book of words, its vehicles, its gyro or odometry. Out: [`Watch`], which completes the record of each frame.
 
+use std::path::Path;
+
 use nalgebra::{Rotation3, Unit, UnitQuaternion, Vector3};
 use photinus::airframe::Airframe;
 use photinus::camera::Camera;
 use photinus::frame::Mask;
+use photinus::identity::CodeBook;
 use photinus::locator::{Located, Settings};
-use photinus::lookout::{Fleet, Glance, Lookout, LookoutError, Name, Vehicle};
+use photinus::lookout::{Fleet, FleetError, Glance, Lookout, LookoutError, Name, Vehicle};
 use photinus::tracking::{self, Placed, Turned};
 use photinus_io::calibration::MountingFile;
-use photinus_io::dataset::{Dataset, OdometryRow};
+use photinus_io::dataset::{self, Dataset, OdometryRow};
 use photinus_io::{Error, Result};
 
 use crate::Entry;
@@ -41,8 +44,23 @@ pub fn fleet(
         );
         return Ok(None);
     }
+    let file = dataset.info().vehicles.as_deref().map(|named| dataset.path(named)).unwrap_or_default();
+    fleet_of(book, dataset.vehicles(), &file, airframe, warn)
+}
+
+/// Those of `vehicles` that blink words of the book and are built like this; `file` is for the messages.
+///
+/// # Errors
+/// [`Error`] when their words or rates make no fleet.
+pub fn fleet_of(
+    book: &CodeBook,
+    all: &[dataset::Vehicle],
+    file: &Path,
+    airframe: &Airframe,
+    mut warn: impl FnMut(String),
+) -> Result<Option<Fleet>> {
     let mut vehicles = Vec::new();
-    for vehicle in dataset.vehicles() {
+    for vehicle in all {
         let Some(blink) = &vehicle.blink else { continue };
         if !is_built_like(&vehicle.airframe, airframe) {
             let file = vehicle.airframe_file.display();
@@ -57,10 +75,8 @@ pub fn fleet(
     if vehicles.is_empty() {
         return Ok(None);
     }
-    let refuse = |error: photinus::lookout::FleetError| {
-        let file = dataset.info().vehicles.as_deref().map(|named| dataset.path(named)).unwrap_or_default();
-        Error::format(file, error.to_string()).advise("or locate with --no-time")
-    };
+    let refuse =
+        |error: FleetError| Error::format(file, error.to_string()).advise("or locate with --no-time");
     Fleet::new(book.clone(), vehicles).map(Some).map_err(refuse)
 }
 
@@ -91,7 +107,12 @@ pub enum Turns {
     /// Attitudes odometry_from_camera.
     Attitudes(Vec<(f64, UnitQuaternion<f64>)>),
     /// What arrives while frames do, of the body that the camera sits on.
-    Live { motion: Motion, body_from_camera: UnitQuaternion<f64> },
+    Live {
+        /// What the vehicle says of its motion.
+        motion: Motion,
+        /// How the camera sits on it.
+        body_from_camera: UnitQuaternion<f64>,
+    },
 }
 
 impl Turns {

@@ -12,6 +12,8 @@ pub use spread::{Recent, Spread};
 pub struct Health {
     /// Seconds since the run began.
     pub up_s: f64,
+    /// How late a thread that had nothing to do woke up: what of the latencies is the machine's.
+    pub wake_up_ms: Option<Spread>,
     /// Each camera, in the order of the configuration.
     pub cameras: Vec<CameraHealth>,
     /// Each sink, in the order in which they were opened.
@@ -66,6 +68,9 @@ pub struct SinkHealth {
     pub name: String,
     /// Whether it still takes frames: one that failed is left out.
     pub running: bool,
+    /// Whether it has written everything at the end of the run.
+    #[serde(default, skip_serializing_if = "core::ops::Not::not")]
+    pub finished: bool,
     /// Frames that it has taken.
     pub written: u64,
     /// Frames that it was too slow for.

@@ -1,5 +1,8 @@
 //! Where results go. A sink is called by one thread that is its own: what it waits for, nobody else waits for.
 
+mod bystanders;
+mod health_lines;
+mod json;
 mod queue;
 
 use photinus_io::Result;
@@ -7,6 +10,9 @@ use photinus_io::Result;
 use crate::Entry;
 use crate::health::{Health, Notice};
 
+pub use bystanders::{Address, Bystanders};
+pub use health_lines::HealthLines;
+pub use json::JsonLines;
 pub use queue::{Fan, FullQueue, Outlets};
 
 /// Takes what a run finds. An error ends this sink alone: it is told, and the run goes on without it; what can be mended (a socket whose reader went

@@ -46,6 +46,7 @@ struct State {
     events: VecDeque<Event>,
     closed: bool,
     running: bool,
+    finished: bool,
     written: u64,
     dropped: u64,
     age_ms: Recent,
@@ -144,6 +145,7 @@ impl Queue {
             events: VecDeque::new(),
             closed: false,
             running: true,
+            finished: false,
             written: 0,
             dropped: 0,
             age_ms: Recent::default(),
@@ -196,7 +198,11 @@ impl Queue {
                 }
                 Some(Event::Health(health)) => sink.health(&health)?,
                 Some(Event::Notice(notice)) => sink.notice(&notice)?,
-                None if self.is_done() => return sink.finish(),
+                None if self.is_done() => {
+                    sink.finish()?;
+                    self.state().finished = true;
+                    return Ok(());
+                }
                 None => sink.idle()?,
             }
         }
@@ -228,6 +234,7 @@ impl Queue {
         SinkHealth {
             name: self.name.clone(),
             running: state.running,
+            finished: state.finished,
             written: state.written,
             dropped: state.dropped,
             waiting: state.events.len(),

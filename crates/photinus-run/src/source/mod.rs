@@ -1,14 +1,38 @@
 //! Where frames come from, one after the other. A source is called by one thread that is its own.
+//!
+//! ```text
+//! recorded   a dataset folder, at its own pace or as fast as it is asked
+//! stream     Y4M or raw frames: standard input, a socket, the output of a command
+//! ```
 
-use photinus_io::Result;
+mod recorded;
+mod stream;
+
+use photinus_io::{Error, Result};
 
 use crate::Entry;
 
+pub use recorded::Recorded;
+pub use stream::{Carrier, Stream, StreamFormat, Times};
+
+/// What comes next.
+#[derive(Debug)]
+#[expect(clippy::large_enum_variant, reason = "a frame is what nearly always comes")]
+pub enum Next {
+    /// A frame: with the camera's own time in its record, and when it was taken by the clock of this machine.
+    Frame(Entry),
+    /// A frame that cannot be used; the one after it may be.
+    Bad(Error),
+    /// The source is gone; it may come back when it is opened anew.
+    Lost(Error),
+    /// There are no more frames.
+    End,
+}
+
 /// Frames of one camera.
 pub trait Source: Send {
-    /// The next frame, waited for: with the camera's own time in its record, and when it was taken by this machine's clock; `None` at the end.
-    /// A frame that cannot be used is an error in its place.
-    fn next(&mut self) -> Option<Result<Entry>>;
+    /// What comes next, waited for.
+    fn next(&mut self) -> Next;
 
     /// What ends a wait for the next frame from another thread, where something must: a child process is killed, a socket closed.
     fn interrupter(&self) -> Option<Box<dyn Fn() + Send>> {
@@ -21,5 +45,5 @@ pub trait Source: Send {
     }
 }
 
-/// Opens a source anew: at the beginning, and after it was lost.
+/// Opens a source: at the beginning, and anew after it was lost.
 pub type Opener = Box<dyn FnMut() -> Result<Box<dyn Source>> + Send>;

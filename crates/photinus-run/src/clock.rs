@@ -18,6 +18,12 @@ pub struct Stage {
     pub laps_ms: Quantiles,
 }
 
+impl Default for Clock {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
 impl Clock {
     /// A clock that runs from now.
     pub fn new() -> Self {

@@ -45,6 +45,9 @@ pub enum Times {
     Arrival(HostClock, f64),
 }
 
+/// What frames are read from.
+type Pipe = Box<dyn Read + Send>;
+
 /// Frames out of a pipe.
 pub struct Stream {
     frames: FrameSource,
@@ -69,7 +72,7 @@ impl Stream {
     /// # Errors
     /// [`Error`] when there is nothing to read from, or what is read is no such stream.
     pub fn open(carrier: &Carrier, format: StreamFormat, times: Times) -> Result<Self> {
-        let (pipe, name, ending): (Box<dyn Read + Send>, String, Ending) = match carrier {
+        let (pipe, name, ending): (Pipe, String, Ending) = match carrier {
             Carrier::Standard => (Box::new(std::io::stdin()), "-".to_owned(), Ending::Last),
             Carrier::Command(words) => {
                 let (child, output) = spawn(words)?;
@@ -164,7 +167,7 @@ fn locked(child: &Mutex<Child>) -> std::sync::MutexGuard<'_, Child> {
     child.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-fn spawn(words: &[String]) -> Result<(Arc<Mutex<Child>>, Box<dyn Read + Send>)> {
+fn spawn(words: &[String]) -> Result<(Arc<Mutex<Child>>, Pipe)> {
     let Some((program, arguments)) = words.split_first() else {
         return Err(Error::format("command", "it is empty").advise("give the program and its arguments"));
     };
@@ -177,7 +180,7 @@ fn spawn(words: &[String]) -> Result<(Arc<Mutex<Child>>, Box<dyn Read + Send>)> 
 }
 
 #[cfg(unix)]
-fn unix(path: &Path) -> Result<(Box<dyn Read + Send>, String, Ending)> {
+fn unix(path: &Path) -> Result<(Pipe, String, Ending)> {
     let stream = std::os::unix::net::UnixStream::connect(path).map_err(|error| refused(path, error))?;
     let other = stream.try_clone().map_err(|error| Error::io(path, error))?;
     let close = Ending::Gone(Box::new(move || drop(other.shutdown(Shutdown::Both))));
@@ -185,7 +188,7 @@ fn unix(path: &Path) -> Result<(Box<dyn Read + Send>, String, Ending)> {
 }
 
 #[cfg(not(unix))]
-fn unix(path: &Path) -> Result<(Box<dyn Read + Send>, String, Ending)> {
+fn unix(path: &Path) -> Result<(Pipe, String, Ending)> {
     Err(Error::format(path, "this system has no unix sockets").advise("use tcp"))
 }
 

@@ -164,7 +164,7 @@ fn bother(address: SocketAddr, seed: u64, case: u64) {
     };
     // It may hang up at any moment.
     let _ = stream.write_all(&message);
-    if random.next_u64() % 4 == 0 {
+    if random.next_u64().is_multiple_of(4) {
         let _ = stream.set_read_timeout(Some(Duration::from_millis(20)));
         let _ = stream.read(&mut [0; 512]);
     }

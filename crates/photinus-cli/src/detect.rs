@@ -3,13 +3,13 @@
 use std::path::PathBuf;
 
 use photinus::spots::Detector;
+use photinus_io::Error;
 use photinus_io::mask::MaskFile;
 use photinus_io::results::{RejectedRecord, SpotRecord};
-use photinus_io::{Error, Place};
+use photinus_run::{Clock, Entry, Work, in_frame};
 
-use crate::clock::Clock;
 use crate::failure::Failure;
-use crate::input::{Entry, InputArgs};
+use crate::input::InputArgs;
 use crate::output::OutputArgs;
 use crate::run;
 use crate::spot_options::{SpotArgs, mask_of};
@@ -65,7 +65,7 @@ struct Detecting {
     masks: Vec<Option<MaskFile>>,
 }
 
-impl run::Work for Detecting {
+impl Work for Detecting {
     fn fill(&mut self, entry: &mut Entry, clock: &mut Clock) -> photinus_io::Result<()> {
         let Some(image) = &entry.image else { return Ok(()) };
         let frame = image.view();
@@ -92,14 +92,6 @@ impl run::Work for Detecting {
             let mask = mask_of(self.masks[entry.camera].as_ref());
             let _ = self.detectors[entry.camera].detect(&image.view(), mask);
         }
-    }
-}
-
-/// Says which frame an error is about, where the file does not say it.
-pub(crate) fn in_frame(error: Error, entry: &Entry) -> Error {
-    match entry.record.frame {
-        Some(frame) => error.at(Place::Frame(frame)),
-        None => error,
     }
 }
 

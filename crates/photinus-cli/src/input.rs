@@ -4,14 +4,13 @@ use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use nalgebra::{Unit, Vector3};
 use photinus_io::dataset::{Dataset, DatasetCamera};
-use photinus_io::frames::{Frame, FrameSource};
-use photinus_io::image::{Conversion, GreyImage};
+use photinus_io::frames::FrameSource;
 use photinus_io::kind::{self, Kind};
-use photinus_io::results::{FrameRecord, ResultsReader};
+use photinus_io::results::ResultsReader;
 use photinus_io::video::RawFormat;
 use photinus_io::{Error, Result};
+use photinus_run::Entry;
 
 use crate::failure::Failure;
 use crate::number;
@@ -42,20 +41,6 @@ pub(crate) struct DatasetArgs {
     /// Allow a dataset to name images outside of its folder
     #[arg(long)]
     allow_outside: bool,
-}
-
-/// A frame on its way to a record of results.
-pub(crate) struct Entry {
-    /// Number, time and source; the rest is filled in. Spots stand in it already when they came in place of pixels.
-    pub(crate) record: FrameRecord,
-    /// The pixels, unless spots came in their place.
-    pub(crate) image: Option<GreyImage>,
-    /// Which of the input's cameras took it.
-    pub(crate) camera: usize,
-    /// Direction of gravity (down) in the camera frame, where the source knows.
-    pub(crate) gravity: Option<Unit<Vector3<f64>>>,
-    /// What was done to the stored samples.
-    pub(crate) conversions: Vec<Conversion>,
 }
 
 /// Frames ready to be read.
@@ -290,30 +275,6 @@ impl Input {
         let entries = Entries { source, left: u64::MAX };
         let (cameras, name) = (Vec::new(), input_name(name).into_owned());
         Self { entries, count, dataset: None, cameras, files, name }
-    }
-}
-
-impl Entry {
-    pub(crate) fn from_frame(frame: Frame) -> Self {
-        let record = FrameRecord {
-            frame: Some(frame.index),
-            camera: None,
-            time_s: frame.time_s,
-            latency_s: None,
-            tracks: Vec::new(),
-            source: frame.source.clone(),
-            incomplete: false,
-            spots: Vec::new(),
-            rejected: Vec::new(),
-            neighbours: Vec::new(),
-        };
-        let Frame { image, gravity, conversions, .. } = frame;
-        Self { record, image: Some(image), camera: 0, gravity, conversions }
-    }
-
-    fn from_spots(record: FrameRecord) -> Self {
-        let record = FrameRecord { neighbours: Vec::new(), ..record };
-        Self { record, image: None, camera: 0, gravity: None, conversions: Vec::new() }
     }
 }
 

@@ -3,30 +3,27 @@
 use std::path::{Path, PathBuf};
 
 use nalgebra::{Unit, Vector3};
-use photinus::camera::{Bearing, Camera};
-use photinus::locator::{Locator, LocatorError, Settings, Stage};
+use photinus::camera::Bearing;
+use photinus::locator::Settings;
 use photinus::lookout::Fleet;
 use photinus::ranging::SpotCurve;
-use photinus::spots::Spot;
 use photinus_io::airframe::{AirframeFile, Tolerances};
-use photinus_io::calibration::{MountingFile, read_mounting};
+use photinus_io::calibration::read_mounting;
 use photinus_io::dataset::{Dataset, DatasetCamera};
 use photinus_io::mask::MaskFile;
 use photinus_io::results::NeighbourRecord;
-use photinus_io::{Error, Result};
+use photinus_run::watch::{self, Turns, Watch};
+use photinus_run::{Entry, View};
 
 use crate::beforehand::{self, Conditions};
-use crate::clock::Clock;
-use crate::detect::in_frame;
 use crate::failure::Failure;
-use crate::input::{Entry, Input, InputArgs};
+use crate::input::{Input, InputArgs};
 use crate::number;
 use crate::output::OutputArgs;
 use crate::pose_options::PoseArgs;
 use crate::run;
 use crate::spot_options::{SpotArgs, mask_of};
 use crate::terminal::Terminal;
-use crate::time::{self, Turns, Watch};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -162,7 +159,7 @@ impl Args {
         let masks = self.spot_options.masks(input, terminal)?;
         let warn = |text: String| terminal.warning(format_args!("{}: {text}", input.name));
         let dataset = input.dataset.as_ref().filter(|_| !self.no_time);
-        let fleet = time::fleet(dataset, airframe, warn)?;
+        let fleet = watch::fleet(dataset, airframe, warn).map_err(Failure::input)?;
         let several = fleet.as_ref().is_some_and(Fleet::has_several_signals) && !self.track;
         if several {
             terminal.warning(format_args!(
@@ -183,13 +180,13 @@ impl Args {
                 None => of_dataset.and_then(|camera| camera.mounting),
             };
             let curve = self.spot_curve(named, terminal)?;
-            let refuse = |error: LocatorError| Failure::Input(error.to_string());
-            let mut locator =
-                Locator::new(camera.clone(), airframe, curve, self.settings(tolerances)).map_err(refuse)?;
             let mask = mask_of(mask.as_ref());
-            locator.set_mask(mask.cloned()).map_err(refuse)?;
+            let view = View::new(camera.clone(), airframe, curve, self.settings(tolerances), mask)
+                .map_err(|error| Failure::Input(error.to_string()))?
+                .mounted(mounting)
+                .level(self.gravity);
             if no_time {
-                return Ok(View { camera, mounting, locator, watch: None });
+                return Ok(view);
             }
             let is_rig = of_dataset.is_some_and(|camera| camera.name.is_some());
             let turns = match dataset {
@@ -197,8 +194,9 @@ impl Args {
                 None => Turns::Unknown,
             };
             let beside = (fleet.as_ref(), turns, of_dataset.map(|camera| camera.exposure_us));
-            let watch = Watch::new(&camera, airframe, &self.settings(tolerances), mask, beside)?;
-            Ok(View { camera, mounting, locator, watch: Some(watch) })
+            let watch = Watch::new(&camera, airframe, &self.settings(tolerances), mask, beside)
+                .map_err(|error| Failure::Input(error.to_string()))?;
+            Ok(view.following(watch))
         };
         cameras.into_iter().zip(masks).map(view).collect()
     }
@@ -223,14 +221,6 @@ impl Args {
     }
 }
 
-/// A camera of the input, how it sits on its vehicle, and what looks through it.
-struct View {
-    camera: Camera,
-    mounting: Option<MountingFile>,
-    locator: Locator,
-    watch: Option<Watch>,
-}
-
 /// Runs the command.
 pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> std::result::Result<(), Failure> {
     let done = args.output.done()?;
@@ -240,72 +230,7 @@ pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> std::result::Result<(
     let mut views = args.views(&input, &file, terminal)?;
     let cameras = views.iter().map(|view| view.camera.clone()).collect();
     let outputs = args.output.claim(args.csv.as_deref(), &read, cameras, lines)?;
-    let mut work = Locating { views: &mut views, airframe: file.airframe.name(), gravity: args.gravity };
-    run::run(input, outputs, done.as_ref(), terminal, &mut work)
-}
-
-/// Locating in the frames of each camera.
-struct Locating<'a> {
-    views: &'a mut [View],
-    airframe: &'a str,
-    gravity: Option<Unit<Vector3<f64>>>,
-}
-
-impl run::Work for Locating<'_> {
-    fn fill(&mut self, entry: &mut Entry, clock: &mut Clock) -> Result<()> {
-        let view = &mut self.views[entry.camera];
-        entry.gravity = self.gravity.or(entry.gravity);
-        fill(entry, &mut view.locator, self.airframe, clock)?;
-        if let Some(watch) = &mut view.watch {
-            watch.follow(entry, view.locator.located(), self.airframe);
-            clock.lap("following");
-        }
-        if let Some(mounting) = &view.mounting {
-            entry.record.put_mounting(mounting);
-        }
-        Ok(())
-    }
-
-    fn learns(&self) -> bool {
-        // What is remembered of each frame depends on those before it.
-        true
-    }
-
-    fn learn(&mut self, entry: &mut Entry) {
-        // A frame of another size is refused, and teaches nothing.
-        let _ = self.fill(entry, &mut Clock::new());
-    }
-
-    fn remarks(&mut self) -> Vec<String> {
-        self.views.iter_mut().filter_map(|view| view.watch.as_mut()).flat_map(Watch::remarks).collect()
-    }
-}
-
-/// Completes the record of a frame.
-///
-/// # Errors
-/// [`Error`] when the frame is not of the camera's size.
-pub(crate) fn fill(
-    entry: &mut Entry,
-    locator: &mut Locator,
-    airframe: &str,
-    clock: &mut Clock,
-) -> Result<()> {
-    let gravity = entry.gravity.as_ref();
-    let finished = &mut |stage| clock.lap(name(stage));
-    let located = match &entry.image {
-        Some(image) => locator.locate(&image.view(), gravity, finished).map_err(|error| {
-            let advice = "give the calibration of this camera at this resolution; frames are not scaled";
-            in_frame(Error::format(&entry.record.source, error.to_string()).advise(advice), entry)
-        })?,
-        None => {
-            let given = entry.record.spots.iter().map(|record| (Spot::from(record), record.signal));
-            let spots: Vec<(Spot, Option<u32>)> = given.collect();
-            locator.locate_signalled(&spots, gravity, finished)
-        }
-    };
-    entry.record.put_located(located, airframe);
-    Ok(())
+    run::run(input, outputs, done.as_ref(), terminal, &mut views)
 }
 
 fn probability(text: &str) -> std::result::Result<f64, String> {
@@ -321,15 +246,6 @@ fn needed(
     named.map(Path::to_owned).or(of_dataset).ok_or_else(|| {
         Failure::Input(format!("no {what}: give --{what} FILE, or a dataset folder, which names its own"))
     })
-}
-
-fn name(stage: Stage) -> &'static str {
-    match stage {
-        Stage::Spots => "spots",
-        Stage::Bearings => "bearings",
-        Stage::Grouping => "grouping",
-        Stage::Posing => "posing",
-    }
 }
 
 fn lines(entry: &Entry) -> Vec<String> {

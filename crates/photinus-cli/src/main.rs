@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! input -> run: detect or locate, frame by frame -> output (JSON lines, CSV, overlay, lines to read) -> summary
+//! live: cameras -> the same, as `photinus run` says, for as long as it is asked
 //! info, doctor, convert: what a file holds, what is doubtful about it, and the same in another format
 //! simulate: a scene -> frames with truth
 //! inject: a dataset -> the same with faults
@@ -18,7 +19,6 @@ mod aligned;
 mod arguments;
 mod beforehand;
 mod calibrate;
-mod clock;
 mod codes;
 mod convert;
 mod demo;
@@ -27,20 +27,19 @@ mod doctor;
 mod ending;
 mod evaluate;
 mod failure;
-mod fault;
 mod info;
 mod inject;
 mod input;
 mod interrupt;
+mod live;
 mod locate;
 mod number;
-mod odd_frame;
 mod output;
 mod overlay;
 mod page;
 mod plots;
 mod pose_options;
-mod quantiles;
+mod protocols;
 mod reproduce;
 mod resume;
 mod run;
@@ -51,7 +50,6 @@ mod summary;
 mod swarm;
 mod targets;
 mod terminal;
-mod time;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::process::ExitCode;
@@ -59,6 +57,7 @@ use std::process::ExitCode;
 use clap::{CommandFactory, Parser, Subcommand};
 
 use failure::Failure;
+use photinus_run::fault;
 use terminal::Terminal;
 
 /// Tells a flying robot where its neighbours are, from one ultraviolet camera.
@@ -78,6 +77,8 @@ Examples:
   # the spots of a photo, and a picture of them
   photinus detect photo.png --overlay seen
   photinus locate recording --out results.jsonl --overlay seen
+  # the same with the cameras of a robot, while it flies
+  photinus run photinus.toml
   # frames with truth, where there is no recording
   photinus simulate scene.toml --out recording
   # robots that fly by what they see
@@ -97,6 +98,7 @@ interrupted.";
 #[derive(Subcommand)]
 enum Command {
     Locate(Box<locate::Args>),
+    Run(live::Args),
     Detect(detect::Args),
     Info(info::Args),
     Doctor(doctor::Args),
@@ -132,6 +134,7 @@ impl Command {
     fn quiet(&self) -> bool {
         match self {
             Self::Locate(args) => args.quiet(),
+            Self::Run(args) => args.quiet(),
             Self::Detect(args) => args.quiet(),
             Self::Simulate(args) => args.quiet(),
             Self::Swarm(args) => args.quiet(),
@@ -152,6 +155,7 @@ impl Command {
     fn run(&self, terminal: &mut Terminal) -> Result<(), Failure> {
         match self {
             Self::Locate(args) => locate::run(args, terminal),
+            Self::Run(args) => live::run(args, terminal),
             Self::Detect(args) => detect::run(args, terminal),
             Self::Info(args) => info::run(args, terminal),
             Self::Doctor(args) => doctor::run(args, terminal),

@@ -8,15 +8,15 @@ use photinus::camera::Camera;
 use photinus_io::Result;
 use photinus_io::results::{CsvWriter, ResultsWriter};
 
-use crate::clock::Clock;
 use crate::ending::Content;
 use crate::failure::Failure;
-use crate::input::Entry;
 use crate::number;
 use crate::overlay::{Overlay, Place};
 use crate::resume::Done;
 use crate::targets::{FileTarget, FolderTarget, Targets, WriteArgs};
 use crate::terminal::Terminal;
+use photinus_run::Clock;
+use photinus_run::Entry;
 
 /// What the user says about results.
 #[derive(Debug, clap::Args)]

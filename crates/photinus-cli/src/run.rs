@@ -1,49 +1,21 @@
-//! The loop that detect and locate share: a frame comes in, its record is filled in, written and counted.
-//!
-//! A frame that fails is reported, counted and skipped; what was written before it stays. So it is with a frame on which the
-//! method itself panics: that is a fault of Photinus, but no reason to lose the frames after it.
+//! What detect and locate have in common around the loop: a stopped run is gone on with, outputs are opened, frames are counted, and at the end it is
+//! told what was found.
 
-use std::collections::HashSet;
-use std::mem::discriminant;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::path::Path;
 
-use photinus_io::image::Conversion;
-use photinus_io::{Error, Place, Result};
+use photinus_io::Error;
+use photinus_run::{Clock, Entry, Oddity, Outlet, Work, guarded, source_name};
 
-use crate::clock::Clock;
 use crate::failure::Failure;
-use crate::fault;
-use crate::input::{Entries, Entry, Input};
+use crate::input::{Entries, Input};
 use crate::interrupt;
-use crate::odd_frame::Oddity;
 use crate::output::{Claimed, Outputs};
 use crate::resume::Done;
 use crate::summary::Summary;
-use crate::terminal::{Terminal, input_name};
+use crate::terminal::Terminal;
 
 /// After so many failed frames the others are only counted: the first ones say what is wrong.
 const REPORTED_FAILURES: u64 = 10;
-
-/// What is done with frames.
-pub(crate) trait Work {
-    /// Completes the record of a frame.
-    ///
-    /// # Errors
-    /// Those of the method, told of the frame.
-    fn fill(&mut self, entry: &mut Entry, clock: &mut Clock) -> Result<()>;
-
-    /// Whether frames still tell something of their camera.
-    fn learns(&self) -> bool;
-
-    /// Learns from a frame what [`Self::fill`] would have learnt; what that refuses teaches nothing.
-    fn learn(&mut self, entry: &mut Entry);
-
-    /// What a user should know of the frame.
-    fn remarks(&mut self) -> Vec<String> {
-        Vec::new()
-    }
-}
 
 /// Takes every frame of `input` through `work`, which completes its record, and writes it. What is `done` is skipped, once nothing is left to
 /// learn from it; its last frame is made once more, to see that this run finds the same.
@@ -54,7 +26,7 @@ pub(crate) fn run(
     terminal: &mut Terminal,
     work: &mut impl Work,
 ) -> std::result::Result<(), Failure> {
-    let (mut summary, mut clock, mut told) = (Summary::default(), Clock::new(), HashSet::new());
+    let mut clock = Clock::new();
     let mut entries = input.entries;
     let again = match done {
         Some(done) => Some(go_on(done, &mut entries, &mut clock, work)?),
@@ -64,34 +36,11 @@ pub(crate) fn run(
     terminal.start(input.count);
     if let Some(again) = again {
         outputs.write(&again, &mut clock, terminal)?;
-        terminal.note(format_args!("{}: goes on after frame {}", place(&outputs), number(&again)));
+        terminal.note(format_args!("{}: goes on after frame {}", place(&outputs), again.number()));
     }
-    while !interrupt::is_asked() {
-        clock.skip();
-        let Some(read) = entries.next() else { break };
-        clock.lap("reading");
-        let filled = read.and_then(|mut entry| {
-            tell_conversions(&entry, &mut told, terminal);
-            clock.skip();
-            guarded(&mut entry, &mut clock, work)?;
-            Ok(entry)
-        });
-        match filled {
-            Ok(entry) => {
-                outputs.write(&entry, &mut clock, terminal)?;
-                tell_oddity(&entry, &mut summary, terminal);
-                work.remarks().iter().for_each(|remark| terminal.warning(remark));
-                summary.count(&entry.record);
-            }
-            Err(error) => {
-                summary.failed += 1;
-                if summary.failed <= REPORTED_FAILURES {
-                    terminal.error(&error);
-                }
-            }
-        }
-        terminal.frame_done();
-    }
+    let mut desk = Desk { outputs, summary: Summary::default(), terminal };
+    photinus_run::run(entries, work, &mut desk, &mut clock)?;
+    let Desk { outputs, summary, terminal } = desk;
     interrupt::look_away();
     terminal.finish();
     if summary.failed > REPORTED_FAILURES {
@@ -111,6 +60,58 @@ pub(crate) fn run(
         0 if outputs.failed() => Err(Failure::Output),
         0 => Ok(()),
         _ => Err(Failure::Frames { all: summary.frames() == 0 && !resumed }),
+    }
+}
+
+/// Who stands at the end of the loop: frames are written and counted, and what went wrong is told.
+struct Desk<'a> {
+    outputs: Outputs,
+    summary: Summary,
+    terminal: &'a mut Terminal,
+}
+
+impl Outlet for Desk<'_> {
+    type End = Failure;
+
+    fn is_over(&mut self) -> bool {
+        interrupt::is_asked()
+    }
+
+    fn frame(
+        &mut self,
+        entry: Entry,
+        oddity: Option<Oddity>,
+        clock: &mut Clock,
+    ) -> std::result::Result<(), Failure> {
+        self.outputs.write(&entry, clock, self.terminal)?;
+        // The summary counts those that are not told.
+        if let Some(oddity) = oddity
+            && self.summary.count_odd(oddity)
+        {
+            let (source, frame) = (source_name(&entry), entry.number());
+            self.terminal.warning(format_args!("{source}, frame {frame}: {oddity} (said once)"));
+        }
+        self.summary.count(&entry.record);
+        Ok(())
+    }
+
+    fn failed(&mut self, error: Error) {
+        self.summary.failed += 1;
+        if self.summary.failed <= REPORTED_FAILURES {
+            self.terminal.error(&error);
+        }
+    }
+
+    fn note(&mut self, text: String) {
+        self.terminal.note(text);
+    }
+
+    fn warn(&mut self, text: String) {
+        self.terminal.warning(text);
+    }
+
+    fn next(&mut self) {
+        self.terminal.frame_done();
     }
 }
 
@@ -139,18 +140,6 @@ fn go_on(
     }
 }
 
-/// A panic on a frame is an error of that frame.
-fn guarded(entry: &mut Entry, clock: &mut Clock, work: &mut impl Work) -> Result<()> {
-    // Every buffer of the method is filled anew by the next frame.
-    match catch_unwind(AssertUnwindSafe(|| work.fill(entry, clock))) {
-        Ok(filled) => filled,
-        Err(payload) => {
-            let error = Error::format(&entry.record.source, fault::told(payload.as_ref()));
-            Err(error.at(Place::Frame(number(entry))).advise(fault::ADVICE))
-        }
-    }
-}
-
 /// What was done before the run was ended, and how to go on.
 fn interrupted(summary: &Summary, outputs: &Outputs) -> Failure {
     let done = format!("interrupted after {} frames", summary.frames());
@@ -162,31 +151,4 @@ fn interrupted(summary: &Summary, outputs: &Outputs) -> Failure {
 
 fn place(outputs: &Outputs) -> String {
     outputs.results().map_or("results".to_owned(), |path| path.display().to_string())
-}
-
-fn number(entry: &Entry) -> u64 {
-    entry.record.frame.unwrap_or_default()
-}
-
-/// Says of the first frame of a kind why nothing can be found in it; the summary counts the others.
-fn tell_oddity(entry: &Entry, summary: &mut Summary, terminal: &Terminal) {
-    let Some(oddity) = entry.image.as_ref().and_then(Oddity::of) else { return };
-    if summary.count_odd(oddity) {
-        let source = input_name(Path::new(&entry.record.source));
-        terminal.warning(format_args!("{source}, frame {}: {oddity} (said once)", number(entry)));
-    }
-}
-
-/// Says once of each kind what was done to stored samples.
-fn tell_conversions(
-    entry: &Entry,
-    told: &mut HashSet<std::mem::Discriminant<Conversion>>,
-    terminal: &Terminal,
-) {
-    for conversion in &entry.conversions {
-        if told.insert(discriminant(conversion)) {
-            let source = input_name(Path::new(&entry.record.source));
-            terminal.note(format_args!("{source}: {conversion} (said once)"));
-        }
-    }
 }

@@ -14,11 +14,11 @@ use photinus_sim::{Rendered, Scene, Simulator};
 
 use crate::ending::Content;
 use crate::failure::Failure;
-use crate::fault;
 use crate::interrupt;
 use crate::number;
 use crate::targets::{Targets, WriteArgs};
 use crate::terminal::Terminal;
+use photinus_run::fault;
 
 const EXAMPLES: &str = "\
 Examples:

@@ -5,9 +5,9 @@ use std::collections::BTreeMap;
 use photinus_io::results::FrameRecord;
 
 use crate::aligned::{Aligned, Side};
-use crate::clock::Clock;
-use crate::odd_frame::Oddity;
-use crate::quantiles::Quantiles;
+use photinus_run::Clock;
+use photinus_run::Oddity;
+use photinus_run::Quantiles;
 
 /// Reasons of rejection that are told apart; spots of other programs may bring any number.
 const MOST_REASONS: usize = 32;

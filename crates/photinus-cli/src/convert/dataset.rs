@@ -16,8 +16,8 @@ use photinus_io::{Error, Result, read_camera};
 
 use super::frames::FrameArgs;
 use crate::failure::Failure;
-use crate::input::Entry;
 use crate::targets::FolderTarget;
+use photinus_run::Entry;
 
 /// A dataset folder that frames are written to.
 pub(super) struct DatasetSink {

@@ -9,14 +9,15 @@ use photinus_io::{Cause, Error};
 
 use super::Format;
 use super::dataset::DatasetSink;
-use crate::detect::in_frame;
 use crate::ending::Content;
 use crate::failure::Failure;
-use crate::input::{DatasetArgs, Entry, Input};
+use crate::input::{DatasetArgs, Input};
 use crate::interrupt;
 use crate::number;
 use crate::targets::{FileTarget, Targets};
 use crate::terminal::Terminal;
+use photinus_run::Entry;
+use photinus_run::in_frame;
 
 /// What frames do not say themselves.
 #[derive(Debug, clap::Args)]

@@ -25,18 +25,17 @@ use photinus_io::whole::WholeFolder;
 use photinus_io::{Error, Result};
 use photinus_sim::{Rendered, Scene, Simulator};
 
-use crate::clock::Clock;
 use crate::evaluate::plots::page::with_figures;
 use crate::evaluate::plots::{Drawn, plot};
 use crate::failure::Failure;
-use crate::input::Entry;
-use crate::locate;
 use crate::overlay::{self, Overlay, Place};
 use crate::page::{Moment, Page, Player, Shot, Timeline};
 use crate::simulate::write_truth;
 use crate::targets::{Targets, WriteArgs};
 use crate::terminal::Terminal;
 use pace::Pace;
+use photinus_run::Clock;
+use photinus_run::Entry;
 
 const PICTURES: &str = "pictures";
 const FIGURES: &str = "figures";
@@ -169,7 +168,7 @@ fn fly(scene: &Scene, making: &WholeFolder, terminal: &mut Terminal) -> std::res
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     let take = |rendered: Rendered| -> Result<()> {
         let (truth, mut entry) = apart(rendered);
-        locate::fill(&mut entry, &mut locator, airframe.name(), &mut clock)?;
+        photinus_run::locate(&mut entry, &mut locator, airframe.name(), &mut clock)?;
         write_truth(&mut truth_file, &truth, &truth_path)?;
         results.write(&entry.record)?;
         if pace.is_due(truth.time_s) {

@@ -7,14 +7,13 @@ use photinus_io::whole::WholeFolder;
 use photinus_reproduce::Effort;
 use photinus_sim::{Scene, Simulator};
 
-use crate::clock::Clock;
 use crate::demo::apart;
 use crate::demo::pace::Pace;
 use crate::failure::Failure;
-use crate::locate;
 use crate::overlay::{self, Overlay, Place};
 use crate::page::{Player, Shot};
 use crate::terminal::Terminal;
+use photinus_run::Clock;
 
 const PICTURES: &str = "figure-17";
 /// Pictures of a quick run.
@@ -57,7 +56,7 @@ pub(super) fn save(
     };
     for &number in numbers {
         let (truth, mut entry) = apart(simulator.frame(number));
-        locate::fill(&mut entry, &mut locator, airframe.name(), &mut clock).map_err(broken)?;
+        photinus_run::locate(&mut entry, &mut locator, airframe.name(), &mut clock).map_err(broken)?;
         let places_m: Vec<Vector3<f64>> =
             truth.neighbours.iter().map(|neighbour| Vector3::from(neighbour.position_m)).collect();
         let image = entry.image.as_ref().map(|image| image.view());

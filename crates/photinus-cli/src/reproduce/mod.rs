@@ -23,9 +23,9 @@ use photinus_reproduce::{Effort, Experiment, Figure, Report, ReproduceError, Rig
 
 use crate::demo::carried;
 use crate::failure::Failure;
-use crate::fault;
 use crate::targets::{Targets, WriteArgs};
 use crate::terminal::Terminal;
+use photinus_run::fault;
 
 const EXAMPLES: &str = "\
 Examples:

@@ -20,6 +20,7 @@ mod doctor;
 mod evaluate;
 mod files_survive;
 mod inject;
+mod live;
 mod mistakes;
 mod mutated;
 mod narrow_frames;

@@ -175,7 +175,11 @@ fn in_folder(folder: &Path, name: &Path) -> Result<(String, PathBuf)> {
     }
 }
 
-fn read_vehicles(folder: &Path, named: &Path, codes: Option<&CodeBook>) -> Result<Vec<Vehicle>> {
+/// Reads a list of vehicles, `named` in a folder that its airframes are relative to, too.
+///
+/// # Errors
+/// As [`parse_vehicles`], and for words that the book does not hold, and airframes that cannot be read.
+pub fn read_vehicles(folder: &Path, named: &Path, codes: Option<&CodeBook>) -> Result<Vec<Vehicle>> {
     let (text, path) = in_folder(folder, named)?;
     let vehicles = parse_vehicles(&text, &path)?.into_iter().enumerate();
     vehicles

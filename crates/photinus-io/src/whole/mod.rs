@@ -7,5 +7,6 @@ mod read;
 mod write;
 
 pub use read::open_regular;
-pub(crate) use read::{read_bytes, read_text};
+pub(crate) use read::read_bytes;
+pub use read::read_text;
 pub use write::{Existing, WholeFile, WholeFolder, write_whole};

@@ -44,7 +44,7 @@ fn bytes_of(source: impl Read, path: &Path) -> Result<Vec<u8>> {
 }
 
 /// The text of a file, without the byte order mark that some editors add.
-pub(crate) fn read_text(path: &Path) -> Result<String> {
+pub fn read_text(path: &Path) -> Result<String> {
     let text = String::from_utf8(read_bytes(path)?).map_err(|error| {
         Error::format(path, format!("byte {} is not UTF-8 text", error.utf8_error().valid_up_to()))
             .advise("check that this is the text file that was meant, and save it as UTF-8")

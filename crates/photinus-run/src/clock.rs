@@ -5,32 +5,38 @@ use std::time::Instant;
 use crate::quantiles::Quantiles;
 
 /// Lap times of the stages, frame by frame.
-pub(crate) struct Clock {
+pub struct Clock {
     last: Instant,
     stages: Vec<Stage>,
 }
 
 /// The laps of one stage.
-pub(crate) struct Stage {
+pub struct Stage {
     /// What the stage is called.
-    pub(crate) name: &'static str,
+    pub name: &'static str,
     /// Their times, ms.
-    pub(crate) laps_ms: Quantiles,
+    pub laps_ms: Quantiles,
+}
+
+impl Default for Clock {
+    fn default() -> Self {
+        Self::new()
+    }
 }
 
 impl Clock {
     /// A clock that runs from now.
-    pub(crate) fn new() -> Self {
+    pub fn new() -> Self {
         Self { last: Instant::now(), stages: Vec::new() }
     }
 
     /// What was done since the lap before is not part of any stage.
-    pub(crate) fn skip(&mut self) {
+    pub fn skip(&mut self) {
         self.last = Instant::now();
     }
 
     /// The stage `name` ends now; it began where the lap before ended.
-    pub(crate) fn lap(&mut self, name: &'static str) {
+    pub fn lap(&mut self, name: &'static str) {
         let now = Instant::now();
         let lap_ms = 1e3 * (now - self.last).as_secs_f64();
         self.last = now;
@@ -45,7 +51,7 @@ impl Clock {
     }
 
     /// The stages, in the order of their first laps.
-    pub(crate) fn stages(&self) -> &[Stage] {
+    pub fn stages(&self) -> &[Stage] {
         &self.stages
     }
 }

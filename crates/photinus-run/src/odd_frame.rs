@@ -9,7 +9,7 @@ const SATURATED_SHARE: f64 = 0.5;
 
 /// What is the matter with a frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Oddity {
+pub enum Oddity {
     /// Most of it is saturated: this share.
     Saturated(f64),
     /// Every pixel has this level, which no camera gives.
@@ -18,7 +18,7 @@ pub(crate) enum Oddity {
 
 impl Oddity {
     /// What is the matter, if anything. Black alone is nothing odd: a dark scene clips there.
-    pub(crate) fn of(image: &GreyImage) -> Option<Self> {
+    pub fn of(image: &GreyImage) -> Option<Self> {
         let pixels = image.pixels();
         let share = pixels.iter().filter(|&&level| level == u8::MAX).count() as f64 / pixels.len() as f64;
         if share > SATURATED_SHARE {
@@ -29,7 +29,7 @@ impl Oddity {
     }
 
     /// What kind of it, for the summary.
-    pub(crate) fn kind(self) -> &'static str {
+    pub fn kind(self) -> &'static str {
         match self {
             Self::Saturated(_) => "saturated",
             Self::Flat(_) => "of one level",

@@ -2,18 +2,22 @@
 //!
 //! In: the dataset's book of words, its vehicles, its gyro or odometry. Out: [`Watch`], which completes the record of each frame.
 
-use nalgebra::{Rotation3, UnitQuaternion, Vector3};
+use std::path::Path;
+
+use nalgebra::{Rotation3, Unit, UnitQuaternion, Vector3};
 use photinus::airframe::Airframe;
 use photinus::camera::Camera;
 use photinus::frame::Mask;
+use photinus::identity::CodeBook;
 use photinus::locator::{Located, Settings};
-use photinus::lookout::{Fleet, Glance, Lookout, Name, Vehicle};
+use photinus::lookout::{Fleet, FleetError, Glance, Lookout, LookoutError, Name, Vehicle};
 use photinus::tracking::{self, Placed, Turned};
 use photinus_io::calibration::MountingFile;
-use photinus_io::dataset::{Dataset, OdometryRow};
+use photinus_io::dataset::{self, Dataset, OdometryRow};
+use photinus_io::{Error, Result};
 
-use crate::failure::Failure;
-use crate::input::Entry;
+use crate::Entry;
+use crate::motion::Motion;
 
 /// The exposure of frames of which nobody says it, s.
 const EXPOSURE_S: f64 = 1e-3;
@@ -25,12 +29,12 @@ const LONGEST_GAP_S: f64 = 0.25;
 /// The vehicles of a dataset that blink, and are built like this.
 ///
 /// # Errors
-/// [`Failure`] when their words or rates make no fleet.
-pub(crate) fn fleet(
+/// [`Error`] when their words or rates make no fleet.
+pub fn fleet(
     dataset: Option<&Dataset>,
     airframe: &Airframe,
     mut warn: impl FnMut(String),
-) -> Result<Option<Fleet>, Failure> {
+) -> Result<Option<Fleet>> {
     let Some(dataset) = dataset else { return Ok(None) };
     let Some(book) = dataset.codes() else { return Ok(None) };
     if dataset.vehicles().is_empty() {
@@ -40,8 +44,23 @@ pub(crate) fn fleet(
         );
         return Ok(None);
     }
+    let file = dataset.info().vehicles.as_deref().map(|named| dataset.path(named)).unwrap_or_default();
+    fleet_of(book, dataset.vehicles(), &file, airframe, warn)
+}
+
+/// Those of `vehicles` that blink words of the book and are built like this; `file` is for the messages.
+///
+/// # Errors
+/// [`Error`] when their words or rates make no fleet.
+pub fn fleet_of(
+    book: &CodeBook,
+    all: &[dataset::Vehicle],
+    file: &Path,
+    airframe: &Airframe,
+    mut warn: impl FnMut(String),
+) -> Result<Option<Fleet>> {
     let mut vehicles = Vec::new();
-    for vehicle in dataset.vehicles() {
+    for vehicle in all {
         let Some(blink) = &vehicle.blink else { continue };
         if !is_built_like(&vehicle.airframe, airframe) {
             let file = vehicle.airframe_file.display();
@@ -56,10 +75,8 @@ pub(crate) fn fleet(
     if vehicles.is_empty() {
         return Ok(None);
     }
-    let refuse = |error: photinus::lookout::FleetError| {
-        let file = dataset.info().vehicles.as_deref().map(|named| dataset.path(named)).unwrap_or_default();
-        Failure::Input(format!("{}: {error}; or locate with --no-time", file.display()))
-    };
+    let refuse =
+        |error: FleetError| Error::format(file, error.to_string()).advise("or locate with --no-time");
     Fleet::new(book.clone(), vehicles).map(Some).map_err(refuse)
 }
 
@@ -69,7 +86,7 @@ fn is_built_like(one: &Airframe, other: &Airframe) -> bool {
 }
 
 /// What follows the vehicles that one camera sees.
-pub(crate) struct Watch {
+pub struct Watch {
     lookout: Lookout,
     has_names: bool,
     exposure_s: f64,
@@ -82,13 +99,20 @@ pub(crate) struct Watch {
 }
 
 /// What tells how a camera turned.
-pub(crate) enum Turns {
+pub enum Turns {
     /// Nothing does.
     Unknown,
     /// Rates in the camera's own frame.
     Gyro(Vec<(f64, Vector3<f64>)>),
     /// Attitudes odometry_from_camera.
     Attitudes(Vec<(f64, UnitQuaternion<f64>)>),
+    /// What arrives while frames do, of the body that the camera sits on.
+    Live {
+        /// What the vehicle says of its motion.
+        motion: Motion,
+        /// How the camera sits on it.
+        body_from_camera: UnitQuaternion<f64>,
+    },
 }
 
 impl Turns {
@@ -96,11 +120,7 @@ impl Turns {
     ///
     /// # Errors
     /// As [`Dataset::imu`] and [`Dataset::odometry`].
-    pub(crate) fn of(
-        dataset: &Dataset,
-        is_rig: bool,
-        mounting: Option<&MountingFile>,
-    ) -> photinus_io::Result<Self> {
+    pub fn of(dataset: &Dataset, is_rig: bool, mounting: Option<&MountingFile>) -> Result<Self> {
         let body_from_camera = mounting.map(|mounting| mounting.body_from_camera);
         if let Some(rows) = dataset.imu()? {
             let camera_from_part = match (is_rig, body_from_camera) {
@@ -123,13 +143,34 @@ impl Turns {
         match self {
             Self::Unknown => None,
             Self::Gyro(rates) => tracking::turned(rates, from_s, to_s),
-            Self::Attitudes(attitudes) => {
-                let [before, now] = [attitude_at(attitudes, from_s)?, attitude_at(attitudes, to_s)?];
-                let now_from_before: Rotation3<f64> = (now.inverse() * before).to_rotation_matrix();
-                Some(Turned { now_from_before, sigma_rad: ODOMETRY_SIGMA_RAD })
+            Self::Attitudes(attitudes) => turned_by(attitudes, from_s, to_s),
+            Self::Live { motion, body_from_camera } => {
+                let camera_from_body = body_from_camera.inverse();
+                let rate = |(time_s, rate): (f64, Vector3<f64>)| (time_s, camera_from_body * rate);
+                let rates: Vec<_> = motion.rates().into_iter().map(rate).collect();
+                let turned = tracking::turned(&rates, from_s, to_s);
+                turned.or_else(|| turned_by(&attitudes_of(motion, body_from_camera), from_s, to_s))
             }
         }
     }
+
+    /// Down in the camera frame at a time, where what arrives says so.
+    fn down(&self, time_s: f64) -> Option<Unit<Vector3<f64>>> {
+        let Self::Live { motion, body_from_camera } = self else { return None };
+        let world_from_camera = attitude_at(&attitudes_of(motion, body_from_camera), time_s)?;
+        Some(world_from_camera.inverse() * -Vector3::z_axis())
+    }
+}
+
+fn attitudes_of(motion: &Motion, body_from_camera: &UnitQuaternion<f64>) -> Vec<(f64, UnitQuaternion<f64>)> {
+    motion.attitudes().into_iter().map(|(time_s, attitude)| (time_s, attitude * body_from_camera)).collect()
+}
+
+/// How a camera with these attitudes turned between two times.
+fn turned_by(attitudes: &[(f64, UnitQuaternion<f64>)], from_s: f64, to_s: f64) -> Option<Turned> {
+    let [before, now] = [attitude_at(attitudes, from_s)?, attitude_at(attitudes, to_s)?];
+    let now_from_before: Rotation3<f64> = (now.inverse() * before).to_rotation_matrix();
+    Some(Turned { now_from_before, sigma_rad: ODOMETRY_SIGMA_RAD })
 }
 
 /// The attitude at a time, turned evenly between those before and after it.
@@ -149,19 +190,17 @@ impl Watch {
     /// For frames of a camera that are exposed so long.
     ///
     /// # Errors
-    /// [`Failure`] when a setting has no meaning.
-    pub(crate) fn new(
+    /// [`LookoutError`] when a setting has no meaning.
+    pub fn new(
         camera: &Camera,
         airframe: &Airframe,
         settings: &Settings,
         mask: Option<&Mask>,
         (fleet, turns, exposure_us): (Option<&Fleet>, Turns, Option<f64>),
-    ) -> Result<Self, Failure> {
-        let refuse = |error: photinus::lookout::LookoutError| Failure::Input(error.to_string());
+    ) -> std::result::Result<Self, LookoutError> {
         let mut lookout =
-            Lookout::new(camera.clone(), airframe, settings, tracking::Settings::default(), fleet)
-                .map_err(refuse)?;
-        lookout.set_mask(mask.cloned()).map_err(refuse)?;
+            Lookout::new(camera.clone(), airframe, settings, tracking::Settings::default(), fleet)?;
+        lookout.set_mask(mask.cloned())?;
         Ok(Self {
             lookout,
             has_names: fleet.is_some(),
@@ -174,11 +213,17 @@ impl Watch {
         })
     }
 
+    /// Down in the camera frame at the time of a frame, where the vehicle says so while it flies.
+    pub fn down(&self, time_s: f64) -> Option<Unit<Vector3<f64>>> {
+        self.turns.down(time_s)
+    }
+
     /// Completes the record of a frame that was located, if it has a time that comes after the one before.
-    pub(crate) fn follow(&mut self, entry: &mut Entry, located: &Located, airframe: &str) {
+    pub fn follow(&mut self, entry: &mut Entry, located: &Located, airframe: &str) {
         let Some(time_s) = entry.record.time_s else { return };
         let turned = self.last_s.and_then(|last_s| self.turns.between(last_s, time_s));
-        let glance = Glance { time_s, exposure_s: self.exposure_s, turned, gravity: entry.gravity, located };
+        let exposure_s = entry.exposure_s.unwrap_or(self.exposure_s);
+        let glance = Glance { time_s, exposure_s, turned, gravity: entry.gravity, located };
         let frame = entry.record.frame.unwrap_or_default();
         if let Err(error) = self.lookout.look(&glance) {
             self.remark("refused", || format!("frame {frame} tells nothing of tracks: {error}"));
@@ -199,7 +244,7 @@ impl Watch {
     }
 
     /// What a user should know, since it was asked for last.
-    pub(crate) fn remarks(&mut self) -> Vec<String> {
+    pub fn remarks(&mut self) -> Vec<String> {
         std::mem::take(&mut self.remarks)
     }
 

@@ -9,7 +9,7 @@ const MOST_BINS: u32 = 8192;
 
 /// The distribution of positive numbers.
 #[derive(Clone)]
-pub(crate) struct Quantiles(DDSketch);
+pub struct Quantiles(DDSketch);
 
 impl Default for Quantiles {
     fn default() -> Self {
@@ -25,29 +25,29 @@ impl std::fmt::Debug for Quantiles {
 
 impl Quantiles {
     /// Counts a number; what is not finite is not counted.
-    pub(crate) fn add(&mut self, value: f64) {
+    pub fn add(&mut self, value: f64) {
         if value.is_finite() {
             self.0.add(value);
         }
     }
 
     /// How many were counted.
-    pub(crate) fn count(&self) -> usize {
+    pub fn count(&self) -> usize {
         self.0.count()
     }
 
     /// The smallest number, exactly.
-    pub(crate) fn smallest(&self) -> Option<f64> {
+    pub fn smallest(&self) -> Option<f64> {
         self.0.min()
     }
 
     /// The largest number, exactly.
-    pub(crate) fn largest(&self) -> Option<f64> {
+    pub fn largest(&self) -> Option<f64> {
         self.0.max()
     }
 
     /// The number that a share of all is not above, to 0.2 %.
-    pub(crate) fn at(&self, share: f64) -> Option<f64> {
+    pub fn at(&self, share: f64) -> Option<f64> {
         let (smallest, largest) = (self.smallest()?, self.largest()?);
         // The middle of a bin may lie outside of what was counted.
         self.0.quantile(share).ok().flatten().map(|value| value.clamp(smallest, largest))

@@ -5,13 +5,13 @@ use std::panic;
 use std::sync::Mutex;
 
 /// What to do about a fault.
-pub(crate) const ADVICE: &str = "please report it, with the file if you may";
+pub const ADVICE: &str = "please report it, with the file if you may";
 
 /// Where the last panic came from, on whichever thread.
 static PLACE: Mutex<String> = Mutex::new(String::new());
 
 /// From now on panics print nothing by themselves. Who looks for one sets RUST_BACKTRACE and sees them as ever.
-pub(crate) fn be_quiet() {
+pub fn be_quiet() {
     if std::env::var_os("RUST_BACKTRACE").is_some() {
         return;
     }
@@ -24,7 +24,7 @@ pub(crate) fn be_quiet() {
 }
 
 /// What a panic that was caught says, with its place where that is known.
-pub(crate) fn told(payload: &(dyn Any + Send)) -> String {
+pub fn told(payload: &(dyn Any + Send)) -> String {
     let reason = payload
         .downcast_ref::<&str>()
         .copied()

@@ -1,0 +1,277 @@
+//! Tables of the configuration -> what looks through each camera, and what opens it.
+
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use nalgebra::{Unit, Vector3};
+use photinus::locator;
+use photinus::lookout::Fleet;
+use photinus::spots::Brightness;
+use photinus_io::airframe::{AirframeFile, read_airframe};
+use photinus_io::calibration::read_mounting;
+use photinus_io::codes::read_codes;
+use photinus_io::dataset::{self, Dataset, DatasetCamera};
+use photinus_io::mask::read_mask;
+use photinus_io::spot_curve::{SpotCurveFile, read_spot_curve};
+use photinus_io::{Error, Place, Result, read_camera};
+
+use super::{CameraKeys, Config, LocateKeys, SourceKeys, TimesKey};
+use crate::exposure::Exposure;
+use crate::live::{Camera, Pace};
+use crate::motion::Motion;
+use crate::source::{Carrier, Opener, Recorded, Source, Stream, StreamFormat, Times};
+use crate::watch::{self, Turns, Watch};
+use crate::{HostClock, View};
+
+/// The exposure of frames of which nobody says it, us.
+const EXPOSURE_US: f64 = 1000.0;
+
+/// A camera of the configuration, with the dataset that it is of.
+struct Named<'a> {
+    keys: &'a CameraKeys,
+    recording: Option<(Dataset, usize)>,
+}
+
+impl Named<'_> {
+    fn of_dataset(&self) -> Option<(&Dataset, &DatasetCamera)> {
+        self.recording.as_ref().map(|(dataset, number)| (dataset, &dataset.cameras()[*number]))
+    }
+
+    /// The file that the configuration names, or else the dataset.
+    fn file(
+        &self,
+        config: &Config,
+        own: Option<&PathBuf>,
+        of: fn(&DatasetCamera) -> Option<&PathBuf>,
+    ) -> Option<PathBuf> {
+        let of_dataset = || self.of_dataset().and_then(|(dataset, camera)| Some(dataset.path(of(camera)?)));
+        own.map(|path| config.located(path)).or_else(of_dataset)
+    }
+}
+
+impl Config {
+    /// The cameras, ready to run. `motion` is what arrives of the vehicle's own motion; `note` takes what was read otherwise than it stands in a file.
+    ///
+    /// # Errors
+    /// [`Error`] when a file that is named is missing or not in order, or settings have no meaning.
+    pub fn cameras(&self, motion: &Motion, note: &mut dyn FnMut(String)) -> Result<Vec<Camera>> {
+        let named = self.keys.camera.iter().enumerate().map(|(number, keys)| self.named(number, keys));
+        let named: Vec<Named<'_>> = named.collect::<Result<_>>()?;
+        let first = named.iter().find_map(|camera| camera.recording.as_ref());
+        let airframe = self.airframe(first.map(|(dataset, _)| dataset))?;
+        airframe.notes.iter().for_each(|text| note(text.clone()));
+        let fleet = self.fleet(first.map(|(dataset, _)| dataset), &airframe, note)?;
+        let clock = HostClock::start();
+        let start_s = named
+            .iter()
+            .filter_map(Named::of_dataset)
+            .filter_map(|(_, camera)| camera.frames.first())
+            .map(|row| row.time_s);
+        // All recordings begin together, in the order of their own times.
+        let start_s = start_s.reduce(f64::min).unwrap_or(0.0);
+        named
+            .iter()
+            .map(|camera| self.camera(camera, &airframe, fleet.as_ref(), motion, (clock, start_s), note))
+            .collect()
+    }
+
+    fn named<'a>(&self, number: usize, keys: &'a CameraKeys) -> Result<Named<'a>> {
+        let Some(folder) = &keys.source.dataset else { return Ok(Named { keys, recording: None }) };
+        let dataset = Dataset::read(self.located(folder))?;
+        dataset.check_inside()?;
+        let all = dataset.cameras();
+        let wanted = keys.source.camera.as_ref();
+        let place = match (all.len(), wanted) {
+            (1, None) => Some(0),
+            _ => all.iter().position(|camera| camera.name.as_ref() == wanted && wanted.is_some()),
+        };
+        let Some(place) = place else {
+            let names: Vec<&str> = all.iter().filter_map(|camera| camera.name.as_deref()).collect();
+            let key = format!("camera[{number}].source.camera");
+            let advice = format!("give one of: {}", names.join(", "));
+            return Err(self.refuse(&key, "the dataset has several cameras, or none of this name", &advice));
+        };
+        Ok(Named { keys, recording: Some((dataset, place)) })
+    }
+
+    fn airframe(&self, dataset: Option<&Dataset>) -> Result<AirframeFile> {
+        let own = self.keys.airframe.as_ref().map(|keys| self.located(&keys.file));
+        let path = own.or_else(|| dataset.map(|dataset| dataset.path(&dataset.info().airframe)));
+        let Some(path) = path else {
+            return Err(self.refuse(
+                "airframe",
+                "nobody says how neighbours are built",
+                "add [airframe] with file = \"...\"",
+            ));
+        };
+        read_airframe(path)
+    }
+
+    fn fleet(
+        &self,
+        dataset: Option<&Dataset>,
+        airframe: &AirframeFile,
+        note: &mut dyn FnMut(String),
+    ) -> Result<Option<Fleet>> {
+        let fleet = match &self.keys.vehicles {
+            None => watch::fleet(dataset, &airframe.airframe, note)?,
+            Some(keys) => {
+                let codes = keys.codes.as_ref().map(|path| read_codes(self.located(path))).transpose()?;
+                let vehicles =
+                    dataset::read_vehicles(&self.located(Path::new("")), &keys.file, codes.as_ref())?;
+                match codes {
+                    Some(book) => watch::fleet_of(
+                        &book,
+                        &vehicles,
+                        &self.located(&keys.file),
+                        &airframe.airframe,
+                        note,
+                    )?,
+                    None => None,
+                }
+            }
+        };
+        Ok(fleet)
+    }
+
+    fn camera(
+        &self,
+        named: &Named<'_>,
+        file: &AirframeFile,
+        fleet: Option<&Fleet>,
+        motion: &Motion,
+        (clock, start_s): (HostClock, f64),
+        note: &mut dyn FnMut(String),
+    ) -> Result<Camera> {
+        let keys = named.keys;
+        let path =
+            named.file(self, keys.camera.as_ref(), |camera| Some(&camera.camera)).ok_or_else(|| {
+                self.refuse(&format!("camera {}", keys.name), "it has no calibration", "add camera = \"...\"")
+            })?;
+        let calibration = read_camera(&path)?;
+        calibration.oddities.iter().for_each(|oddity| note(format!("{}: {oddity}", path.display())));
+        let camera = calibration.camera;
+        let mask = match named.file(self, keys.mask.as_ref(), |camera| camera.mask.as_ref()) {
+            Some(path) => {
+                let file = read_mask(&path)?;
+                file.check_size(camera.width(), camera.height())?;
+                Some(file.mask)
+            }
+            None => None,
+        };
+        let mounting = match &keys.mounting {
+            Some(path) => Some(read_mounting(self.located(path))?),
+            None => named.of_dataset().and_then(|(_, camera)| camera.mounting),
+        };
+        let curve = match named.file(self, keys.spot_curve.as_ref(), |camera| camera.spot_curve.as_ref()) {
+            Some(path) if path.ends_with("paper") => Some(SpotCurveFile::paper_1000_us().curve),
+            Some(path) => Some(read_spot_curve(path)?.curve),
+            None => None,
+        };
+        let settings = self.keys.locate.settings(file);
+        let refuse = |error: String| Error::format(&self.path, error).at(Place::Key("locate".to_owned()));
+        let mut view = View::new(camera.clone(), &file.airframe, curve, settings, mask.as_ref())
+            .map_err(|error| refuse(error.to_string()))?
+            .mounted(mounting)
+            .level(self.gravity()?);
+        let exposure_us =
+            keys.exposure_us.or_else(|| named.of_dataset().map(|(_, camera)| camera.exposure_us));
+        let several = fleet.is_some_and(Fleet::has_several_signals);
+        if self.keys.locate.time.unwrap_or(!several) {
+            let turns = match named.of_dataset() {
+                Some((dataset, camera)) => Turns::of(dataset, camera.name.is_some(), mounting.as_ref())?,
+                None => mounting.map_or(Turns::Unknown, |mounting| Turns::Live {
+                    motion: motion.clone(),
+                    body_from_camera: mounting.body_from_camera,
+                }),
+            };
+            let beside = (fleet, turns, exposure_us);
+            let watch = Watch::new(&camera, &file.airframe, &settings, mask.as_ref(), beside)
+                .map_err(|error| refuse(error.to_string()))?;
+            view = view.following(watch);
+        } else if several && self.keys.locate.time.is_none() {
+            note("vehicles carry several signals each, and are not followed: every frame is located by itself (time = true in [locate] follows all the same)".to_owned());
+        }
+        let source = self.opener(named, exposure_us, (clock, start_s));
+        let exposure = self.wanted_exposure().map(Exposure::new);
+        Ok(Camera { name: keys.name.clone(), source, view, exposure })
+    }
+
+    fn gravity(&self) -> Result<Option<Unit<Vector3<f64>>>> {
+        let Some(down) = self.keys.locate.gravity else { return Ok(None) };
+        let direction =
+            Unit::try_new(Vector3::from(down), 1e-9).filter(|down| down.iter().all(|part| part.is_finite()));
+        let advice = "give three numbers, such as [0, 1, 0] for a level camera";
+        direction
+            .map(Some)
+            .ok_or_else(|| self.refuse("locate.gravity", "these numbers have no direction", advice))
+    }
+
+    fn opener(
+        &self,
+        named: &Named<'_>,
+        exposure_us: Option<f64>,
+        (clock, start_s): (HostClock, f64),
+    ) -> Opener {
+        if let Some((dataset, camera)) = named.recording.clone() {
+            let (is_live, repeat) = (self.pace() == Pace::Live, named.keys.source.repeat);
+            return Box::new(move || {
+                let began = is_live.then(|| began(&clock, start_s));
+                let recorded = Recorded::new(&dataset, camera, began);
+                let recorded = if repeat { recorded.repeated(&dataset, camera) } else { recorded };
+                Ok(Box::new(recorded) as Box<dyn Source>)
+            });
+        }
+        let source = named.keys.source.clone();
+        let carrier = self.carrier(&source);
+        let format = source.raw.map_or(StreamFormat::Y4m, |raw| StreamFormat::Raw(raw.into()));
+        let is_live = self.pace() == Pace::Live;
+        let times = match source.times.unwrap_or(if is_live { TimesKey::Arrival } else { TimesKey::Stream }) {
+            TimesKey::Stream => Times::Stream,
+            TimesKey::Arrival => Times::Arrival(clock, 1e-6 * exposure_us.unwrap_or(EXPOSURE_US)),
+        };
+        Box::new(move || Ok(Box::new(Stream::open(&carrier, format, times)?) as Box<dyn Source>))
+    }
+
+    fn carrier(&self, source: &SourceKeys) -> Carrier {
+        match source {
+            SourceKeys { command: Some(words), .. } => Carrier::Command(words.clone()),
+            SourceKeys { tcp: Some(address), .. } => Carrier::Tcp(address.clone()),
+            SourceKeys { unix: Some(path), .. } => Carrier::Unix(self.located(path)),
+            _ => Carrier::Standard,
+        }
+    }
+}
+
+/// When the clock of the recordings showed 0: their first frame is due now.
+fn began(clock: &HostClock, start_s: f64) -> Instant {
+    let start = std::time::Duration::try_from_secs_f64(start_s.max(0.0)).unwrap_or_default();
+    clock.began().checked_sub(start).unwrap_or(clock.began())
+}
+
+impl LocateKeys {
+    fn settings(&self, file: &AirframeFile) -> locator::Settings {
+        let mut settings = locator::Settings::default();
+        settings.spots.brightness = match (self.threshold, self.contrast) {
+            (Some(level), _) => Brightness::Threshold(level),
+            (None, Some(step)) => Brightness::Contrast(step),
+            (None, None) => Brightness::default(),
+        };
+        let of = |own: Option<f64>, default: f64| own.unwrap_or(default);
+        settings.spots.shape.reflection_ratio =
+            of(self.reflection_ratio, settings.spots.shape.reflection_ratio);
+        settings.max_tilt_rad = of(self.max_tilt_deg.map(f64::to_radians), settings.max_tilt_rad);
+        settings.min_probability = of(self.min_probability, settings.min_probability);
+        settings.budget = self.budget.unwrap_or(settings.budget);
+        let pose = &mut settings.pose;
+        pose.tilt_sigma_rad = self.tilt_sigma_deg.unwrap_or(5.0).to_radians();
+        let tolerances = &file.tolerances;
+        pose.marker_sigma_m =
+            self.marker_sigma_m.or(tolerances.position_sigma_m).unwrap_or(pose.marker_sigma_m);
+        pose.unit_sigma = self.power_spread.or(tolerances.power_sigma).unwrap_or(pose.unit_sigma);
+        pose.scale_sigma = of(self.scale_sigma, 0.01);
+        pose.missed = of(self.miss_rate, 0.02);
+        pose.use_brightness = self.brightness.unwrap_or(true);
+        settings
+    }
+}

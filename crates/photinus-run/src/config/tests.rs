@@ -1,0 +1,79 @@
+use super::*;
+
+fn told(text: &str) -> String {
+    Config::parse(text, "run.toml").unwrap_err().to_string()
+}
+
+const CAMERA: &str = "[[camera]]\nname = \"a\"\nsource = { dataset = \"rec\" }\n";
+
+/// A line of the example that is commented out and is no sentence: a key or a table.
+fn commented_out(line: &str) -> Option<&str> {
+    let bare = line.strip_prefix("# ")?;
+    let key = bare.split(" = ").next().filter(|key| *key != bare)?;
+    let is_key = key.chars().all(|letter| letter.is_ascii_lowercase() || letter == '_');
+    is_key.then_some(bare)
+}
+
+#[test]
+fn the_example_is_a_configuration_also_with_every_key_that_is_commented_out() {
+    Config::parse(EXAMPLE, "photinus.toml").unwrap();
+    let is_table = |line: &str| line.starts_with("# [") && line.contains(']');
+    let all = EXAMPLE.lines().map(|line| match commented_out(line) {
+        Some(bare) if !bare.starts_with("source") => bare,
+        _ if is_table(line) => &line[2..],
+        _ => line,
+    });
+    let all: Vec<&str> = all.collect();
+    let config = Config::parse(&all.join("\n"), "all.toml").unwrap();
+    assert!(config.wanted_exposure().is_some() && config.files().len() == 2);
+    let sources: Vec<&str> =
+        EXAMPLE.lines().filter_map(commented_out).filter(|bare| bare.starts_with("source")).collect();
+    assert!(sources.len() >= 7, "{sources:?}");
+    for source in sources {
+        let text = format!("[[camera]]\nname = \"a\"\n{source}\n");
+        Config::parse(&text, "t").unwrap_or_else(|error| panic!("{source}: {error}"));
+    }
+}
+
+#[test]
+fn unknown_keys_are_refused_with_their_line() {
+    let message = told(&format!("{CAMERA}[json]\nfiel = \"x\"\n"));
+    assert!(message.starts_with("run.toml, line 5: unknown key `fiel`, expected one of `file`"), "{message}");
+    let message = told(&format!("{CAMERA}[jsn]\nfile = \"x\"\n"));
+    assert!(message.contains("line 4: unknown key `jsn`"), "{message}");
+    let message = told("[[camera]]\nname = \"a\"\nsource = { dataste = \"rec\" }\n");
+    assert!(message.contains("line 3: unknown key `dataste`"), "{message}");
+}
+
+#[test]
+fn what_has_no_meaning_is_refused_with_what_to_do() {
+    assert!(told("").contains("there is no camera; add a table [[camera]]"));
+    assert!(told(&format!("{CAMERA}{CAMERA}")).contains("`camera[1].name`: cameras need names of their own"));
+    let of = |source: &str| told(&format!("[[camera]]\nname = \"a\"\nsource = {{ {source} }}\n"));
+    assert!(of("").contains("exactly one source"));
+    assert!(of("dataset = \"a\", tcp = \"b:1\"").contains("exactly one source"));
+    assert!(of("tcp = \"b:1\", camera = \"left\"").contains("do not go together"));
+    assert!(
+        told(&format!("{CAMERA}[exposure]\nreach_m = -1\nshortest_us = 1\nlongest_us = 2\n"))
+            .contains("`exposure`")
+    );
+}
+
+#[test]
+fn a_page_that_others_can_reach_needs_a_token() {
+    let page = |keys: &str| Config::parse(&format!("{CAMERA}[page]\n{keys}\n"), "run.toml");
+    assert_eq!(page("listen = \"127.0.0.1:8080\"").unwrap().page().unwrap().token, None);
+    assert!(page("listen = \"[::1]:8080\"").is_ok());
+    for open in ["listen = \"0.0.0.0:8080\"", "listen = \"192.168.1.5:80\"\ntoken = \"short\""] {
+        assert!(page(open).unwrap_err().to_string().contains("`page.token`"), "{open}");
+    }
+    assert!(page("listen = \"0.0.0.0:8080\"\ntoken = \"long enough\"").is_ok());
+}
+
+#[test]
+fn tables_of_protocols_are_handed_on() {
+    let config =
+        Config::parse(&format!("{CAMERA}[mavlink]\nto = \"udp\"\n[record]\nfile = \"x.mcap\"\n"), "t")
+            .unwrap();
+    assert_eq!(config.protocols().collect::<Vec<_>>(), ["record", "mavlink"]);
+}

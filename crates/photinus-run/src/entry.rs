@@ -1,0 +1,76 @@
+//! A frame on its way to a record of results.
+
+use std::time::Instant;
+
+use nalgebra::{Unit, Vector3};
+use photinus_io::frames::Frame;
+use photinus_io::image::{Conversion, GreyImage};
+use photinus_io::results::FrameRecord;
+
+/// A frame on its way to a record of results.
+#[derive(Clone, Debug)]
+pub struct Entry {
+    /// Number, time and source; the rest is filled in. Spots stand in it already when they came in place of pixels.
+    pub record: FrameRecord,
+    /// The pixels, unless spots came in their place.
+    pub image: Option<GreyImage>,
+    /// Which of the input's cameras took it.
+    pub camera: usize,
+    /// Direction of gravity (down) in the camera frame, where the source knows.
+    pub gravity: Option<Unit<Vector3<f64>>>,
+    /// What was done to the stored samples.
+    pub conversions: Vec<Conversion>,
+    /// When its exposure ended, or where nobody knows that, when it arrived, by the clock of this machine; `None` of what was recorded before. Its
+    /// `time_s` stays the camera's own.
+    pub taken: Option<Instant>,
+    /// How long it was exposed, s, where the source knows.
+    pub exposure_s: Option<f64>,
+    /// Frames of its camera that were taken and dropped since the one before.
+    pub dropped: u64,
+}
+
+impl Entry {
+    /// A frame of a file or a stream.
+    pub fn from_frame(frame: Frame) -> Self {
+        let record = FrameRecord {
+            frame: Some(frame.index),
+            camera: None,
+            time_s: frame.time_s,
+            latency_s: None,
+            tracks: Vec::new(),
+            source: frame.source,
+            incomplete: false,
+            spots: Vec::new(),
+            rejected: Vec::new(),
+            neighbours: Vec::new(),
+        };
+        Self {
+            gravity: frame.gravity,
+            conversions: frame.conversions,
+            ..Self::new(record, Some(frame.image))
+        }
+    }
+
+    /// Spots of another detector in place of a frame.
+    pub fn from_spots(record: FrameRecord) -> Self {
+        Self::new(FrameRecord { neighbours: Vec::new(), ..record }, None)
+    }
+
+    fn new(record: FrameRecord, image: Option<GreyImage>) -> Self {
+        Self {
+            record,
+            image,
+            camera: 0,
+            gravity: None,
+            conversions: Vec::new(),
+            taken: None,
+            exposure_s: None,
+            dropped: 0,
+        }
+    }
+
+    /// Its number, 0 where it has none.
+    pub fn number(&self) -> u64 {
+        self.record.frame.unwrap_or_default()
+    }
+}

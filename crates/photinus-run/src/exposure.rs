@@ -1,0 +1,165 @@
+//! How long to expose: so long that a marker at the farthest wanted distance is found, and no longer, so that the nearest stay measurable. The paper
+//! sets by exposure at which distance neighbours appear.
+//!
+//! The light of a marker falls with the square of its distance, and grows with the exposure: level above the background = k * exposure / distance^2, with
+//! a k that is learnt from located neighbours whose spots are not saturated. Before any was seen, nothing is changed.
+
+use photinus_io::results::{FrameRecord, NeighbourRecord};
+
+use crate::Entry;
+
+/// How many times the detector's contrast the farthest marker stands out: of two LEDs of an airframe one faces away by half.
+const MARGIN: f64 = 2.0;
+/// Share of a new k that is believed, per neighbour and frame.
+const LEARNT: f64 = 0.05;
+/// Exposures that differ by a smaller share are the same.
+const SAME: f64 = 0.05;
+/// Without any light of its own, a level that is nearly full says nothing of how bright a marker is.
+const FULL: u8 = 250;
+
+/// What is wanted of the exposure.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wanted {
+    /// Markers as far as this are to be found, m.
+    pub reach_m: f64,
+    /// The shortest and the longest exposure that the camera may be set to, us.
+    pub limits_us: [f64; 2],
+    /// Grey levels that a spot must stand out by to be found.
+    pub contrast: f64,
+    /// Every other frame is exposed for the nearest neighbour in place of the farthest.
+    pub alternate: bool,
+}
+
+/// Sets the exposure of one camera.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Exposure {
+    wanted: Wanted,
+    /// Level times m^2 per us.
+    k: Option<f64>,
+    nearest_m: Option<f64>,
+    told_us: Option<f64>,
+    frames: u64,
+}
+
+impl Exposure {
+    /// Nothing is known of the markers' light yet.
+    pub fn new(wanted: Wanted) -> Self {
+        Self { wanted, k: None, nearest_m: None, told_us: None, frames: 0 }
+    }
+
+    /// The exposure of the frames after this one, us, where it is to be another.
+    pub fn after(&mut self, entry: &Entry) -> Option<f64> {
+        let exposure_us = 1e6 * entry.exposure_s.filter(|exposure_s| *exposure_s > 0.0)?;
+        self.learn(&entry.record, exposure_us);
+        self.frames += 1;
+        let wished_us = self.wished()?;
+        let now_us = self.told_us.unwrap_or(exposure_us);
+        if (wished_us / now_us - 1.0).abs() < SAME {
+            return None;
+        }
+        self.told_us = Some(wished_us);
+        Some(wished_us)
+    }
+
+    /// The exposure that is wanted now, us; `None` before any neighbour was seen.
+    fn wished(&self) -> Option<f64> {
+        let Wanted { reach_m, limits_us, contrast, alternate } = self.wanted;
+        let far_us = MARGIN * contrast * reach_m * reach_m / self.k?;
+        let is_near = alternate && self.frames % 2 == 1;
+        // Half of full scale for the nearest.
+        let near_us = self.nearest_m.map(|nearest_m| 128.0 * nearest_m * nearest_m / self.k.unwrap_or(1.0));
+        let wished_us = near_us.filter(|_| is_near).map_or(far_us, |near_us| near_us.min(far_us));
+        Some(wished_us.clamp(limits_us[0], limits_us[1]))
+    }
+
+    fn learn(&mut self, record: &FrameRecord, exposure_us: f64) {
+        self.nearest_m =
+            record.neighbours.iter().filter_map(|neighbour| neighbour.distance_m.estimate).reduce(f64::min);
+        for neighbour in &record.neighbours {
+            let Some(k) = light(record, neighbour, exposure_us) else { continue };
+            self.k = Some(self.k.map_or(k, |known| known + LEARNT * (k - known)));
+        }
+    }
+}
+
+/// k of a neighbour: by the brightest of its spots that is not saturated.
+fn light(record: &FrameRecord, neighbour: &NeighbourRecord, exposure_us: f64) -> Option<f64> {
+    let distance_m = neighbour.distance_m.estimate?;
+    let spots = neighbour.spots.iter().filter_map(|&spot| record.spots.get(spot));
+    let levels = spots
+        .filter(|spot| spot.peak < FULL && spot.saturated_px == 0)
+        .map(|spot| f64::from(spot.peak) - spot.background);
+    let level = levels.reduce(f64::max).filter(|level| *level > 0.0)?;
+    Some(level * distance_m * distance_m / exposure_us)
+}
+
+#[cfg(test)]
+mod tests {
+    use photinus_io::results::ResultsReader;
+
+    use super::*;
+
+    const WANTED: Wanted =
+        Wanted { reach_m: 20.0, limits_us: [20.0, 10_000.0], contrast: 20.0, alternate: false };
+
+    /// What a camera sees of a marker: level = light * exposure / distance^2, cut at 255.
+    fn seen(light: f64, exposure_us: f64, distance_m: f64) -> Entry {
+        let level = (light * exposure_us / (distance_m * distance_m) + 10.0).min(255.0);
+        let line = format!(
+            r#"{{"spots":[{{"u_px":1,"v_px":1,"peak":{},"saturated_px":{},"background":10}}],"neighbours":[{{"airframe":"a","spots":[0],
+            "bearing":[0,0,1],"distance_m":{{"estimate":{distance_m},"sigma":0.1,"min":1,"max":99,"perpendicular":null,"inline":null}}}}]}}"#,
+            level.floor(),
+            u32::from(level >= 255.0)
+        )
+        .replace('\n', "");
+        let record = ResultsReader::new(line.as_bytes(), "t").next().unwrap().unwrap();
+        let spots = record.neighbours.clone();
+        let mut entry = Entry::from_spots(record);
+        entry.record.neighbours = spots;
+        entry.exposure_s = Some(1e-6 * exposure_us);
+        entry
+    }
+
+    /// Closes the loop over a marker that comes nearer, and gives the last exposure.
+    fn settled(light: f64, wanted: Wanted, first_us: f64, distance_m: f64) -> f64 {
+        let (mut control, mut exposure_us) = (Exposure::new(wanted), first_us);
+        for _ in 0..200 {
+            exposure_us = control.after(&seen(light, exposure_us, distance_m)).unwrap_or(exposure_us);
+        }
+        exposure_us
+    }
+
+    #[test]
+    fn a_marker_at_the_reach_stands_out_enough_whatever_its_light() {
+        for light in [5.0, 10.0, 50.0] {
+            for distance_m in [8.0, 15.0, 25.0] {
+                // It begins where the marker is found.
+                let first_us = 60.0 * distance_m * distance_m / light;
+                let exposure_us = settled(light, WANTED, first_us, distance_m);
+                let level = light * exposure_us / (WANTED.reach_m * WANTED.reach_m);
+                assert!((level / 40.0 - 1.0).abs() < 0.1, "light {light}, {distance_m} m: level {level}");
+            }
+        }
+    }
+
+    #[test]
+    fn limits_hold_and_a_sensor_that_only_sees_full_scale_teaches_nothing() {
+        assert!((settled(0.001, WANTED, 5000.0, 1.0) - 10_000.0).abs() < 1e-9);
+        let mut control = Exposure::new(WANTED);
+        assert_eq!(control.after(&seen(1e6, 1000.0, 3.0)), None);
+    }
+
+    #[test]
+    fn alternating_gives_the_nearest_a_shorter_exposure_every_other_frame() {
+        let mut control = Exposure::new(Wanted { alternate: true, ..WANTED });
+        let (mut exposure_us, mut set) = (200.0, Vec::new());
+        for _ in 0..100 {
+            exposure_us = control.after(&seen(10.0, exposure_us, 5.0)).unwrap_or(exposure_us);
+            set.push(exposure_us);
+        }
+        let last = &set[98..];
+        let (short_us, long_us) = (last[0].min(last[1]), last[0].max(last[1]));
+        assert!((10.0 * long_us / 400.0 / 40.0 - 1.0).abs() < 0.1, "{long_us}");
+        assert!((10.0 * short_us / 25.0 / 128.0 - 1.0).abs() < 0.1, "{short_us}");
+    }
+}

@@ -1,0 +1,87 @@
+//! How the vehicle moves, by what others measure while frames come in: enter rates and attitudes as they arrive, from any thread; leaves how a camera
+//! turned between two times, and where down is.
+//!
+//! Times are on the clock of the frames' `time_s`. Only the last seconds are kept.
+
+use std::collections::VecDeque;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use nalgebra::{UnitQuaternion, Vector3};
+
+/// What is kept, s.
+const KEPT_S: f64 = 5.0;
+/// What is kept of a source that sends without measure.
+const MOST: usize = 10_000;
+
+/// What the vehicle says of its motion. A clone is the same motion.
+#[derive(Clone, Debug, Default)]
+pub struct Motion(Arc<Mutex<Known>>);
+
+#[derive(Debug, Default)]
+struct Known {
+    rates: VecDeque<(f64, Vector3<f64>)>,
+    attitudes: VecDeque<(f64, UnitQuaternion<f64>)>,
+}
+
+impl Motion {
+    /// A gyro: rad/s against the world in the body frame. What is not later than the last one is left out.
+    pub fn rate(&self, time_s: f64, turn_rad_s: Vector3<f64>) {
+        if turn_rad_s.iter().all(|rate| rate.is_finite()) {
+            put(&mut self.known().rates, time_s, turn_rad_s);
+        }
+    }
+
+    /// An attitude world_from_body, world with z up. What is not later than the last one is left out.
+    pub fn attitude(&self, time_s: f64, world_from_body: UnitQuaternion<f64>) {
+        if world_from_body.coords.iter().all(|part| part.is_finite()) {
+            put(&mut self.known().attitudes, time_s, world_from_body);
+        }
+    }
+
+    /// The rates that are known, in the order of time.
+    pub fn rates(&self) -> Vec<(f64, Vector3<f64>)> {
+        self.known().rates.iter().copied().collect()
+    }
+
+    /// The attitudes that are known, in the order of time.
+    pub fn attitudes(&self) -> Vec<(f64, UnitQuaternion<f64>)> {
+        self.known().attitudes.iter().copied().collect()
+    }
+
+    fn known(&self) -> MutexGuard<'_, Known> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+fn put<T>(known: &mut VecDeque<(f64, T)>, time_s: f64, value: T) {
+    let is_later = known.back().is_none_or(|last| last.0 < time_s);
+    if !time_s.is_finite() || !is_later {
+        return;
+    }
+    known.push_back((time_s, value));
+    while known.len() > MOST || known.front().is_some_and(|first| first.0 < time_s - KEPT_S) {
+        known.pop_front();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_last_seconds_are_kept_in_order_and_nonsense_is_not() {
+        let motion = Motion::default();
+        for step in 0..20_000_u32 {
+            motion.rate(f64::from(step) * 1e-3, Vector3::x());
+        }
+        motion.rate(3.0, Vector3::y());
+        motion.rate(f64::NAN, Vector3::y());
+        motion.rate(30.0, Vector3::repeat(f64::NAN));
+        let rates = motion.rates();
+        assert!(rates.is_sorted_by(|a, b| a.0 < b.0));
+        assert_eq!((rates.len(), rates.last()), (5001, Some(&(19.999, Vector3::x()))));
+        let other = motion.clone();
+        (0..20_000_u32).for_each(|step| other.attitude(f64::from(step) * 1e-6, UnitQuaternion::identity()));
+        assert_eq!(motion.attitudes().len(), MOST);
+    }
+}

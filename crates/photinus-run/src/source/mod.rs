@@ -1,0 +1,49 @@
+//! Where frames come from, one after the other. A source is called by one thread that is its own.
+//!
+//! ```text
+//! recorded   a dataset folder, at its own pace or as fast as it is asked
+//! stream     Y4M or raw frames: standard input, a socket, the output of a command
+//! ```
+
+mod recorded;
+mod stream;
+
+use photinus_io::{Error, Result};
+
+use crate::Entry;
+
+pub use recorded::Recorded;
+pub use stream::{Carrier, Stream, StreamFormat, Times};
+
+/// What comes next.
+#[derive(Debug)]
+#[expect(clippy::large_enum_variant, reason = "a frame is what nearly always comes")]
+pub enum Next {
+    /// A frame: with the camera's own time in its record, and when it was taken by the clock of this machine.
+    Frame(Entry),
+    /// A frame that cannot be used; the one after it may be.
+    Bad(Error),
+    /// The source is gone; it may come back when it is opened anew.
+    Lost(Error),
+    /// There are no more frames.
+    End,
+}
+
+/// Frames of one camera.
+pub trait Source: Send {
+    /// What comes next, waited for.
+    fn next(&mut self) -> Next;
+
+    /// What ends a wait for the next frame from another thread, where something must: a child process is killed, a socket closed.
+    fn interrupter(&self) -> Option<Box<dyn Fn() + Send>> {
+        None
+    }
+
+    /// Exposes the frames that follow so long, us, and says what it was truly set to; `None` where exposure cannot be set.
+    fn expose(&mut self, _exposure_us: f64) -> Option<f64> {
+        None
+    }
+}
+
+/// Opens a source: at the beginning, and anew after it was lost.
+pub type Opener = Box<dyn FnMut() -> Result<Box<dyn Source>> + Send>;

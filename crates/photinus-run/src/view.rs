@@ -1,0 +1,150 @@
+//! What looks through one camera: enters a frame, leaves its record with neighbours, tracks and names, in the body frame where the mounting is known.
+
+use nalgebra::{Unit, Vector3};
+use photinus::airframe::Airframe;
+use photinus::camera::Camera;
+use photinus::frame::Mask;
+use photinus::locator::{Locator, LocatorError, Settings, Stage};
+use photinus::ranging::SpotCurve;
+use photinus::spots::Spot;
+use photinus_io::calibration::MountingFile;
+use photinus_io::{Error, Place, Result};
+
+use crate::watch::Watch;
+use crate::{Clock, Entry, Work};
+
+/// What looks through one camera.
+pub struct View {
+    /// The camera.
+    pub camera: Camera,
+    mounting: Option<MountingFile>,
+    locator: Locator,
+    watch: Option<Watch>,
+    airframe: String,
+    gravity: Option<Unit<Vector3<f64>>>,
+}
+
+impl View {
+    /// For neighbours that are built like `airframe`.
+    ///
+    /// # Errors
+    /// [`LocatorError`] when a setting has no meaning, or the mask is of another size.
+    pub fn new(
+        camera: Camera,
+        airframe: &Airframe,
+        curve: Option<SpotCurve>,
+        settings: Settings,
+        mask: Option<&Mask>,
+    ) -> std::result::Result<Self, LocatorError> {
+        let mut locator = Locator::new(camera.clone(), airframe, curve, settings)?;
+        locator.set_mask(mask.cloned())?;
+        let airframe = airframe.name().to_owned();
+        Ok(Self { camera, mounting: None, locator, watch: None, airframe, gravity: None })
+    }
+
+    /// It sits so on its vehicle, where that is known.
+    #[must_use]
+    pub fn mounted(self, mounting: Option<MountingFile>) -> Self {
+        Self { mounting, ..self }
+    }
+
+    /// Frames are followed from one to the next.
+    #[must_use]
+    pub fn following(self, watch: Watch) -> Self {
+        Self { watch: Some(watch), ..self }
+    }
+
+    /// Down in the camera frame in every frame, whatever the source says.
+    #[must_use]
+    pub fn level(self, gravity: Option<Unit<Vector3<f64>>>) -> Self {
+        Self { gravity, ..self }
+    }
+}
+
+impl Work for View {
+    fn fill(&mut self, entry: &mut Entry, clock: &mut Clock) -> Result<()> {
+        let live = || self.watch.as_ref()?.down(entry.record.time_s?);
+        entry.gravity = self.gravity.or(entry.gravity).or_else(live);
+        locate(entry, &mut self.locator, &self.airframe, clock)?;
+        if let Some(watch) = &mut self.watch {
+            watch.follow(entry, self.locator.located(), &self.airframe);
+            clock.lap("following");
+        }
+        if let Some(mounting) = &self.mounting {
+            entry.record.put_mounting(mounting);
+        }
+        Ok(())
+    }
+
+    fn learns(&self) -> bool {
+        // What is remembered of each frame depends on those before it.
+        true
+    }
+
+    fn learn(&mut self, entry: &mut Entry) {
+        // A frame of another size is refused, and teaches nothing.
+        let _ = self.fill(entry, &mut Clock::new());
+    }
+
+    fn remarks(&mut self) -> Vec<String> {
+        self.watch.as_mut().map_or_else(Vec::new, Watch::remarks)
+    }
+}
+
+/// The views of cameras that are mounted together: each entry says which one it is of.
+impl Work for Vec<View> {
+    fn fill(&mut self, entry: &mut Entry, clock: &mut Clock) -> Result<()> {
+        self[entry.camera].fill(entry, clock)
+    }
+
+    fn learns(&self) -> bool {
+        true
+    }
+
+    fn learn(&mut self, entry: &mut Entry) {
+        self[entry.camera].learn(entry);
+    }
+
+    fn remarks(&mut self) -> Vec<String> {
+        self.iter_mut().flat_map(View::remarks).collect()
+    }
+}
+
+/// Completes the record of a frame by itself.
+///
+/// # Errors
+/// [`Error`] when the frame is not of the camera's size.
+pub fn locate(entry: &mut Entry, locator: &mut Locator, airframe: &str, clock: &mut Clock) -> Result<()> {
+    let gravity = entry.gravity.as_ref();
+    let finished = &mut |stage| clock.lap(name(stage));
+    let located = match &entry.image {
+        Some(image) => locator.locate(&image.view(), gravity, finished).map_err(|error| {
+            let advice = "give the calibration of this camera at this resolution; frames are not scaled";
+            in_frame(Error::format(&entry.record.source, error.to_string()).advise(advice), entry)
+        })?,
+        None => {
+            let given = entry.record.spots.iter().map(|record| (Spot::from(record), record.signal));
+            let spots: Vec<(Spot, Option<u32>)> = given.collect();
+            locator.locate_signalled(&spots, gravity, finished)
+        }
+    };
+    entry.record.put_located(located, airframe);
+    Ok(())
+}
+
+/// Says which frame an error is about, where the file does not say it.
+pub fn in_frame(error: Error, entry: &Entry) -> Error {
+    match entry.record.frame {
+        Some(frame) => error.at(Place::Frame(frame)),
+        None => error,
+    }
+}
+
+fn name(stage: Stage) -> &'static str {
+    match stage {
+        Stage::Spots => "spots",
+        Stage::Bearings => "bearings",
+        Stage::Grouping => "grouping",
+        Stage::Posing => "posing",
+    }
+}

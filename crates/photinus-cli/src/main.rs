@@ -39,6 +39,7 @@ mod page;
 mod plots;
 mod pose_options;
 mod protocols;
+mod recover;
 mod reproduce;
 mod resume;
 mod run;
@@ -99,6 +100,7 @@ enum Command {
     Info(info::Args),
     Doctor(doctor::Args),
     Convert(convert::Args),
+    Recover(recover::Args),
     Simulate(simulate::Args),
     Inject(inject::Args),
     Evaluate(evaluate::Args),
@@ -139,6 +141,7 @@ impl Command {
             Self::Info(_)
             | Self::Doctor(_)
             | Self::Convert(_)
+            | Self::Recover(_)
             | Self::Demo(_)
             | Self::Completions(_)
             | Self::Man(_) => false,
@@ -154,6 +157,7 @@ impl Command {
             Self::Info(args) => info::run(args, terminal),
             Self::Doctor(args) => doctor::run(args, terminal),
             Self::Convert(args) => convert::run(args, terminal),
+            Self::Recover(args) => recover::run(args, terminal),
             Self::Simulate(args) => simulate::run(args, terminal),
             Self::Inject(args) => inject::run(args, terminal),
             Self::Evaluate(args) => evaluate::run(args, terminal),

@@ -25,14 +25,16 @@ pub(crate) enum Content {
     Codes,
     /// A video.
     Y4m,
+    /// An MCAP recording.
+    Recording,
     /// A folder of files.
     Folder,
 }
 
 /// Endings that say what a file is.
-const CLAIMED: [&str; 26] = [
-    "y4m", "mp4", "mov", "mkv", "avi", "webm", "gif", "png", "apng", "jpg", "jpeg", "bmp", "tif", "tiff",
-    "pgm", "ppm", "svg", "html", "pdf", "csv", "json", "jsonl", "toml", "yaml", "yml", "txt",
+const CLAIMED: [&str; 27] = [
+    "mcap", "y4m", "mp4", "mov", "mkv", "avi", "webm", "gif", "png", "apng", "jpg", "jpeg", "bmp", "tif",
+    "tiff", "pgm", "ppm", "svg", "html", "pdf", "csv", "json", "jsonl", "toml", "yaml", "yml", "txt",
 ];
 
 impl Content {
@@ -59,6 +61,7 @@ impl Content {
             Self::Yaml => &["yaml", "yml"],
             Self::OcamText | Self::Layout | Self::Codes => &["txt"],
             Self::Y4m => &["y4m"],
+            Self::Recording => &["mcap"],
             Self::Folder => &[],
         }
     }
@@ -74,6 +77,7 @@ impl Content {
             Self::Layout => "an LED layout",
             Self::Codes => "a book of blink words",
             Self::Y4m => "a Y4M video",
+            Self::Recording => "an MCAP recording",
             Self::Folder => "a folder",
         }
     }

@@ -10,6 +10,7 @@ use photinus_io::kind::{self, Kind};
 use photinus_io::results::ResultsReader;
 use photinus_io::video::RawFormat;
 use photinus_io::{Error, Result};
+use photinus_link::recording::Frames;
 use photinus_run::Entry;
 
 use crate::failure::Failure;
@@ -19,7 +20,7 @@ use crate::terminal::input_name;
 /// What the user says about frames.
 #[derive(Debug, clap::Args)]
 pub(crate) struct InputArgs {
-    /// A dataset folder, a folder of images, image files, a Y4M video, or - for Y4M on standard input
+    /// A dataset folder, a folder of images, image files, a Y4M video, an MCAP recording, or - for Y4M on standard input
     #[arg(value_name = "INPUT")]
     pub(crate) inputs: Vec<PathBuf>,
     /// The input is raw 8-bit grey frames of this size, nothing between them
@@ -35,7 +36,7 @@ pub(crate) struct InputArgs {
 /// What the user says about a dataset.
 #[derive(Clone, Debug, Default, clap::Args)]
 pub(crate) struct DatasetArgs {
-    /// Use the camera of this name only, of a dataset with several
+    /// Use the camera of this name only, of a dataset or recording with several
     #[arg(long, value_name = "NAME")]
     pub(crate) only: Option<String>,
     /// Allow a dataset to name images outside of its folder
@@ -183,6 +184,14 @@ impl InputArgs {
         Ok(input)
     }
 
+    /// The images of a recording; of several cameras, those that --only names.
+    fn recording(&self, path: &Path) -> std::result::Result<Input, Failure> {
+        let frames = Frames::open(path, self.dataset.only.as_deref()).map_err(Failure::input)?;
+        let count = frames.total();
+        let frames = Source::Frames(FrameSource::other(frames));
+        Ok(Input::new(frames, count, self.inputs.clone(), path))
+    }
+
     fn source(&self) -> std::result::Result<Input, Failure> {
         let video = |frames: Result<FrameSource>, path: &Path| {
             let frames = Source::Frames(frames.map_err(Failure::input)?);
@@ -204,6 +213,7 @@ impl InputArgs {
                 Kind::Video => video(FrameSource::y4m(open(path)?, path), path),
                 Kind::ImageFolder => images(&kind::images_in(path).map_err(Failure::input)?),
                 Kind::Dataset | Kind::Folder => self.dataset(path),
+                Kind::Recording => self.recording(path),
                 _ => images(&self.inputs),
             },
             paths => images(paths),
@@ -285,7 +295,7 @@ fn is_stream(path: &Path) -> bool {
 
 /// Whether an input is a video.
 fn is_video(path: &Path) -> std::result::Result<bool, Failure> {
-    Ok(is_stream(path) || Kind::of(path).map_err(Failure::input)? == Kind::Video)
+    Ok(is_stream(path) || matches!(Kind::of(path).map_err(Failure::input)?, Kind::Video | Kind::Recording))
 }
 
 /// Image files: all of them must be there, whatever they hold.

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use photinus_io::Error;
 use photinus_run::config::{Config, EXAMPLE};
 use photinus_run::health::{CameraHealth, Level, Notice, SinkHealth};
-use photinus_run::live::{self, Report};
+use photinus_run::live::{self, Camera, Report};
 use photinus_run::motion::Motion;
 use photinus_run::sink::Sink;
 
@@ -69,7 +69,7 @@ pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> Result<(), Failure> {
 fn fly(config: &Config, terminal: &mut Terminal) -> Result<(), Failure> {
     let motion = Motion::default();
     let cameras = config.cameras(&motion, &mut |text| terminal.note(text)).map_err(Failure::input)?;
-    let (sinks, page) = sinks(config, &motion)?;
+    let (sinks, page) = sinks(config, &motion, &cameras)?;
     if let Some(page) = page {
         terminal.note(format_args!("the page is at {page}"));
     }
@@ -95,6 +95,9 @@ fn is_whole(sink: &SinkHealth) -> bool {
 fn check(config: &Config, terminal: &mut Terminal) -> Result<(), Failure> {
     let motion = Motion::default();
     let cameras = config.cameras(&motion, &mut |text| terminal.note(text)).map_err(Failure::input)?;
+    // What was not there before is not left behind.
+    let new: Vec<PathBuf> = config.files().into_iter().filter(|path| !path.exists()).collect();
+    let (sinks, page) = sinks(config, &motion, &cameras)?;
     let mut wanting = 0;
     for camera in cameras {
         let name = camera.name.clone();
@@ -106,9 +109,6 @@ fn check(config: &Config, terminal: &mut Terminal) -> Result<(), Failure> {
             }
         }
     }
-    // What was not there before is not left behind.
-    let new: Vec<PathBuf> = config.files().into_iter().filter(|path| !path.exists()).collect();
-    let (sinks, page) = sinks(config, &motion)?;
     for sink in &sinks {
         terminal.result(format_args!("{}: ready", sink.name()))?;
     }
@@ -129,10 +129,10 @@ fn check(config: &Config, terminal: &mut Terminal) -> Result<(), Failure> {
 type Sinks = Vec<Box<dyn Sink>>;
 
 /// All sinks, and where the page is.
-fn sinks(config: &Config, motion: &Motion) -> Result<(Sinks, Option<String>), Failure> {
+fn sinks(config: &Config, motion: &Motion, cameras: &[Camera]) -> Result<(Sinks, Option<String>), Failure> {
     let mut sinks = config.sinks().map_err(Failure::input)?;
     for table in config.protocols() {
-        sinks.extend(protocols::sinks(config, table, motion)?);
+        sinks.extend(protocols::sinks(config, table, motion, cameras)?);
     }
     let (page, address) = protocols::page(config)?.unzip();
     sinks.extend(page);

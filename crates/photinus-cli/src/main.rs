@@ -40,6 +40,7 @@ mod page;
 mod plots;
 mod pose_options;
 mod protocols;
+mod recover;
 mod reproduce;
 mod resume;
 mod run;
@@ -103,6 +104,7 @@ enum Command {
     Info(info::Args),
     Doctor(doctor::Args),
     Convert(convert::Args),
+    Recover(recover::Args),
     Simulate(simulate::Args),
     Swarm(swarm::Args),
     Inject(inject::Args),
@@ -145,6 +147,7 @@ impl Command {
             Self::Info(_)
             | Self::Doctor(_)
             | Self::Convert(_)
+            | Self::Recover(_)
             | Self::Demo(_)
             | Self::Completions(_)
             | Self::Man(_) => false,
@@ -160,6 +163,7 @@ impl Command {
             Self::Info(args) => info::run(args, terminal),
             Self::Doctor(args) => doctor::run(args, terminal),
             Self::Convert(args) => convert::run(args, terminal),
+            Self::Recover(args) => recover::run(args, terminal),
             Self::Simulate(args) => simulate::run(args, terminal),
             Self::Swarm(args) => swarm::run(args, terminal),
             Self::Inject(args) => inject::run(args, terminal),

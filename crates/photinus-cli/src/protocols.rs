@@ -1,14 +1,21 @@
 //! Sinks that are linked elsewhere: enters a table of the configuration, leaves what takes results there. Each protocol is a feature of this program.
 
-use photinus_io::Error;
+use photinus_io::{Error, table};
+use photinus_link::config::{Camera, Record};
+use photinus_link::messages::Viewpoint;
 use photinus_run::config::Config;
+use photinus_run::live;
 use photinus_run::motion::Motion;
 use photinus_run::sink::Sink;
+use serde::Deserialize;
 
 use crate::failure::Failure;
 
+/// A sink, and where it can be looked at.
+type Shown = (Box<dyn Sink>, String);
+
 /// The page, if one is asked for, and its address.
-pub(crate) fn page(config: &Config) -> Result<Option<(Box<dyn Sink>, String)>, Failure> {
+pub(crate) fn page(config: &Config) -> Result<Option<Shown>, Failure> {
     let Some(address) = config.page() else { return Ok(None) };
     #[cfg(feature = "page")]
     {
@@ -24,10 +31,49 @@ pub(crate) fn page(config: &Config) -> Result<Option<(Box<dyn Sink>, String)>, F
     }
 }
 
+/// The tables of links, each read by its own crate; a program without one of them refuses its table.
+#[derive(Deserialize)]
+struct Tables {
+    record: Option<Record>,
+    #[cfg(feature = "ros2")]
+    ros2: Option<photinus_link::config::Ros2>,
+    #[cfg(feature = "mavlink")]
+    mavlink: Option<photinus_link::config::Mavlink>,
+}
+
 /// The sinks of a table such as `[mavlink]`; what arrives of the vehicle's own motion goes to `motion`.
-pub(crate) fn sinks(config: &Config, table: &str, _motion: &Motion) -> Result<Vec<Box<dyn Sink>>, Failure> {
-    // Each protocol that is linked has a line here, behind its feature.
-    Err(missing(config, table))
+pub(crate) fn sinks(
+    config: &Config,
+    table: &str,
+    motion: &Motion,
+    cameras: &[live::Camera],
+) -> Result<Option<Box<dyn Sink>>, Failure> {
+    let tables: Tables = table::parse(config.text(), config.path()).map_err(Failure::input)?;
+    let cameras: Vec<Camera> = cameras.iter().map(linked).collect();
+    #[cfg(not(feature = "mavlink"))]
+    let _ = motion;
+    let opened = match table {
+        "record" => tables.record.map(|record| {
+            let file = config.located(&record.file);
+            Record { file, ..record }.open(&cameras)
+        }),
+        #[cfg(feature = "ros2")]
+        "ros2" => tables.ros2.map(|ros2| ros2.open(&cameras)),
+        #[cfg(feature = "mavlink")]
+        "mavlink" => tables.mavlink.map(|mavlink| mavlink.open(&cameras, motion.clone())),
+        _ => return Err(missing(config, table)),
+    };
+    opened.transpose().map_err(Failure::input)
+}
+
+/// A camera as links need to know it.
+fn linked(camera: &live::Camera) -> Camera {
+    Camera {
+        view: Viewpoint::new(Some(&camera.name), None),
+        lens: camera.view.camera.clone(),
+        mask: camera.view.mask().cloned(),
+        mounting: camera.view.mounting().copied(),
+    }
 }
 
 fn missing(config: &Config, table: &str) -> Failure {

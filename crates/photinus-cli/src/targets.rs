@@ -159,6 +159,21 @@ impl FileTarget {
         WholeFile::create(&self.path, self.existing)
     }
 
+    /// Where a file is made that another crate writes, until [`Self::take`].
+    pub(crate) fn part(&self) -> PathBuf {
+        let mut name = self.path.clone().into_os_string();
+        name.push(".part");
+        name.into()
+    }
+
+    /// What was made at [`Self::part`] is whole: gives it its name.
+    ///
+    /// # Errors
+    /// When the system refuses.
+    pub(crate) fn take(&self) -> Result<()> {
+        std::fs::rename(self.part(), &self.path).map_err(|error| Error::io(&self.path, error))
+    }
+
     /// Writes all of it at once.
     ///
     /// # Errors

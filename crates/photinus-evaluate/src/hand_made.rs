@@ -51,6 +51,7 @@ pub(crate) fn found_at(position_m: [f64; 3]) -> NeighbourRecord {
         position_body_covariance_m2: None,
         orientation_xyzw: None,
         orientation_covariance_rad2: None,
+        position_orientation_covariance_m_rad: None,
         probability: None,
         misfit: None,
         runner_up: None,
@@ -78,6 +79,7 @@ pub(crate) fn track(track: u64, position_m: [f64; 3]) -> TrackRecord {
         velocity_covariance_m2_s2: covariance,
         orientation_xyzw: [0.0, 0.0, 0.0, 1.0],
         orientation_covariance_rad2: covariance,
+        position_orientation_covariance_m_rad: None,
     }
 }
 

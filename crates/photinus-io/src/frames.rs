@@ -40,9 +40,15 @@ enum Kind {
     Dataset { dataset: Dataset, camera: usize, next: usize },
     Y4m { frames: Y4mFrames<Stream>, name: String },
     Raw { frames: RawFrames<Stream>, name: String },
+    Other(Box<dyn Iterator<Item = Result<Frame>> + Send>),
 }
 
 impl FrameSource {
+    /// Frames of a format that another crate reads.
+    pub fn other(frames: impl Iterator<Item = Result<Frame>> + Send + 'static) -> Self {
+        Self(Kind::Other(Box::new(frames)))
+    }
+
     /// Image files, numbered as they are listed; their times are not known.
     pub fn images(paths: Vec<PathBuf>) -> Self {
         Self(Kind::Images { paths, next: 0 })
@@ -94,7 +100,7 @@ impl FrameSource {
                 let rows = dataset.cameras().get(*camera).map_or(&[][..], |camera| &camera.frames);
                 (next, rows.partition_point(|row| row.frame < frame))
             }
-            Kind::Y4m { .. } | Kind::Raw { .. } => return 0,
+            Kind::Y4m { .. } | Kind::Raw { .. } | Kind::Other(_) => return 0,
         };
         let passed = target.saturating_sub(*next);
         *next += passed;
@@ -123,6 +129,7 @@ impl Iterator for FrameSource {
             Kind::Raw { frames, name } => {
                 Some(frames.next()?.map(|frame| from_video(frame, name, Vec::new())))
             }
+            Kind::Other(frames) => frames.next(),
         }
     }
 }

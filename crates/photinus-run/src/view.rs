@@ -18,6 +18,7 @@ pub struct View {
     /// The camera.
     pub camera: Camera,
     mounting: Option<MountingFile>,
+    mask: Option<Mask>,
     locator: Locator,
     watch: Option<Watch>,
     airframe: String,
@@ -39,7 +40,18 @@ impl View {
         let mut locator = Locator::new(camera.clone(), airframe, curve, settings)?;
         locator.set_mask(mask.cloned())?;
         let airframe = airframe.name().to_owned();
-        Ok(Self { camera, mounting: None, locator, watch: None, airframe, gravity: None })
+        let mask = mask.cloned();
+        Ok(Self { camera, mounting: None, mask, locator, watch: None, airframe, gravity: None })
+    }
+
+    /// How it sits on its vehicle, where that is known.
+    pub fn mounting(&self) -> Option<&MountingFile> {
+        self.mounting.as_ref()
+    }
+
+    /// Where it does not look.
+    pub fn mask(&self) -> Option<&Mask> {
+        self.mask.as_ref()
     }
 
     /// It sits so on its vehicle, where that is known.

@@ -7,7 +7,7 @@ mod paper;
 
 use std::f64::consts::TAU;
 
-use nalgebra::{Matrix2, Rotation3, Unit, Vector3};
+use nalgebra::{Matrix2, Matrix3, Rotation3, SMatrix, Unit, UnitQuaternion, Vector3};
 use photinus::airframe::{Airframe, Led};
 use photinus::camera::{Bearing, Camera, Pixel};
 use photinus::locator::{Located, Locator, Settings};
@@ -200,4 +200,52 @@ fn signals_that_tell_no_turn_leave_the_pose_as_it_is() {
             assert!((told_m / anonymous_m - 1.0).abs() < 0.02, "{told_m} {anonymous_m}");
         }
     }
+}
+
+/// How errors of position and attitude go together, each over its own claimed spread, is how they are said to: the slope of what is seen
+/// over what is claimed is that of the spreads themselves. A claim of nothing, or of the wrong frame or sign, has none. Of an airframe that no turn
+/// leaves the same: those of others are told modulo their turns.
+#[test]
+fn position_and_attitude_covary_as_is_claimed() {
+    let camera = camera();
+    let airframe = asymmetric();
+    let mut locator = Locator::new(camera.clone(), &airframe, None, settings()).expect("a locator");
+    let mut rng = Pcg64::new(8, 9);
+    let (mut count, mut seen, mut claimed, mut alone, mut nees) = (0.0, 0.0, 0.0, 0.0, 0.0);
+    for _ in 0..600 {
+        let view = View::draw(&mut rng);
+        let spots = view.spots(&airframe, &camera, &mut rng);
+        if spots.len() < 3 {
+            continue;
+        }
+        locator.forget();
+        let located = locator.locate_signalled(&spots, Some(&Vector3::y_axis()), &mut |_| ());
+        let [neighbour] = located.neighbours.as_slice() else { continue };
+        let (position, turned) = (neighbour.position.expect("known"), neighbour.orientation.expect("known"));
+        let off_m = view.position_m - position.mean_m;
+        let between = turned.camera_from_body.inverse() * view.camera_from_body;
+        let off_rad = UnitQuaternion::from_rotation_matrix(&between).scaled_axis();
+        let of_position = position.covariance_m2.cholesky().expect("a covariance").l();
+        let of_turn = turned.covariance_rad2.cholesky().expect("a covariance").l();
+        let over = |root: &Matrix3<f64>, what: Vector3<f64>| {
+            root.solve_lower_triangular(&what).expect("it is regular")
+        };
+        let half = of_position.solve_lower_triangular(&turned.position_covariance_m_rad).expect("regular");
+        let told = of_turn.solve_lower_triangular(&half.transpose()).expect("regular").transpose();
+        let (off_m, off_rad) = (over(&of_position, off_m), over(&of_turn, off_rad));
+        count += 1.0;
+        seen += (off_m * off_rad.transpose()).component_mul(&told).sum();
+        claimed += told.norm_squared();
+        alone += (off_m.norm_squared() + off_rad.norm_squared()) / 6.0;
+        let mut whole = SMatrix::<f64, 6, 6>::identity();
+        whole.fixed_view_mut::<3, 3>(0, 3).copy_from(&told);
+        whole.fixed_view_mut::<3, 3>(3, 0).copy_from(&told.transpose());
+        let off = SMatrix::<f64, 6, 1>::from_iterator(off_m.iter().chain(&off_rad).copied());
+        let whole = whole.cholesky().expect("position and attitude together have a covariance");
+        nees += off.dot(&whole.solve(&off));
+    }
+    let (slope, nees) = (seen / claimed * count / alone, nees / count);
+    println!("{}: slope {slope:.2}, claimed {:.2}, NEES {nees:.2}", airframe.name(), claimed / count);
+    assert!(count > 100.0 && claimed > 0.2 * count, "{count} {claimed}");
+    assert!((0.85..1.15).contains(&slope) && (3.5..7.5).contains(&nees), "{slope} {nees}");
 }

@@ -1,4 +1,4 @@
-//! Frames to a Y4M video or to a dataset folder.
+//! Frames to a Y4M video, to an MCAP recording or to a dataset folder.
 
 use std::io::BufWriter;
 use std::path::{Path, PathBuf};
@@ -6,6 +6,8 @@ use std::path::{Path, PathBuf};
 use photinus_io::video::Y4mWriter;
 use photinus_io::whole::WholeFile;
 use photinus_io::{Cause, Error};
+use photinus_link::messages::Viewpoint;
+use photinus_link::recording::{Located, Recorder, Settings};
 
 use super::Format;
 use super::dataset::DatasetSink;
@@ -51,6 +53,7 @@ impl FrameArgs {
 /// Where frames go.
 enum Sink {
     Video { target: FileTarget, writer: Option<Y4mWriter<BufWriter<WholeFile>>>, rate: (u32, u32) },
+    Recording { target: FileTarget, recorder: Box<Recorder>, view: Viewpoint },
     Dataset(DatasetSink),
 }
 
@@ -76,6 +79,15 @@ pub(super) fn convert(
             rate_hz,
             dataset.zip(input.cameras.first()),
         )?),
+        Format::Mcap => {
+            let target = targets.file(out, Content::Recording)?;
+            let camera = input.cameras.first();
+            let exposure_us = args.exposure_us.or(camera.map(|camera| camera.exposure_us));
+            let exposure_s = exposure_us.map(|us| us * 1e-6);
+            let view = Viewpoint::new(camera.and_then(|camera| camera.name.as_deref()), exposure_s);
+            let recorder = Recorder::create(target.part(), Settings::default(), None);
+            Sink::Recording { target, recorder: Box::new(recorder.map_err(Failure::running)?), view }
+        }
         _ => Sink::Video {
             target: targets.file(out, Content::Y4m)?,
             writer: None,
@@ -141,6 +153,11 @@ impl Sink {
     fn write(&mut self, entry: &Entry) -> photinus_io::Result<()> {
         match self {
             Self::Dataset(dataset) => dataset.write(entry),
+            Self::Recording { recorder, view, .. } => {
+                let image = entry.image.as_ref().map(|image| image.view());
+                let frame = Located { record: &entry.record, image, gravity: entry.gravity };
+                recorder.frame(&frame, view, view.header(entry.record.time_s).stamp.nanoseconds())
+            }
             Self::Video { target, writer, rate } => {
                 let Some(image) = &entry.image else { return Ok(()) };
                 let frame = image.view();
@@ -165,6 +182,10 @@ impl Sink {
                 let buffered = writer.finish()?;
                 let refuse = |error| Error::io(target.path(), error);
                 buffered.into_inner().map_err(|error| refuse(error.into_error()))?.keep()
+            }
+            Self::Recording { target, recorder, .. } => {
+                recorder.finish()?;
+                target.take()
             }
             Self::Dataset(dataset) => dataset.keep(),
         }

@@ -38,6 +38,9 @@ Examples:
       --airframe quad.toml --exposure-us 1000 --gravity gravity.csv
   photinus convert *.png video.y4m --rate 60
   photinus convert recording copy --camera recalibrated.txt
+  # a bag of ROS 2, and frames out of one
+  photinus convert recording flight.mcap
+  photinus convert flight.mcap video.y4m
 
 What the new format cannot hold is told.";
 
@@ -45,7 +48,7 @@ What the new format cannot hold is told.";
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Args {
-    /// What to convert: a camera, an airframe, results, or frames (a dataset, a video, images)
+    /// What to convert: a camera, an airframe, results, or frames (a dataset, a video, a recording, images)
     #[arg(value_name = "IN", required = true)]
     inputs: Vec<PathBuf>,
     /// Where to write; its extension tells the format, none means a dataset folder
@@ -79,6 +82,8 @@ pub(crate) enum Format {
     Csv,
     /// Frames as a video
     Y4m,
+    /// Frames as an MCAP recording, a bag of ROS 2
+    Mcap,
     /// Frames as a dataset folder
     Dataset,
 }
@@ -94,7 +99,7 @@ pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> Result<(), Failure> {
     if args.out.as_os_str() == "-" {
         return Err(Failure::Input("standard output: convert writes files; name one".to_owned()));
     }
-    let is_frames = matches!(format, Format::Y4m | Format::Dataset);
+    let is_frames = matches!(format, Format::Y4m | Format::Mcap | Format::Dataset);
     if let (false, [other, ..]) = (is_frames, others) {
         return Err(Failure::Input(format!(
             "{}: only frames are converted several at a time",
@@ -142,13 +147,14 @@ fn format(args: &Args, kind: Kind) -> Result<Format, Failure> {
         Some("toml") => Ok(Format::Toml),
         Some("csv") => Ok(Format::Csv),
         Some("y4m") => Ok(Format::Y4m),
+        Some("mcap") => Ok(Format::Mcap),
         Some("yaml" | "yml") => Err(Failure::Input(format!(
             "{}: cameras of several programs end in .yaml; choose --to kalibr, --to ros or --to uvdar",
             args.out.display()
         ))),
         None => Ok(Format::Dataset),
         Some(other) => Err(Failure::Input(format!(
-            "{}: `.{other}` tells no format that is written; end it in .txt, .toml, .yaml, .csv or .y4m, or give --to",
+            "{}: `.{other}` tells no format that is written; end it in .txt, .toml, .yaml, .csv, .y4m or .mcap, or give --to",
             args.out.display()
         ))),
     }
@@ -164,6 +170,7 @@ fn name(format: Format) -> &'static str {
         Format::Layout => "an LED layout",
         Format::Csv => "CSV",
         Format::Y4m => "a Y4M video",
+        Format::Mcap => "an MCAP recording",
         Format::Dataset => "a dataset folder",
     }
 }
@@ -175,7 +182,7 @@ fn choices(kind: Kind, path: &Path) -> String {
         Kind::Camera(_) => "choose --to toml, ocam, kalibr, ros or uvdar".to_owned(),
         Kind::Results => "choose --to csv".to_owned(),
         Kind::DatasetTable => "name its folder instead".to_owned(),
-        _ if kind.holds_frames() => "choose --to y4m or --to dataset".to_owned(),
+        _ if kind.holds_frames() => "choose --to y4m, mcap or dataset".to_owned(),
         _ => kind.remedy(path).unwrap_or_else(|| "name a camera, an airframe, results, or frames".to_owned()),
     }
 }

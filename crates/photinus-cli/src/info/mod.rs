@@ -6,6 +6,7 @@ mod dataset;
 mod frames;
 mod optics;
 mod own;
+mod recording;
 mod records;
 mod tables;
 
@@ -108,6 +109,7 @@ fn report(path: &Path) -> Result<Report> {
         Kind::Image => frames::image(path),
         Kind::ImageFolder => frames::folder(path),
         Kind::Video => frames::video(path),
+        Kind::Recording => recording::report(path),
         Kind::Results => records::results(path),
         Kind::SpotCurve => records::spot_curve(path),
         Kind::Truth => records::truth(path),

@@ -53,6 +53,7 @@ fn neighbour(spots: Vec<usize>, bearing: Vector3<f64>, distance_m: Distance) -> 
         position_body_covariance_m2: None,
         orientation_xyzw: None,
         orientation_covariance_rad2: None,
+        position_orientation_covariance_m_rad: None,
         probability: None,
         misfit: None,
         runner_up: None,
@@ -240,6 +241,7 @@ fn track(position_m: [f64; 3]) -> TrackRecord {
         velocity_covariance_m2_s2: covariance,
         orientation_xyzw: [0.0, 0.0, 0.0, 1.0],
         orientation_covariance_rad2: covariance,
+        position_orientation_covariance_m_rad: None,
     }
 }
 

@@ -27,6 +27,7 @@ mod narrow_frames;
 mod odd_input;
 mod overlays;
 mod real_photos;
+mod recording;
 mod reproduce;
 mod resume;
 mod rig;

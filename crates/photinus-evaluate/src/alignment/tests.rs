@@ -87,6 +87,7 @@ fn record(number: u64, time_s: f64, place: &Vector3<f64>, sigma_m: f64) -> Frame
         velocity_covariance_m2_s2: None,
         orientation_xyzw: None,
         orientation_covariance_rad2: None,
+        position_orientation_covariance_m_rad: None,
         probability: None,
         misfit: None,
         runner_up: None,

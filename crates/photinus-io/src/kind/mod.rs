@@ -40,6 +40,8 @@ pub enum Kind {
     Image,
     /// A Y4M video.
     Video,
+    /// An MCAP recording, such as a bag of ROS 2.
+    Recording,
     /// A file of other programs that Photinus does not read.
     Foreign(Foreign),
     /// A camera.
@@ -99,8 +101,6 @@ pub enum Foreign {
     Avi,
     /// A ROS 1 bag.
     RosBag,
-    /// MCAP, the bags of ROS 2.
-    Mcap,
     /// A database, as older bags of ROS 2 are.
     Sqlite,
     /// gzip.
@@ -188,7 +188,7 @@ impl Kind {
 
     /// Whether frames can be read from it.
     pub fn holds_frames(self) -> bool {
-        matches!(self, Self::Dataset | Self::ImageFolder | Self::Image | Self::Video)
+        matches!(self, Self::Dataset | Self::ImageFolder | Self::Image | Self::Video | Self::Recording)
     }
 
     /// Refuses this file where another kind is `wanted`, such as "a camera"; `known` is what such files look like.
@@ -214,10 +214,12 @@ impl Kind {
     pub fn remedy(self, path: &Path) -> Option<String> {
         match self {
             Self::Foreign(Foreign::Mp4 | Foreign::Matroska | Foreign::Avi) => Some(decoding(path)),
-            Self::Foreign(Foreign::RosBag | Foreign::Mcap | Foreign::Sqlite) => Some(
-                "export its frames as images, its odometry as the odometry.csv of docs/file-formats.md"
-                    .to_owned(),
+            Self::Foreign(Foreign::RosBag | Foreign::Sqlite) => Some(
+                "make it an MCAP recording with `rosbags-convert` of the Python package rosbags".to_owned(),
             ),
+            Self::Recording => {
+                Some("its odometry goes into the odometry.csv of docs/file-formats.md".to_owned())
+            }
             Self::Foreign(Foreign::Gzip | Foreign::Zip) => Some("unpack it first".to_owned()),
             Self::Page | Self::Drawing => Some("open it in a browser".to_owned()),
             Self::Folder => {
@@ -266,6 +268,7 @@ impl fmt::Display for Kind {
             Self::ImageFolder => "a folder of images",
             Self::Folder => "a folder without frames",
             Self::Image => "an image",
+            Self::Recording => "an MCAP recording",
             Self::Video => "a Y4M video",
             Self::Foreign(foreign) => foreign.what(),
             Self::Camera(CameraFormat::OcamText) => "a camera in OCamCalib text",
@@ -308,7 +311,6 @@ impl Foreign {
             Self::Matroska => "a Matroska video",
             Self::Avi => "an AVI video",
             Self::RosBag => "a ROS bag",
-            Self::Mcap => "an MCAP recording",
             Self::Sqlite => "an SQLite database, such as a bag of ROS 2",
             Self::Gzip => "a gzip archive",
             Self::Zip => "a ZIP archive",

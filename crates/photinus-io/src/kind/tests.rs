@@ -13,7 +13,7 @@ fn each_kind_is_told_by_its_content() {
         (b"\x1a\x45\xdf\xa3", Kind::Foreign(Foreign::Matroska)),
         (b"RIFF\0\0\0\0AVI LIST", Kind::Foreign(Foreign::Avi)),
         (b"#ROSBAG V2.0\n", Kind::Foreign(Foreign::RosBag)),
-        (b"\x89MCAP0\r\n", Kind::Foreign(Foreign::Mcap)),
+        (b"\x89MCAP0\r\n", Kind::Recording),
         (b"\x1f\x8b\x08", Kind::Foreign(Foreign::Gzip)),
         (b"a\0b", Kind::Binary),
         (b"\xfe\xff", Kind::Binary),

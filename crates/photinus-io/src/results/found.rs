@@ -71,6 +71,7 @@ impl TrackRecord {
             velocity_covariance_m2_s2: rows(&track.velocity_covariance_m2_s2),
             orientation_xyzw: xyzw(&track.camera_from_body),
             orientation_covariance_rad2: rows(&track.orientation_covariance_rad2),
+            position_orientation_covariance_m_rad: Some(rows(&track.position_orientation_covariance_m_rad)),
         }
     }
 }
@@ -94,6 +95,8 @@ impl NeighbourRecord {
             position_body_covariance_m2: None,
             orientation_xyzw: orientation.map(|turned| xyzw(&turned.camera_from_body)),
             orientation_covariance_rad2: orientation.map(|turned| rows(&turned.covariance_rad2)),
+            position_orientation_covariance_m_rad: orientation
+                .map(|turned| rows(&turned.position_covariance_m_rad)),
             probability: Some(neighbour.probability),
             misfit: Some(Misfit {
                 chi2: neighbour.misfit.chi_square,
@@ -122,6 +125,8 @@ impl From<&Mode> for ModeRecord {
             position_m: mode.pose.position_m.into(),
             position_covariance_m2: rows(&mode.position_covariance_m2),
             orientation_xyzw: Some(xyzw(&mode.pose.camera_from_body)),
+            orientation_covariance_rad2: Some(rows(&mode.orientation_covariance_rad2)),
+            position_orientation_covariance_m_rad: Some(rows(&mode.position_orientation_covariance_m_rad)),
         }
     }
 }

@@ -81,6 +81,9 @@ pub struct TrackRecord {
     pub orientation_xyzw: [f64; 4],
     /// Covariance of the attitude as a small rotation in the body frame, rad^2.
     pub orientation_covariance_rad2: [[f64; 3]; 3],
+    /// Covariance of the position (rows) with that rotation (columns), m rad.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub position_orientation_covariance_m_rad: Option<[[f64; 3]; 3]>,
 }
 
 /// Who a track may be.
@@ -152,6 +155,9 @@ pub struct NeighbourRecord {
     /// Covariance of the attitude as a small rotation in the body frame, the third axis yaw, rad^2.
     #[serde(default)]
     pub orientation_covariance_rad2: Option<[[f64; 3]; 3]>,
+    /// Covariance of the position (rows) with that rotation (columns), m rad.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub position_orientation_covariance_m_rad: Option<[[f64; 3]; 3]>,
     /// How likely it is there at all, 0 to 1.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub probability: Option<f64>,
@@ -215,4 +221,10 @@ pub struct Mode {
     /// Attitude, camera_from_body as x, y, z, w.
     #[serde(default)]
     pub orientation_xyzw: Option<[f64; 4]>,
+    /// Covariance of the attitude as a small rotation in the body frame, rad^2.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub orientation_covariance_rad2: Option<[[f64; 3]; 3]>,
+    /// Covariance of the position (rows) with that rotation (columns), m rad.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub position_orientation_covariance_m_rad: Option<[[f64; 3]; 3]>,
 }

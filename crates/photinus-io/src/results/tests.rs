@@ -50,6 +50,7 @@ fn neighbour() -> NeighbourRecord {
         position_body_covariance_m2: None,
         orientation_xyzw: None,
         orientation_covariance_rad2: None,
+        position_orientation_covariance_m_rad: None,
         probability: None,
         misfit: None,
         runner_up: None,

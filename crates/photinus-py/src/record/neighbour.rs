@@ -120,6 +120,16 @@ impl Neighbour {
         self.told().orientation_covariance_rad2.map(|covariance| matrix(py, covariance)).transpose()
     }
 
+    /// Covariance of the position (rows) with that rotation (columns), (3, 3), m rad.
+    #[getter]
+    fn position_orientation_covariance_m_rad<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
+        let covariance = self.told().position_orientation_covariance_m_rad;
+        covariance.map(|covariance| matrix(py, covariance)).transpose()
+    }
+
     /// How likely it is there at all, 0 to 1.
     #[getter]
     fn probability(&self) -> Option<f64> {
@@ -247,5 +257,23 @@ impl Mode {
     #[getter]
     fn orientation_xyzw<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
         self.0.orientation_xyzw.map(|xyzw| vector(py, xyzw))
+    }
+
+    /// Covariance of the attitude as a small rotation in the body frame, (3, 3), rad^2.
+    #[getter]
+    fn orientation_covariance_rad2<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
+        self.0.orientation_covariance_rad2.map(|covariance| matrix(py, covariance)).transpose()
+    }
+
+    /// Covariance of the position (rows) with that rotation (columns), (3, 3), m rad.
+    #[getter]
+    fn position_orientation_covariance_m_rad<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
+        self.0.position_orientation_covariance_m_rad.map(|covariance| matrix(py, covariance)).transpose()
     }
 }

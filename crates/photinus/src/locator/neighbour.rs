@@ -38,6 +38,8 @@ pub struct Orientation {
     pub camera_from_body: Rotation3<f64>,
     /// Covariance as a small rotation in the body frame (its third axis is yaw), rad^2.
     pub covariance_rad2: Matrix3<f64>,
+    /// Covariance of the position (rows) with that rotation (columns), m rad.
+    pub position_covariance_m_rad: Matrix3<f64>,
 }
 
 /// The likeliest other explanation of a neighbour's observations.

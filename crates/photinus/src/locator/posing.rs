@@ -177,11 +177,8 @@ impl Poser {
     ) {
         let Posterior { summary, modes, markers, log_evidence, misfit, worst_sigma, log_power } =
             self.estimator.posterior();
-        let Some(Summary { pose, mut position_covariance_m2, orientation_covariance_rad2, mut distance }) =
-            *summary
-        else {
-            return;
-        };
+        let Some(summary) = *summary else { return };
+        let Summary { pose, mut position_covariance_m2, mut distance, .. } = summary;
         let length_m = pose.position_m.norm();
         let (of_position_m2, of_distance_m2) = of_calibration(context.sightings, group, &pose.position_m);
         let of_scale = self.scale_sigma * self.scale_sigma;
@@ -200,7 +197,8 @@ impl Poser {
             }),
             orientation: Some(Orientation {
                 camera_from_body: pose.camera_from_body,
-                covariance_rad2: orientation_covariance_rad2,
+                covariance_rad2: summary.orientation_covariance_rad2,
+                position_covariance_m_rad: summary.position_orientation_covariance_m_rad,
             }),
             misfit: *misfit,
             worst_sigma: *worst_sigma,

@@ -81,15 +81,9 @@ fn changes_abruptly(problem: &Problem<'_>, mode: &Refined, step_rad: f64) -> boo
 /// A mode as one normal distribution.
 fn whole(problem: &Problem<'_>, mode: &Refined, hypothesis: usize) -> Option<Component> {
     let Laplace { covariance, log_volume } = Laplace::of(mode.normal.information)?;
-    let turn = covariance.fixed_view::<3, 3>(3, 3).into_owned();
-    Some(component(
-        problem,
-        mode,
-        hypothesis,
-        log_volume,
-        covariance.fixed_view::<3, 3>(0, 0).into_owned(),
-        turn,
-    ))
+    let block = |row, column| covariance.fixed_view::<3, 3>(row, column).into_owned();
+    let spread = Spread { delta: block(0, 0), turn: block(3, 3), both: block(0, 3) };
+    Some(component(problem, mode, hypothesis, log_volume, &spread))
 }
 
 /// One slice of a valley, `step_rad` wide.
@@ -104,8 +98,10 @@ fn slice(
     let mut turn = Matrix3::from_diagonal(&Vector3::new(0.0, 0.0, step_rad * step_rad / 12.0));
     turn.fixed_view_mut::<2, 2>(0, 0).copy_from(&covariance.fixed_view::<2, 2>(3, 3));
     let log_volume = log_volume + libm::log(step_rad);
-    let delta = covariance.fixed_view::<3, 3>(0, 0).into_owned();
-    Some(Component { yaw_rad, ..component(problem, at, hypothesis, log_volume, delta, turn) })
+    let mut both = Matrix3::zeros();
+    both.fixed_view_mut::<3, 2>(0, 0).copy_from(&covariance.fixed_view::<3, 2>(0, 3));
+    let spread = Spread { delta: covariance.fixed_view::<3, 3>(0, 0).into_owned(), turn, both };
+    Some(Component { yaw_rad, ..component(problem, at, hypothesis, log_volume, &spread) })
 }
 
 /// The normal distribution around a minimum of the cost.
@@ -125,20 +121,30 @@ impl<const D: usize> Laplace<D> {
     }
 }
 
-/// A component at a pose; `delta` is the covariance of the position in distances, `turn` that of the attitude, rad^2.
+/// How wide a component is.
+struct Spread {
+    /// Covariance of the position, in distances.
+    delta: Matrix3<f64>,
+    /// Of the attitude, rad^2.
+    turn: Matrix3<f64>,
+    /// Of the position (rows) with the attitude (columns).
+    both: Matrix3<f64>,
+}
+
+/// A component at a pose.
 fn component(
     problem: &Problem<'_>,
     at: &Refined,
     hypothesis: usize,
     log_volume: f64,
-    delta: Matrix3<f64>,
-    turn: Matrix3<f64>,
+    spread: &Spread,
 ) -> Component {
     Component {
         log_weight: log_volume - at.normal.nats - problem.visibility_nats(&at.pose, at.normal.log_power),
         pose: at.pose,
-        position_covariance_m2: delta * at.pose.position_m.norm_squared(),
-        orientation_covariance_rad2: turn,
+        position_covariance_m2: spread.delta * at.pose.position_m.norm_squared(),
+        orientation_covariance_rad2: spread.turn,
+        position_orientation_covariance_m_rad: spread.both * at.pose.position_m.norm(),
         hypothesis,
         yaw_rad: 0.0,
     }

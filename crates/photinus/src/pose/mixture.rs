@@ -20,6 +20,8 @@ pub(super) struct Component {
     pub(super) position_covariance_m2: Matrix3<f64>,
     /// Of a rotation in the body frame.
     pub(super) orientation_covariance_rad2: Matrix3<f64>,
+    /// Of the position (rows) with that rotation (columns).
+    pub(super) position_orientation_covariance_m_rad: Matrix3<f64>,
     pub(super) hypothesis: usize,
     /// From the mode that it belongs to.
     pub(super) yaw_rad: f64,
@@ -36,6 +38,8 @@ pub struct Mode {
     pub position_covariance_m2: Matrix3<f64>,
     /// Covariance of the attitude as a small rotation in the body frame, rad^2.
     pub orientation_covariance_rad2: Matrix3<f64>,
+    /// Covariance of the position (rows) with that rotation (columns), m rad.
+    pub position_orientation_covariance_m_rad: Matrix3<f64>,
 }
 
 /// The whole posterior in a few numbers.
@@ -47,6 +51,8 @@ pub struct Summary {
     pub position_covariance_m2: Matrix3<f64>,
     /// Covariance of the attitude as a small rotation in the body frame, rad^2, yaw modulo the airframe's symmetry.
     pub orientation_covariance_rad2: Matrix3<f64>,
+    /// Covariance of the position (rows) with that rotation (columns), over all modes, m rad.
+    pub position_orientation_covariance_m_rad: Matrix3<f64>,
     /// Mean and standard deviation of distance.
     pub distance: Estimate,
 }
@@ -71,6 +77,7 @@ pub(super) fn truncate(components: &mut [Component], bounds: &Interval) {
         component.log_weight += truncated(low, high).log_mass;
         let widening = (low.max(-high) / FARTHEST_SIGMAS).max(1.0);
         component.position_covariance_m2 *= widening * widening;
+        component.position_orientation_covariance_m_rad *= widening;
         let (sigma_m, variance_m2, along) =
             (sigma_m * widening, variance_m2 * widening * widening, along * (widening * widening));
         let Truncated { shift, variance, .. } = truncated(low / widening, high / widening);
@@ -78,6 +85,9 @@ pub(super) fn truncate(components: &mut [Component], bounds: &Interval) {
         let gain = along / variance_m2.max(1e-18);
         component.pose.position_m += gain * (shift * sigma_m);
         component.position_covariance_m2 -= gain * gain.transpose() * (variance_m2 * (1.0 - variance));
+        // The attitude stays as wide as it was, so that the whole stays a covariance.
+        let turned = ahead.transpose() * component.position_orientation_covariance_m_rad;
+        component.position_orientation_covariance_m_rad -= gain * turned * (1.0 - variance);
     }
 }
 
@@ -163,12 +173,14 @@ pub(super) fn modes(components: &mut [Component], turns: usize, modes: &mut Vec<
             if weight < NEGLIGIBLE {
                 continue;
             }
-            let Some(Summary { pose, position_covariance_m2, orientation_covariance_rad2, .. }) =
-                summarise(slices, turns)
-            else {
-                continue;
-            };
-            modes.push(Mode { weight, pose, position_covariance_m2, orientation_covariance_rad2 });
+            let Some(told) = summarise(slices, turns) else { continue };
+            modes.push(Mode {
+                weight,
+                pose: told.pose,
+                position_covariance_m2: told.position_covariance_m2,
+                orientation_covariance_rad2: told.orientation_covariance_rad2,
+                position_orientation_covariance_m_rad: told.position_orientation_covariance_m_rad,
+            });
         }
     }
     modes.sort_unstable_by(|a, b| b.weight.total_cmp(&a.weight));
@@ -182,6 +194,7 @@ fn moments(components: &[Component], reference: &Rotation3<f64>, turns: usize) -
     let mut total = 0.0;
     let (mut first_m, mut second_m2) = (Vector3::zeros(), Matrix3::zeros());
     let (mut turn, mut turn2) = (Vector3::zeros(), Matrix3::zeros());
+    let mut both_m_rad = Matrix3::zeros();
     let (mut distance_m, mut distance2_m2) = (0.0, 0.0);
     for component in components {
         let weight = libm::exp(component.log_weight);
@@ -198,6 +211,8 @@ fn moments(components: &[Component], reference: &Rotation3<f64>, turns: usize) -
         let off = nearest_turn(reference, &component.pose.camera_from_body, turns);
         turn += weight * off;
         turn2 += weight * (component.orientation_covariance_rad2 + off * off.transpose());
+        both_m_rad +=
+            weight * (component.position_orientation_covariance_m_rad + position_m * off.transpose());
     }
     let (mean_m, turn) = (first_m / total, turn / total);
     let distance_m = distance_m / total;
@@ -205,6 +220,7 @@ fn moments(components: &[Component], reference: &Rotation3<f64>, turns: usize) -
         pose: Pose { position_m: mean_m, camera_from_body: reference * Rotation3::new(turn) },
         position_covariance_m2: second_m2 / total - mean_m * mean_m.transpose(),
         orientation_covariance_rad2: turn2 / total - turn * turn.transpose(),
+        position_orientation_covariance_m_rad: both_m_rad / total - mean_m * turn.transpose(),
         distance: Estimate {
             distance_m,
             sigma_m: (distance2_m2 / total - distance_m * distance_m).max(0.0).sqrt(),

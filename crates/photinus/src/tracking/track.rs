@@ -29,6 +29,8 @@ pub struct Track {
     pub position_velocity_covariance_m2_s: Matrix3<f64>,
     /// Covariance of the attitude as a small rotation in the body frame, rad^2.
     pub orientation_covariance_rad2: Matrix3<f64>,
+    /// Covariance of the position (rows) with that rotation (columns), m rad.
+    pub position_orientation_covariance_m_rad: Matrix3<f64>,
     /// How likely it exists, 0 to 1.
     pub existence: f64,
     /// Whether nothing of it was seen at the stamp: it coasts.
@@ -132,6 +134,7 @@ impl Tracked {
                 position_velocity_covariance_m2_s: one.covariance.fixed_view::<3, 3>(0, 3)
                     + p * v.transpose() * scale,
                 orientation_covariance_rad2: one.block(2),
+                position_orientation_covariance_m_rad: one.covariance.fixed_view::<3, 3>(0, 6).into_owned(),
                 existence,
                 is_predicted: target.is_predicted || interval_s > 0.0,
                 first_member,

@@ -1,0 +1,24 @@
+//! What Photinus finds, in the words that robots speak, and what robots say, as Photinus reads it.
+//!
+//! ```text
+//! photinus-io's FrameRecord -> messages -> ros -> cdr -> recording   MCAP files, feature `recording`
+//!                                                     -> dds         ROS 2 topics without ROS, feature `ros2`
+//!                           -> mavlink                               autopilots, feature `mavlink`
+//! ```
+//! [`messages`] says what a located frame is in ROS's words, once for all that carry them. Each link is a [`Sink`](photinus_run::sink::Sink)
+//! of a run; below the sinks nothing reads a clock.
+
+pub mod cdr;
+#[cfg(any(feature = "recording", feature = "ros2", feature = "mavlink"))]
+pub mod config;
+#[cfg(feature = "mavlink")]
+pub mod mavlink;
+pub mod messages;
+#[cfg(feature = "recording")]
+pub mod recording;
+pub mod ros;
+#[cfg(feature = "ros2")]
+pub mod ros2;
+#[cfg(any(feature = "recording", feature = "ros2", feature = "mavlink"))]
+mod sink_clock;
+pub mod topics;

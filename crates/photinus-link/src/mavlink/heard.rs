@@ -1,0 +1,173 @@
+//! What an autopilot says of its own motion -> gravity and rates in the body frame of Photinus, on the clock of the frames.
+
+use mavlink::dialects::common::{ATTITUDE_QUATERNION_DATA, GLOBAL_POSITION_INT_DATA, HIGHRES_IMU_DATA};
+use nalgebra::{Quaternion, Unit, UnitQuaternion, Vector3};
+
+use super::{Own, frd, ned_from_frd};
+
+/// An attitude as it was at a time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Attitude {
+    /// On the clock of the frames, s.
+    pub time_s: f64,
+    /// The attitude enu_from_flu.
+    pub enu_from_body: UnitQuaternion<f64>,
+    /// Rate of turn in the body frame FLU, rad/s.
+    pub turn_rad_s: Vector3<f64>,
+}
+
+impl Attitude {
+    /// Direction of gravity (down) in the body frame FLU.
+    #[must_use]
+    pub fn down(&self) -> Unit<Vector3<f64>> {
+        self.enu_from_body.inverse() * -Vector3::z_axis()
+    }
+}
+
+/// A rate of turn as it was at a time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Turn {
+    /// On the clock of the frames, s.
+    pub time_s: f64,
+    /// In the body frame FLU, rad/s.
+    pub turn_rad_s: Vector3<f64>,
+}
+
+/// The offset between two clocks, from messages that are stamped by one and arrive by the other: the way takes no less than nothing, so
+/// the least difference of late is nearest to it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ClockOffset {
+    /// The least difference of this stretch of time and of the one before, s.
+    least_s: [Option<f64>; 2],
+    began_s: f64,
+}
+
+/// A stretch of time, s: clocks of crystals drift apart by less than 1 ms in it.
+const STRETCH_S: f64 = 10.0;
+/// A difference that is so much less than before, s, is of a clock that was set: the autopilot began anew.
+const SET_S: f64 = 1.0;
+
+impl ClockOffset {
+    /// Hears of a message with this stamp that arrives now, and says when it was stamped on the clock of arrivals.
+    pub fn hear(&mut self, stamp_s: f64, arrived_s: f64) -> f64 {
+        let off_s = arrived_s - stamp_s;
+        if self.offset_s().is_some_and(|known_s| (off_s - known_s).abs() > SET_S) {
+            *self = Self::default();
+        }
+        if self.least_s[0].is_none() || arrived_s - self.began_s > STRETCH_S {
+            self.least_s = [None, self.least_s[0]];
+            self.began_s = arrived_s;
+        }
+        self.least_s[0] = Some(self.least_s[0].map_or(off_s, |least_s| least_s.min(off_s)));
+        stamp_s + self.offset_s().unwrap_or(off_s)
+    }
+
+    /// How much later the clock of arrivals is than that of the stamps, s, once something was heard.
+    #[must_use]
+    pub fn offset_s(&self) -> Option<f64> {
+        self.least_s.into_iter().flatten().min_by(f64::total_cmp)
+    }
+}
+
+/// What a message of an attitude says; `None` where its numbers are no attitude.
+pub(super) fn attitude(
+    data: &ATTITUDE_QUATERNION_DATA,
+    clock: &mut ClockOffset,
+    arrived_s: f64,
+) -> Option<Attitude> {
+    let parts = [data.q1, data.q2, data.q3, data.q4].map(f64::from);
+    let [w, x, y, z] = parts;
+    let rates = Vector3::new(data.rollspeed, data.pitchspeed, data.yawspeed).cast::<f64>();
+    let length = parts.iter().map(|part| part * part).sum::<f64>().sqrt();
+    // false for NaN, too
+    let is_turn = (length - 1.0).abs() < 0.01 && rates.iter().all(|rate| rate.is_finite());
+    is_turn.then(|| Attitude {
+        time_s: clock.hear(f64::from(data.time_boot_ms) * 1e-3, arrived_s),
+        enu_from_body: ned_from_frd(&UnitQuaternion::from_quaternion(Quaternion::new(w, x, y, z))),
+        turn_rad_s: frd(&rates),
+    })
+}
+
+/// What a message of an IMU says; `None` where it has no gyro, or its numbers are none.
+pub(super) fn turn(data: &HIGHRES_IMU_DATA, clock: &mut ClockOffset, arrived_s: f64) -> Option<Turn> {
+    use mavlink::dialects::common::HighresImuUpdatedFlags as Updated;
+    let gyro = Updated::HIGHRES_IMU_UPDATED_XGYRO
+        | Updated::HIGHRES_IMU_UPDATED_YGYRO
+        | Updated::HIGHRES_IMU_UPDATED_ZGYRO;
+    let rates = Vector3::new(data.xgyro, data.ygyro, data.zgyro).cast::<f64>();
+    let is_rate = data.fields_updated.contains(gyro) && rates.iter().all(|rate| rate.is_finite());
+    is_rate.then(|| Turn {
+        time_s: clock.hear(data.time_usec as f64 * 1e-6, arrived_s),
+        turn_rad_s: frd(&rates),
+    })
+}
+
+/// Where the own vehicle is, with the attitude that was heard last.
+pub(super) fn own(data: &GLOBAL_POSITION_INT_DATA, attitude: &Attitude) -> Own {
+    Own {
+        latitude_rad: (f64::from(data.lat) * 1e-7).to_radians(),
+        longitude_rad: (f64::from(data.lon) * 1e-7).to_radians(),
+        altitude_m: f64::from(data.alt) * 1e-3,
+        velocity_ned_m_s: Vector3::new(data.vx, data.vy, data.vz).cast::<f64>() * 1e-2,
+        enu_from_body: attitude.enu_from_body,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use rand_distr::{Distribution, Exp1};
+    use rand_pcg::Pcg64;
+
+    use super::*;
+
+    /// Level, and looking so far to the right of north: enu_from_flu.
+    fn level(heading_rad: f64) -> UnitQuaternion<f64> {
+        UnitQuaternion::from_euler_angles(0.0, 0.0, core::f64::consts::FRAC_PI_2 - heading_rad)
+    }
+
+    #[test]
+    fn an_offset_is_found_through_ways_of_uneven_length_and_a_drift() {
+        let (mut clock, mut random) = (ClockOffset::default(), Pcg64::new(4, 4));
+        let (offset_s, drift) = (1234.5, 20e-6);
+        for count in 0..6_000 {
+            let stamp_s = f64::from(count) * 0.02;
+            let way_s: f64 = Exp1.sample(&mut random);
+            let true_s = stamp_s * (1.0 + drift) + offset_s;
+            let told_s = clock.hear(stamp_s, true_s + 2e-4 + 3e-3 * way_s);
+            assert!(count < 50 || (told_s - true_s).abs() < 1e-3, "{count}: {}", told_s - true_s);
+        }
+        // The autopilot begins anew.
+        assert!((clock.hear(0.1, 5_000.0) - 5_000.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_level_vehicle_feels_gravity_below_and_one_that_leans_to_the_right_on_its_right() {
+        let heard = |roll_rad: f64, heading_rad: f64| {
+            let turn = UnitQuaternion::from_euler_angles(roll_rad, 0.0, heading_rad);
+            let [q1, q2, q3, q4] = [turn.w, turn.i, turn.j, turn.k].map(|part| part as f32);
+            let data = ATTITUDE_QUATERNION_DATA {
+                q1,
+                q2,
+                q3,
+                q4,
+                rollspeed: 1.0,
+                pitchspeed: 2.0,
+                yawspeed: 3.0,
+                ..Default::default()
+            };
+            attitude(&data, &mut ClockOffset::default(), 10.0).unwrap()
+        };
+        assert!((heard(0.0, 1.0).down().into_inner() + Vector3::z()).norm() < 1e-6);
+        // Right is against y.
+        let leaning = heard(0.3, -2.0);
+        assert!(
+            (leaning.down().into_inner() - Vector3::new(0.0, -libm::sin(0.3), -libm::cos(0.3))).norm() < 1e-6
+        );
+        assert_eq!(leaning.turn_rad_s, Vector3::new(1.0, -2.0, -3.0));
+        assert!(heard(0.0, 0.7).enu_from_body.angle_to(&level(0.7)) < 1e-6);
+        for wrong in [f32::NAN, 0.0, 3.0] {
+            let data = ATTITUDE_QUATERNION_DATA { q1: wrong, ..Default::default() };
+            assert_eq!(attitude(&data, &mut ClockOffset::default(), 0.0), None);
+        }
+    }
+}

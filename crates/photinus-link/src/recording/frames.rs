@@ -1,0 +1,159 @@
+//! The images of a recording as frames: those of our own bit for bit with all that was known of them, those of others with their stamps.
+
+use std::path::Path;
+
+use nalgebra::{Unit, Vector3};
+use photinus_io::frames::Frame;
+use photinus_io::image::{GreyImage, decode_image};
+use photinus_io::{Error, Place, Result};
+
+use super::read::{Messages, Recording};
+use crate::ros::{self, CompressedImage, Image};
+use crate::{cdr, topics};
+
+const RAW: &str = "sensor_msgs/Image";
+const COMPRESSED: &str = "sensor_msgs/CompressedImage";
+const KNOWN: &str = "photinus_msgs/Frame";
+
+/// A topic with images.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ImageTopic {
+    /// Its name.
+    pub name: String,
+    /// How many images it has, where the file counts them.
+    pub frames: Option<u64>,
+    /// The topic that tells of each image what the image does not.
+    known: Option<String>,
+}
+
+/// The topics of a recording that hold images, by name.
+#[must_use]
+pub fn image_topics(recording: &Recording) -> Vec<ImageTopic> {
+    let topics = recording.topics();
+    let images = topics.iter().filter(|topic| topic.kind == RAW || topic.kind == COMPRESSED);
+    let topic = |image: &super::Topic| {
+        let camera = image.name.strip_suffix("/image/compressed").or(image.name.strip_suffix("/image"));
+        let known = camera.map(|camera| format!("{camera}/frame"));
+        let is_there = |name: &String| topics.iter().any(|topic| topic.kind == KNOWN && topic.name == *name);
+        ImageTopic { name: image.name.clone(), frames: image.messages, known: known.filter(is_there) }
+    };
+    images.map(topic).collect()
+}
+
+/// The images of one topic, in order.
+pub struct Frames {
+    messages: Messages,
+    topic: ImageTopic,
+    known: Option<ros::Frame>,
+    next: u64,
+}
+
+/// What one message was.
+enum Heard {
+    Known(ros::Frame),
+    Image(ros::Header, GreyImage),
+}
+
+impl Frames {
+    /// The frames of `topic`, or of the only one that there is.
+    ///
+    /// # Errors
+    /// [`Error`] when it cannot be opened, has no such topic, or several and none is named.
+    pub fn open(path: impl AsRef<Path>, topic: Option<&str>) -> Result<Self> {
+        let path = path.as_ref();
+        let recording = Recording::open(path)?;
+        let topic = chosen(image_topics(&recording), topic, path)?;
+        let names = [Some(topic.name.clone()), topic.known.clone()];
+        let messages = recording.messages(names.iter().flatten().map(String::as_str), 0)?;
+        Ok(Self { messages, topic, known: None, next: 0 })
+    }
+
+    /// How many frames there are, where the file counts them.
+    #[must_use]
+    pub fn total(&self) -> Option<u64> {
+        self.topic.frames
+    }
+
+    fn frame(&mut self, header: &ros::Header, image: GreyImage) -> Frame {
+        let known = self.known.take().filter(|known| known.header == *header);
+        let source = || format!("{}:{}", self.messages.path().display(), self.topic.name);
+        let frame = Frame {
+            image,
+            index: known.as_ref().map_or(self.next, |known| known.frame),
+            time_s: match &known {
+                Some(known) => Some(known.time).filter(|time| time.is_finite()),
+                None => Some(header.stamp.seconds()),
+            },
+            source: known.as_ref().map_or_else(source, |known| known.source.clone()),
+            gravity: known.as_ref().and_then(|known| down(&known.gravity)),
+            conversions: Vec::new(),
+        };
+        self.next = frame.index + 1;
+        frame
+    }
+}
+
+impl Iterator for Frames {
+    type Item = Result<Frame>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        loop {
+            let (path, known) = (self.messages.path().to_owned(), self.topic.known.clone());
+            let heard = self.messages.next(|topic, bytes| match known.as_deref() == Some(topic) {
+                true => cdr::decode(bytes)
+                    .map(Heard::Known)
+                    .map_err(|error| Error::format(&path, error.to_string())),
+                false => image(bytes, &path).map(|(header, image)| Heard::Image(header, image)),
+            })?;
+            match heard.and_then(|heard| heard) {
+                Ok(Heard::Known(known)) => self.known = Some(known),
+                Ok(Heard::Image(header, image)) => return Some(Ok(self.frame(&header, image))),
+                Err(error) => {
+                    self.next += 1;
+                    return Some(Err(error.at(Place::Frame(self.next - 1))));
+                }
+            }
+        }
+    }
+}
+
+fn chosen(topics: Vec<ImageTopic>, named: Option<&str>, path: &Path) -> Result<ImageTopic> {
+    let names = topics.iter().map(|topic| topic.name.as_str()).collect::<Vec<_>>().join(", ");
+    let is_meant = |topic: &ImageTopic| {
+        let of_camera = |camera| ["image", "image/compressed"].map(|what| topics::of_camera(camera, what));
+        named.is_none_or(|named| topic.name == named || of_camera(named).contains(&topic.name))
+    };
+    let mut meant = topics.into_iter().filter(is_meant);
+    match (meant.next(), meant.next(), named) {
+        (Some(topic), None, _) => Ok(topic),
+        (None, _, _) if names.is_empty() => {
+            Err(Error::format(path, "it holds no images").advise("record with `pixels = \"png\"`"))
+        }
+        (None, _, _) => Err(Error::format(path, format!("it has no images of that name, but {names}"))),
+        _ => Err(Error::format(path, format!("it holds several cameras: {names}"))
+            .advise("name one of them with --only")),
+    }
+}
+
+/// The pixels of a message of either type: what begins as an image file is one.
+fn image(bytes: &[u8], path: &Path) -> Result<(ros::Header, GreyImage)> {
+    let refuse = |reason: String| Error::format(path, reason);
+    if let Ok(message) = cdr::decode::<Image<'_>>(bytes)
+        && !message.encoding.is_empty()
+        && message.data.len() == message.step as usize * message.height as usize
+    {
+        let image = message.grey().map_err(refuse)?;
+        return Ok((message.header, image));
+    }
+    let message: CompressedImage<'_> =
+        cdr::decode(bytes).map_err(|error| refuse(format!("a message is no image: {error}")))?;
+    let file = decode_image(&message.data, path)?;
+    Ok((message.header, file.image))
+}
+
+fn down(gravity: &[f64]) -> Option<Unit<Vector3<f64>>> {
+    let [x, y, z] = *gravity else { return None };
+    let down = Vector3::new(x, y, z);
+    // As it was told, to the bit: what is no direction is none.
+    ((down.norm() - 1.0).abs() < 0.01).then(|| Unit::new_unchecked(down))
+}

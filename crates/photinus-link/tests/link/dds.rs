@@ -1,0 +1,192 @@
+//! ROS 2 topics are heard by cyclonedds, with the definitions that rosbags ships, and images of cyclonedds are heard here.
+
+use std::io::{BufRead, BufReader};
+use std::net::UdpSocket;
+use std::process::Stdio;
+use std::sync::mpsc::{TryRecvError, channel};
+use std::time::{Duration, Instant};
+
+use nalgebra::{Matrix3, UnitQuaternion, Vector3};
+use photinus_io::calibration::MountingFile;
+use photinus_link::messages::{Messages, Viewpoint};
+use photinus_link::ros;
+use photinus_link::ros2::{ImageSource, Node, Publisher, Quality, Settings, Topics};
+use photinus_link::topics;
+use photinus_run::source::{Next, Source};
+use photinus_testing::python_with;
+use rand_pcg::Pcg64;
+use rand_pcg::rand_core::Rng;
+use serde_json::{Value, json};
+
+use crate::read_by_others::{flat, health};
+use crate::sample;
+
+const SCRIPT: &str = concat!(include_str!("wire_types.py"), include_str!("dds_listener.py"));
+/// Domains that nobody uses: two runs of this test at once have different ones.
+const FIRST_DOMAIN: u32 = 20;
+const DOMAINS: u32 = 40;
+
+/// Every definition in the schema of a message, by its name.
+fn definitions(name: &str) -> Vec<(String, String)> {
+    let schema = ros::schema(name).expect("it is known");
+    let rule = format!("{}\nMSG: ", "=".repeat(80));
+    let mut parts = schema.split(&rule);
+    let own = (name.to_owned(), parts.next().expect("its own").to_owned());
+    let others = parts.map(|part| part.split_once('\n').expect("a name and a text"));
+    let others = others.map(|(name, text)| (name.to_owned(), text.to_owned()));
+    let long = |(name, text): (String, String)| (name.replacen('/', "/msg/", 1), text);
+    std::iter::once(own).chain(others).map(long).collect()
+}
+
+#[test]
+fn cyclonedds_hears_every_topic_and_its_images_are_heard() {
+    let Some(mut python) = python_with(&["cyclonedds", "rosbags"]) else { return };
+    let domain = FIRST_DOMAIN + std::process::id() % DOMAINS;
+    let settings = Settings { domain: domain as u16, namespace: "/uav1".to_owned(), ..Settings::default() };
+    let mut node = Node::new(settings.clone()).expect("there is a network");
+    let mut published = Topics::new(&mut node).expect("names");
+    let mut source = ImageSource::new(settings, "/camera/image").expect("a name");
+    let end_of_source = source.interrupter().expect("it waits");
+    let (came, images) = channel();
+    let taking = std::thread::spawn(move || {
+        while let Next::Frame(entry) = source.next()
+            && came.send(entry).is_ok()
+        {}
+    });
+
+    let view = Viewpoint::new(Some("left"), Some(1e-3));
+    let mut record = sample::record(17, 1_700_000_000.25);
+    record.tracks[0].id = Some(1);
+    let mounting = MountingFile {
+        body_from_camera: UnitQuaternion::from_euler_angles(0.1, 0.2, 0.3),
+        rotation_covariance_rad2: Matrix3::zeros(),
+        position_m: Some(Vector3::new(0.1, 0.2, 0.3)),
+        position_covariance_m2: None,
+    };
+    // Before anybody listens: who comes later hears it all the same.
+    published.tell_mountings("uav1/base_link", &[(view.header(None), mounting)]);
+
+    let kinds = [
+        ("/uav1/photinus/detections", "vision_msgs/Detection3DArray"),
+        ("/uav1/photinus/neighbours", "photinus_msgs/NeighbourArray"),
+        ("/uav1/photinus/tracks", "photinus_msgs/NeighbourArray"),
+        ("/uav1/photinus/markers", "visualization_msgs/MarkerArray"),
+        (topics::TRANSFORMS, "tf2_msgs/TFMessage"),
+        (topics::STATIC_TRANSFORMS, "tf2_msgs/TFMessage"),
+        (topics::DIAGNOSTICS, "diagnostic_msgs/DiagnosticArray"),
+    ];
+    let asked: serde_json::Map<String, Value> = kinds
+        .iter()
+        .map(|(topic, kind)| ((*topic).to_owned(), kind.replacen('/', "/msg/", 1).into()))
+        .collect();
+    let defined: serde_json::Map<String, Value> = kinds
+        .iter()
+        .flat_map(|(_, kind)| definitions(kind))
+        .map(|(name, text)| (name, text.into()))
+        .collect();
+    let asked = json!({"topics": asked, "definitions": defined}).to_string();
+    let mut child = python
+        .args(["-c", SCRIPT, &domain.to_string(), &asked])
+        .stdout(Stdio::piped())
+        .spawn()
+        .expect("Python runs");
+    let out = BufReader::new(child.stdout.take().expect("a pipe"));
+    let (said, heard) = channel();
+    std::thread::spawn(move || said.send(out.lines().next()));
+    let (end, mut image) = (Instant::now() + Duration::from_secs(60), None);
+    let mut line = None;
+    while (line.is_none() || image.is_none()) && Instant::now() < end {
+        published.tell(Messages::of(&record, &view));
+        published.tell_health(health());
+        image = image.or_else(|| images.try_recv().ok());
+        match heard.try_recv() {
+            Ok(said) => line = said,
+            Err(TryRecvError::Empty) => {}
+            Err(TryRecvError::Disconnected) => break,
+        }
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    end_of_source();
+    drop(images);
+    taking.join().expect("it ends when it is told to");
+    let _ = child.kill();
+    let _ = child.wait();
+    let line = line.expect("it says something").expect("text");
+    let read: Value = serde_json::from_str(&line).expect("JSON");
+    let told = Messages::of(&record, &view);
+    let fixed = &read[topics::STATIC_TRANSFORMS]["transforms"][0];
+    assert_eq!(
+        (&fixed["child_frame_id"], &fixed["header"]["frame_id"]),
+        (&json!("left_optical_frame"), &json!("uav1/base_link"))
+    );
+    let expected = flat(json!({
+        "/uav1/photinus/detections": told.detections, "/uav1/photinus/neighbours": told.neighbours,
+        "/uav1/photinus/tracks": told.tracks, "/uav1/photinus/markers": told.markers, topics::TRANSFORMS: told.transforms,
+        topics::DIAGNOSTICS: health(),
+    }));
+    for (topic, message) in expected.as_object().expect("topics") {
+        assert_eq!(&read[topic], message, "{topic}");
+    }
+    let entry = image.expect("images were sent");
+    assert_eq!((entry.record.time_s, entry.record.source.as_str()), (Some(12.5), "/camera/image"));
+    let image = entry.image.expect("pixels");
+    let pixel = |u: usize, v: usize| ((7 * (24 * v + u)) % 256) as u8;
+    let sent: Vec<u8> = (0..16).flat_map(|v| (0..20).map(move |u| pixel(u, v))).collect();
+    assert_eq!(image.pixels(), sent, "the rows end with four bytes that are no pixels");
+}
+
+/// Resident memory of this program, MB.
+fn memory_mb() -> f64 {
+    let pages = std::fs::read_to_string("/proc/self/statm").expect("Linux says");
+    pages.split(' ').nth(1).and_then(|pages| pages.parse::<f64>().ok()).expect("a number") * 4096e-6
+}
+
+#[test]
+fn datagrams_that_mean_nothing_stop_nobody_and_cost_no_memory() {
+    let domain = FIRST_DOMAIN + DOMAINS + std::process::id() % DOMAINS;
+    let settings = Settings { domain: domain as u16, ..Settings::default() };
+    let mut node = Node::new(settings.clone()).expect("there is a network");
+    let publisher = node.publisher::<ros::Image<'static>>("/camera/image", Quality::Sensor).expect("a name");
+    let mut images = node.images("/camera/image").expect("a name");
+    let mut passes = || {
+        let end = Instant::now() + Duration::from_secs(20);
+        while Instant::now() < end {
+            let image = ros::Image {
+                height: 1,
+                width: 2,
+                step: 2,
+                encoding: "mono8".to_owned(),
+                data: vec![1, 2].into(),
+                ..ros::Image::default()
+            };
+            publisher.publish(image).expect("it is taken");
+            std::thread::sleep(Duration::from_millis(10));
+            if let Some(image) = images.take() {
+                return image.expect("grey").1.pixels() == [1, 2];
+            }
+        }
+        false
+    };
+    assert!(passes(), "before");
+    let before_mb = memory_mb();
+    let mouth = UdpSocket::bind("127.0.0.1:0").expect("a socket");
+    let (mut random, mut bytes) = (Pcg64::new(9, 9), vec![0_u8; 60_000]);
+    for case in 0..100_000_u32 {
+        // Now and then as large as a datagram can be.
+        let most = if case % 1000 == 0 { bytes.len() } else { 600 };
+        let length = 24 + random.next_u32() as usize % (most - 24);
+        random.fill_bytes(&mut bytes[..length]);
+        // RTPS 2.3, and the beginning of a submessage of a kind that there is.
+        bytes[..6].copy_from_slice(b"RTPS\x02\x03");
+        bytes[20] = [0x15, 0x16, 0x06, 0x07, 0x08, 0x09, 0x0e, 0x12][case as usize % 8];
+        bytes[21] = 1;
+        // Discovery and users' data of the first participants of a machine (RTPS 2.3, 9.6.1.1).
+        for port in 0..4 {
+            let port = 7400 + 250 * domain + 10 + port;
+            mouth.send_to(&bytes[..length], ("127.0.0.1", port as u16)).expect("it is sent");
+        }
+    }
+    assert!(passes(), "after");
+    let grown_mb = memory_mb() - before_mb;
+    assert!(grown_mb < 100.0, "{grown_mb} MB more");
+}

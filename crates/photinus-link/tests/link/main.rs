@@ -1,0 +1,15 @@
+//! What this crate tells, tried on programs that nobody here wrote, on files cut anywhere and on bytes that mean nothing.
+
+#[cfg(feature = "mavlink")]
+mod autopilot;
+#[cfg(all(feature = "ros2", feature = "recording"))]
+mod dds;
+#[cfg(feature = "recording")]
+mod killed;
+#[cfg(feature = "recording")]
+mod read_by_others;
+#[cfg(feature = "recording")]
+mod recording;
+mod sample;
+#[cfg(feature = "recording")]
+mod sinks;

@@ -189,10 +189,8 @@ impl Estimator {
             let signals = observations.iter().map(|seen| seen.signal);
             let nats = self.symmetry.signal_nats(turn, signals, markers) + libm::log(turns as f64);
             for index in first..last {
-                let mut component = self.components[index];
+                let mut component = self.components[index].turned(&self.symmetry.turn(turn));
                 component.log_weight -= nats;
-                component.pose.camera_from_body =
-                    self.symmetry.attitude(&component.pose.camera_from_body, turn);
                 component.hypothesis += turn * self.modes.len();
                 self.components.push(component);
             }

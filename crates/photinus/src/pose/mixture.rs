@@ -208,11 +208,11 @@ fn moments(components: &[Component], reference: &Rotation3<f64>, turns: usize) -
         second_m2 += weight * (covariance + position_m * position_m.transpose());
         distance_m += weight * away_m;
         distance2_m2 += weight * (ahead.dot(&(covariance * ahead)) + away_m * away_m);
-        let off = nearest_turn(reference, &component.pose.camera_from_body, turns);
+        let Nearest { off, symmetric } = nearest_turn(reference, &component.pose.camera_from_body, turns);
+        let turned = component.turned(&symmetric);
         turn += weight * off;
-        turn2 += weight * (component.orientation_covariance_rad2 + off * off.transpose());
-        both_m_rad +=
-            weight * (component.position_orientation_covariance_m_rad + position_m * off.transpose());
+        turn2 += weight * (turned.orientation_covariance_rad2 + off * off.transpose());
+        both_m_rad += weight * (turned.position_orientation_covariance_m_rad + position_m * off.transpose());
     }
     let (mean_m, turn) = (first_m / total, turn / total);
     let distance_m = distance_m / total;
@@ -228,17 +228,38 @@ fn moments(components: &[Component], reference: &Rotation3<f64>, turns: usize) -
     }
 }
 
-/// The rotation from one attitude to another, in the body frame, with the yaw between them the least that symmetry allows.
-fn nearest_turn(from: &Rotation3<f64>, to: &Rotation3<f64>, turns: usize) -> Vector3<f64> {
+/// From one attitude to another, where turns about the body's z axis count for nothing.
+struct Nearest {
+    /// What is left of the rotation, in the body frame: its yaw is the least that symmetry allows.
+    off: Vector3<f64>,
+    /// The turn of the symmetry that is taken off.
+    symmetric: Rotation3<f64>,
+}
+
+fn nearest_turn(from: &Rotation3<f64>, to: &Rotation3<f64>, turns: usize) -> Nearest {
     let between = from.inverse() * to;
     if turns == 1 {
-        return turn_of(&between);
+        return Nearest { off: turn_of(&between), symmetric: Rotation3::identity() };
     }
     let sector_rad = core::f64::consts::TAU / turns as f64;
     let matrix = between.matrix();
     let yaw_rad = libm::atan2(matrix.m21 - matrix.m12, matrix.m11 + matrix.m22);
     let back_rad = -(yaw_rad / sector_rad).round() * sector_rad;
-    turn_of(&(between * Rotation3::from_axis_angle(&Vector3::z_axis(), back_rad)))
+    let symmetric = Rotation3::from_axis_angle(&Vector3::z_axis(), back_rad);
+    Nearest { off: turn_of(&(between * symmetric)), symmetric }
+}
+
+impl Component {
+    /// The same with a turn of its airframe's symmetry: its covariances are along the axes of the body, which turn.
+    pub(super) fn turned(&self, symmetric: &Rotation3<f64>) -> Self {
+        let axes = symmetric.matrix();
+        Self {
+            pose: Pose { camera_from_body: self.pose.camera_from_body * symmetric, ..self.pose },
+            orientation_covariance_rad2: axes.transpose() * self.orientation_covariance_rad2 * axes,
+            position_orientation_covariance_m_rad: self.position_orientation_covariance_m_rad * axes,
+            ..*self
+        }
+    }
 }
 
 /// Axis times angle; by the quaternion, since the arc cosine of a matrix's trace is no number where rounding takes it past 1.
@@ -256,10 +277,11 @@ mod tests {
             let from = Rotation3::new(Vector3::new(0.3, -0.9, 1.0 + tilt));
             for yaw_rad in [0.0, 1e-9, core::f64::consts::PI, core::f64::consts::PI - 1e-9] {
                 let to = from * Rotation3::from_axis_angle(&Vector3::z_axis(), yaw_rad);
-                let off = nearest_turn(&from, &to, 1);
+                let off = nearest_turn(&from, &to, 1).off;
                 assert!((off.norm() - yaw_rad).abs() < 1e-7, "{yaw_rad}: {off}");
                 assert!(
-                    nearest_turn(&from, &to, 2).norm() < 1e-7 + yaw_rad.min(core::f64::consts::PI - yaw_rad)
+                    nearest_turn(&from, &to, 2).off.norm()
+                        < 1e-7 + yaw_rad.min(core::f64::consts::PI - yaw_rad)
                 );
             }
         }

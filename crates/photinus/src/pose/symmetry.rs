@@ -94,9 +94,9 @@ impl Symmetry {
         Rotation3::from_axis_angle(&Vector3::z_axis(), TAU * turn as f64 / turns as f64)
     }
 
-    /// The attitude in which the turned markers stand where the unturned ones stood in `camera_from_body`.
-    pub(crate) fn attitude(&self, camera_from_body: &Rotation3<f64>, turn: usize) -> Rotation3<f64> {
-        camera_from_body * Self::rotation(self.turns, turn).inverse()
+    /// The rotation of the body after which its turned markers stand where the unturned ones stood.
+    pub(crate) fn turn(&self, turn: usize) -> Rotation3<f64> {
+        Self::rotation(self.turns, turn).inverse()
     }
 }
 
@@ -116,7 +116,7 @@ mod tests {
             for marker in 0..6u16 {
                 let stood = attitude * airframe.markers()[usize::from(marker)].position_m;
                 let other = usize::from(symmetry.turned(turn, marker));
-                let stands = symmetry.attitude(&attitude, turn) * airframe.markers()[other].position_m;
+                let stands = attitude * symmetry.turn(turn) * airframe.markers()[other].position_m;
                 assert!((stood - stands).norm() < 1e-12);
             }
         }

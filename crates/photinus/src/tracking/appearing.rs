@@ -82,15 +82,9 @@ fn begin(model: &Model, mode: &Mode, first: Option<&Component>, turns: usize) ->
 }
 
 /// The same state with the yaw next to another's, of those that the airframe's symmetry makes equal.
-pub(super) fn turned_next_to(model: &Model, mut state: Component, to: &Component, turns: usize) -> Component {
-    let own = state.pose.camera_from_body;
-    let mut least = f64::INFINITY;
-    for turn in 0..turns {
-        let camera_from_body = model.symmetry.attitude(&own, turn);
-        let off = turn_of(&(to.pose.camera_from_body.inverse() * camera_from_body)).norm_squared();
-        if off < least {
-            (least, state.pose.camera_from_body) = (off, camera_from_body);
-        }
-    }
-    state
+pub(super) fn turned_next_to(model: &Model, state: Component, to: &Component, turns: usize) -> Component {
+    let between = to.pose.camera_from_body.inverse() * state.pose.camera_from_body;
+    let off = |turn: usize| turn_of(&(between * model.symmetry.turn(turn))).norm_squared();
+    let nearest = (0..turns).min_by(|a, b| off(*a).total_cmp(&off(*b)));
+    nearest.map_or(state, |turn| state.turned(&model.symmetry.turn(turn)))
 }

@@ -42,6 +42,14 @@ impl Component {
         step
     }
 
+    /// The same with a turn of its airframe's symmetry: errors of the attitude are along the axes of the body, which turn.
+    pub(super) fn turned(&self, symmetric: &Rotation3<f64>) -> Self {
+        let mut axes = Covariance::identity();
+        axes.fixed_view_mut::<3, 3>(6, 6).copy_from(symmetric.matrix());
+        let pose = Pose { camera_from_body: self.pose.camera_from_body * symmetric, ..self.pose };
+        Self { pose, covariance: axes.transpose() * self.covariance * axes, ..*self }
+    }
+
     /// The covariance of a part of the state: 0 position, 1 velocity, 2 attitude.
     pub(super) fn block(&self, part: usize) -> Matrix3<f64> {
         self.covariance.fixed_view::<3, 3>(3 * part, 3 * part).into_owned()

@@ -88,7 +88,12 @@ impl Tracked {
     pub(crate) fn turn<'a>(&mut self, turn: impl Fn(u64) -> Option<(&'a Symmetry, usize)>) {
         for track in &mut self.tracks {
             let Some((symmetry, turn)) = turn(track.id) else { continue };
-            track.camera_from_body = symmetry.attitude(&track.camera_from_body, turn);
+            let symmetric = symmetry.turn(turn);
+            // Covariances of the attitude are along the axes of the body, which turn.
+            let axes = symmetric.matrix();
+            track.camera_from_body *= symmetric;
+            track.orientation_covariance_rad2 = axes.transpose() * track.orientation_covariance_rad2 * axes;
+            track.position_orientation_covariance_m_rad *= axes;
             for marker in self.markers[track.first_member..][..track.members].iter_mut().flatten() {
                 *marker = symmetry.turned(turn, *marker);
             }

@@ -292,7 +292,7 @@ impl Matcher {
                 hypotheses.offer(named, nats, branch, || {
                     let (place_m, turn) = seen.place(arrangement, &image);
                     let pose = image.pose(&place_m, turn, arrangement.yaw_rad, arrangement.elevation_rad);
-                    let camera_from_body = self.symmetry.attitude(&pose.camera_from_body, arrangement.turn);
+                    let camera_from_body = pose.camera_from_body * self.symmetry.turn(arrangement.turn);
                     Pose { camera_from_body, ..pose }
                 });
             }

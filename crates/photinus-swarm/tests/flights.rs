@@ -144,3 +144,66 @@ fn by_frames_two_that_hover_see_each_other_where_they_are() {
     assert!(metrics.range_error.unwrap() < 0.1, "{metrics:?}");
     assert_eq!(metrics, fly(&run, 1), "whatever the number of threads");
 }
+
+/// The theorem of docs/safety.md: where all that it assumes was so, a collision is an error of the layer or of the accounts.
+#[test]
+fn where_the_proof_applied_nobody_collided() {
+    let mut applied = 0;
+    for (name, grade) in [
+        ("gate", Grade::Perfect),
+        ("obstacles", Grade::Perfect),
+        ("guarded-ten", Grade::Perfect),
+        ("crossing-guarded", Grade::Perfect),
+        ("gate", Grade::StandIn),
+    ] {
+        for metrics in of(name, 15.0, grade).monte_carlo(2, 2, |_| true).unwrap() {
+            let contract = metrics.contract.clone().unwrap();
+            if contract.proof_applied {
+                applied += 1;
+                assert!(contract.first_broken_s.is_none() && contract.slow == 0);
+                let collided = metrics.collisions + metrics.obstacle_collisions;
+                assert_eq!(collided, 0, "{name}, {grade:?}, seed {}: {contract:?}", metrics.seed);
+            }
+            // they do fly: standing is no proof of anything
+            assert!(contract.proven * 20 > contract.decisions, "{name}, {grade:?}: {contract:?}");
+        }
+    }
+    assert!(applied >= 5, "{applied} flights in which all assumptions were kept say something");
+}
+
+#[test]
+fn each_assumption_that_is_broken_is_told() {
+    let layer = |more: &str| {
+        format!(
+            "[group.safety]\nspeed_m_s = 2.0\nacceleration_m_s2 = 3.0\nbraking_m_s2 = 2.0\ndelay_s = 0.3\nstray_m = 0.3\n\
+             velocity_error_m_s = 0.2\nunknown_speed_m_s = 0.0\n{more}\n"
+        )
+    };
+    let boids = "{ boids = { near_m = 2.0, far_m = 4.0, cruise_m_s = [1.0, 0.0, 0.0] } }";
+    let contract = |positions: &str, headings: &str, layer: &str| {
+        let text = text(&(group(positions, headings, boids) + layer));
+        fly(&run(&text, Grade::Perfect), 1).contract.unwrap()
+    };
+    let facing = "[0.0, 0.0, 5.0], [6.0, 0.0, 5.0]";
+    let kept = contract(facing, "0.0, 180.0", &layer("empty_m = 12.0"));
+    assert!(kept.proof_applied && kept.proven > 0, "{kept:?}");
+    // back to back they do not see each other, and fly 6 m apart where nobody is said to be
+    let unseen = contract(facing, "180.0, 0.0", &layer("empty_m = 12.0"));
+    assert!(
+        unseen.unseen_near > 0 && unseen.first_broken_s == Some(0.0) && !unseen.proof_applied,
+        "{unseen:?}"
+    );
+    assert!((unseen.nearest_unseen_m.unwrap() - 6.0).abs() < 0.5, "{unseen:?}");
+    // brakes that it has not, in front of a ball
+    let boast = layer("empty_m = 12.0")
+        .replace("acceleration_m_s2 = 3.0", "acceleration_m_s2 = 30.0")
+        .replace("braking_m_s2 = 2.0", "braking_m_s2 = 20.0")
+        .replace("stray_m = 0.3", "stray_m = 0.05");
+    let ball = "[[obstacle]]\nball = { centre_m = [10.0, 0.0, 5.0], radius_m = 0.5 }\n";
+    let strayed = contract(facing, "0.0, 180.0", &(boast + ball));
+    assert!(strayed.strayed > 0 && !strayed.proof_applied, "{strayed:?}");
+    let near = contract("[0.0, 0.0, 5.0], [1.1, 0.0, 5.0]", "0.0, 180.0", &layer("empty_m = 12.0"));
+    assert!(near.began_too_near == 1 && !near.proof_applied, "{near:?}");
+    let hunted = fly(&of("hostile", 14.0, Grade::Perfect), 1).contract.unwrap();
+    assert!(hunted.strangers == 1 && hunted.first_broken_s == Some(10.0), "{hunted:?}");
+}

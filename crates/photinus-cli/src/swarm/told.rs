@@ -1,6 +1,7 @@
 //! Metrics as lines to read.
 
 use photinus_swarm::Metrics;
+use photinus_swarm::metrics::Contract;
 
 /// The numbers of a flight, a line each: what it is, and how much.
 pub(super) fn metrics(metrics: &Metrics) -> String {
@@ -48,6 +49,40 @@ pub(super) fn rows(metrics: &Metrics) -> Vec<(&'static str, String)> {
         ("identity switches", count(metrics.identity_switches)),
         ("wrong names", Some(format!("{} of {}", metrics.named_wrong, metrics.named))),
         ("phantoms among the seen", percent(metrics.phantoms)),
+    ];
+    let of_layer = metrics.contract.iter().flat_map(contract);
+    rows.into_iter().filter_map(|(name, value)| Some((name, value?))).chain(of_layer).collect()
+}
+
+/// Whether the safety layer's proof applied, and what of its assumptions was broken.
+fn contract(contract: &Contract) -> Vec<(&'static str, String)> {
+    let share = |part: usize| 100.0 * part as f64 / contract.decisions.max(1) as f64;
+    let applied = if contract.proof_applied { "yes".to_owned() } else { "no".to_owned() };
+    let first = contract.first_broken_s.map(|first_s| format!("{first_s:.2} s"));
+    let rests =
+        [contract.proven, contract.braking, contract.slow].map(|part| format!("{:.1} %", share(part)));
+    let unseen =
+        contract.nearest_unseen_m.map_or(String::new(), |nearest_m| format!(", nearest {nearest_m:.2} m"));
+    let rows = [
+        ("the safety layer's proof applied", Some(applied)),
+        ("first assumption broken at", first),
+        ("decisions proven, braking, slow", Some(rests.join(", "))),
+        (
+            "faster than the limit",
+            Some(format!("{} (top {:.2} m/s)", contract.too_fast, contract.top_speed_m_s)),
+        ),
+        (
+            "strayed too far",
+            Some(format!("{} (farthest {:.2} m)", contract.strayed, contract.farthest_stray_m)),
+        ),
+        (
+            "own velocity off by too much",
+            Some(format!("{} (most {:.2} m/s)", contract.velocity_off, contract.largest_velocity_error_m_s)),
+        ),
+        ("bounds of distance or bearing broken", Some(contract.bounds_broken.to_string())),
+        ("unseen where nobody should be", Some(format!("{}{unseen}", contract.unseen_near))),
+        ("vehicles outside of the contract", Some(contract.strangers.to_string())),
+        ("pairs that began too near", Some(contract.began_too_near.to_string())),
     ];
     rows.into_iter().filter_map(|(name, value)| Some((name, value?))).collect()
 }

@@ -3,11 +3,14 @@
 //! ```text
 //! every step    who is how near to whom              nearness
 //! every frame   how the group flies                  shape
+//!               whether the safety layer's proof applied   contract (path)
 //!               who saw whom, and how right          sight (pairing)
 //! ```
 
+mod contract;
 mod nearness;
 mod pairing;
+mod path;
 mod shape;
 mod sight;
 #[cfg(test)]
@@ -15,10 +18,12 @@ mod tests;
 
 use serde::Serialize;
 
+pub use contract::Contract;
 pub use nearness::Collision;
 pub use pairing::{Paired, pair};
 
 use crate::world::{Touch, World};
+use contract::Notary;
 use nearness::Nearness;
 use shape::Shape;
 use sight::Sight;
@@ -96,6 +101,8 @@ pub struct Metrics {
     pub named_wrong: usize,
     /// Share of tells that nobody was.
     pub phantoms: Option<f64>,
+    /// What the safety layer's proof assumes and how often it was not so; `null` where no vehicle has the layer.
+    pub contract: Option<Contract>,
     /// The collisions.
     pub touches: Vec<Collision>,
 }
@@ -106,19 +113,28 @@ pub struct Tally {
     nearness: Nearness,
     shape: Shape,
     sight: Sight,
+    notary: Option<Notary>,
 }
 
 impl Tally {
     /// For a flight that begins.
     pub fn new(world: &World) -> Self {
         let scenario = world.scenario();
-        Self { nearness: Nearness::new(scenario), shape: Shape::new(scenario), sight: Sight::new(scenario) }
+        Self {
+            nearness: Nearness::new(scenario),
+            shape: Shape::new(scenario),
+            sight: Sight::new(scenario),
+            notary: Notary::new(world),
+        }
     }
 
     /// Takes a frame, after everybody looked.
     pub fn take(&mut self, world: &World) {
         self.shape.take(world);
         self.sight.take(world);
+        if let Some(notary) = &mut self.notary {
+            notary.take(world);
+        }
     }
 
     /// Takes a pair at a step of the physics.
@@ -129,7 +145,7 @@ impl Tally {
     /// The numbers.
     pub fn metrics(self, world: &World) -> Metrics {
         let scenario = world.scenario();
-        let Self { nearness, shape, sight } = self;
+        let Self { nearness, shape, sight, notary } = self;
         let last = shape.frames() - shape.frames() / 5;
         let (formation_error_m, formation_settles_s) = shape.formation(last, scenario.period_s());
         let shares = sight.shares(scenario);
@@ -169,6 +185,7 @@ impl Tally {
             named: sight.named,
             named_wrong: sight.named_wrong,
             phantoms: (sight.told > 0).then(|| sight.phantoms as f64 / sight.told as f64),
+            contract: notary.map(Notary::contract),
             touches: nearness.touches,
         }
     }

@@ -54,7 +54,7 @@ pub fn pair(world: &World, observer: usize) -> Vec<Paired> {
 }
 
 /// The true level frame: without the error of the instruments.
-fn level_from_world(robot: &Robot) -> UnitQuaternion<f64> {
+pub(super) fn level_from_world(robot: &Robot) -> UnitQuaternion<f64> {
     UnitQuaternion::from_scaled_axis(Vector3::z() * -robot.state.heading_rad())
 }
 

@@ -1,6 +1,6 @@
 //! `safety` of a group: the layer in front of a controller, and what it may take for granted.
 
-use nalgebra::{Rotation3, Unit, UnitQuaternion, Vector3};
+use nalgebra::{Rotation3, Unit, UnitQuaternion, UnitVector3, Vector3};
 use photinus_control::safety::{Basis, Cone, Detection, Limits, Obstacle as Body, Safety, Watch};
 use photinus_control::{OwnState, Seen, Setpoint};
 use photinus_io::Result;
@@ -31,6 +31,7 @@ struct DetectionTable {
     range_m: f64,
     probability: f64,
     missed: f64,
+    steep_deg: Option<f64>,
 }
 
 /// The safety layer of a vehicle, as the scenario has it.
@@ -55,6 +56,8 @@ pub enum Unseen {
         probability: f64,
         /// How often somebody may be missed for good.
         missed: f64,
+        /// The scenario answers for it that nobody is steeper above or below than this, rad.
+        steep_rad: Option<f64>,
     },
 }
 
@@ -84,10 +87,13 @@ impl SafetyTable {
         limits.check().map_err(|error| check.refuse(key, error.to_string()))?;
         let unseen = match (self.empty_m, self.detection) {
             (Some(empty_m), None) => Unseen::EmptyTo(positive("empty_m", empty_m, 1e3)?),
-            (None, Some(DetectionTable { range_m, probability, missed })) => Unseen::Watched {
+            (None, Some(DetectionTable { range_m, probability, missed, steep_deg })) => Unseen::Watched {
                 range_m: positive("detection.range_m", range_m, 1e3)?,
                 probability: check.share(&of("detection.probability"), probability)?,
                 missed: positive("detection.missed", missed, 0.5)?,
+                steep_rad: steep_deg
+                    .map(|steep_deg| positive("detection.steep_deg", steep_deg, 90.0).map(f64::to_radians))
+                    .transpose()?,
             },
             _ => {
                 let refused = check.refuse(key, "it does not say who answers for those who are not seen");
@@ -105,9 +111,15 @@ pub struct Guard {
     watch: Watch,
     /// Cones that lie within the fields of the cameras, body frame; none where the scenario answers.
     eyes: Vec<Cone>,
+    /// Cones that the scenario answers for, level frame.
+    answered: Vec<Cone>,
     obstacles: Vec<Obstacle>,
-    /// What the set-points so far rested upon: proven, slow, braking.
-    pub rested: [usize; 3],
+    /// How long ago its last set-point was that did not brake, s.
+    braking_s: f64,
+    /// Where it stands, m in the world.
+    stands_m: Option<Vector3<f64>>,
+    /// What the last set-point rests upon.
+    basis: Basis,
 }
 
 /// What the layer knows of where its vehicle is on the map: exact.
@@ -126,16 +138,25 @@ impl Guard {
         obstacles: &[Obstacle],
     ) -> Option<Self> {
         let limits = Limits { radius_m, period_s, ..plan.limits };
-        let (watch, eyes) = match plan.unseen {
-            Unseen::EmptyTo(range_m) => (Watch::empty_to(range_m), Vec::new()),
-            Unseen::Watched { range_m, probability, missed } => {
+        let (watch, eyes, answered) = match plan.unseen {
+            Unseen::EmptyTo(range_m) => (Watch::empty_to(range_m), Vec::new(), Vec::new()),
+            Unseen::Watched { range_m, probability, missed, steep_rad } => {
                 let detection = Detection { range_m, probability };
                 let watch = Watch::new(&[detection], missed, period_s, 2.0 * limits.speed_m_s);
-                (watch, cameras.iter().flat_map(cones).collect())
+                let steep = steep_rad.into_iter().flat_map(steep_cones).collect();
+                (watch, cameras.iter().flat_map(cones).collect(), steep)
             }
         };
-        let safety = Safety::new(limits).ok()?;
-        Some(Self { safety, watch, eyes, obstacles: obstacles.to_vec(), rested: [0; 3] })
+        Some(Self {
+            safety: Safety::new(limits).ok()?,
+            watch,
+            eyes,
+            answered,
+            obstacles: obstacles.to_vec(),
+            braking_s: 0.0,
+            stands_m: None,
+            basis: Basis::Braking,
+        })
     }
 
     /// What to fly instead of what is wanted.
@@ -151,8 +172,11 @@ impl Guard {
             axis: Unit::new_normalize(own.level_from_body * cone.axis.into_inner()),
             ..*cone
         };
-        let eyes: Vec<Cone> = self.eyes.iter().map(turned).collect();
-        self.watch.look(&eyes, &[], own.turn_rad_s() * dt_s, dt_s, 0.0);
+        // what the scenario answers for does not grow old
+        if !self.eyes.is_empty() {
+            let eyes: Vec<Cone> = self.eyes.iter().map(turned).chain(self.answered.iter().copied()).collect();
+            self.watch.look(&eyes, &[], own.turn_rad_s() * dt_s, dt_s, 0.0);
+        }
         let level = UnitQuaternion::from_scaled_axis(Vector3::z() * -on_map.heading_rad);
         let body = |obstacle: &Obstacle| Body::Capsule {
             from: level * (obstacle.from_m - on_map.position_m),
@@ -161,13 +185,54 @@ impl Guard {
         };
         let bodies: Vec<Body> = self.obstacles.iter().map(body).collect();
         let guarded = self.safety.guard(own, seen, &self.watch, &bodies, wanted, dt_s);
-        self.rested[match guarded.basis {
-            Basis::Proven => 0,
-            Basis::Slow => 1,
-            Basis::Braking => 2,
-        }] += 1;
-        guarded.setpoint
+        self.basis = guarded.basis;
+        self.braking_s = if guarded.basis == Basis::Braking { self.braking_s + dt_s } else { 0.0 };
+        self.hold(own, on_map, &level)
+            .map_or(guarded.setpoint, |hold| hold.turning(guarded.setpoint.yaw_rate_rad_s))
     }
+
+    /// Back to where it stands, once it does: a velocity that is brought to nothing by an instrument with a bias is a slow drift.
+    fn hold(&mut self, own: &OwnState, on_map: &OnMap, level: &UnitQuaternion<f64>) -> Option<Setpoint> {
+        let limits = self.safety.limits();
+        if self.braking_s <= limits.delay_s + limits.period_s + limits.speed_m_s / limits.braking_m_s2 {
+            self.stands_m = None;
+            return None;
+        }
+        let place_m = *self.stands_m.get_or_insert(on_map.position_m);
+        let velocity_m_s = own.velocity_m_s.map_or_else(Vector3::zeros, |velocity| velocity.mean);
+        let back = level * (place_m - on_map.position_m) * HOLD_1_S2 - velocity_m_s * HOLD_1_S;
+        Some(Setpoint::acceleration(back.cap_magnitude(limits.braking_m_s2)))
+    }
+
+    /// What every vehicle of the group keeps to.
+    pub fn limits(&self) -> &Limits {
+        self.safety.limits()
+    }
+
+    /// What the last set-point rests upon.
+    pub fn basis(&self) -> Basis {
+        self.basis
+    }
+
+    /// How far it takes it for known that nobody is in a direction of the level frame who is not seen, m.
+    pub fn empty_m(&self, direction: &UnitVector3<f64>) -> f64 {
+        self.watch.empty_m(direction)
+    }
+
+    /// For how long it remembers who is not seen any more, s.
+    pub fn patience_s(&self) -> f64 {
+        self.watch.patience_s()
+    }
+}
+
+/// Gains of the place that is held, 1/s^2, and of its velocity, 1/s: critically damped.
+const HOLD_1_S2: f64 = 2.0;
+const HOLD_1_S: f64 = 2.8;
+
+/// All directions that are steeper, upwards and downwards.
+fn steep_cones(steep_rad: f64) -> [Cone; 2] {
+    let half_angle_rad = core::f64::consts::FRAC_PI_2 - steep_rad;
+    [Vector3::z_axis(), -Vector3::z_axis()].map(|axis| Cone { axis, half_angle_rad })
 }
 
 /// Cones within the field of a camera: one about its axis, and one to either side as far as the image is wider than high. Each is as wide as all

@@ -13,7 +13,10 @@ pub fn levelled(seen: &Seen, level_from_body: &Rotation3<f64>, tilt_sigma_rad: f
         let tilt = Matrix3::from_diagonal(&Vector3::new(1.0, 1.0, 0.0)) * (tilt_sigma_rad * tilt_sigma_rad);
         Normal { mean, covariance: about + lever * tilt * lever.transpose() }
     };
+    // what a bound is widened by is exceeded twice in a hundred million readings
+    let tilt_bound_rad = 6.0 * tilt_sigma_rad;
     Seen {
+        bearing_bound_rad: (seen.bearing_bound_rad + tilt_bound_rad).min(core::f64::consts::PI),
         bearing: Unit::new_normalize(level_from_body * seen.bearing.into_inner()),
         position_m: seen.position_m.map(turned),
         velocity_m_s: seen.velocity_m_s.map(turned),

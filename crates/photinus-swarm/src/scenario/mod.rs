@@ -91,6 +91,8 @@ pub struct Vehicle {
     pub kind: Arc<Kind>,
     /// How it decides.
     pub mind: MindPlan,
+    /// The height that it keeps by its altimeter whatever is wanted, m; without, it flies up and down as it wants.
+    pub height_m: Option<f64>,
     /// What stands in front of that, if anything.
     pub safety: Option<SafetyPlan>,
 }

@@ -108,6 +108,8 @@ impl Reader<'_> {
                 refused.advise(format!("there are: {names}"))
             })?;
             let mind = group.controller.clone().read(check, &key("controller"))?;
+            let height = |height_m| check.within(&key("height_m"), height_m, (-1e4, 1e4));
+            let height_m = group.height_m.map(height).transpose()?;
             let safety =
                 group.safety.as_ref().map(|safety| safety.read(check, &key("safety"))).transpose()?;
             layouts.push(self.layout(&key, &group)?);
@@ -116,6 +118,7 @@ impl Reader<'_> {
                     id: vehicles.len() as u32,
                     kind: Arc::clone(kind),
                     mind: mind.clone(),
+                    height_m,
                     safety: safety.clone(),
                 });
             }

@@ -170,6 +170,7 @@ pub(super) struct GroupTable {
     #[serde(default)]
     pub(super) jitter_m: f64,
     pub(super) controller: MindTable,
+    pub(super) height_m: Option<f64>,
     pub(super) safety: Option<SafetyTable>,
 }
 

@@ -12,6 +12,10 @@ use crate::vehicle::{Autopilot, Build, Instruments, Own, State, Wanted};
 const VELOCITY_INTEGRAL_1_S2: f64 = 0.6;
 const MOST_INTEGRAL_M_S2: f64 = 4.0;
 
+/// Gain of a height that is kept, 1/s, and the fastest climb towards it, m/s.
+const HEIGHT_1_S: f64 = 0.5;
+const MOST_CLIMB_M_S: f64 = 0.3;
+
 /// A vehicle.
 #[derive(Debug)]
 pub struct Robot {
@@ -30,6 +34,7 @@ pub struct Robot {
     instruments: Instruments,
     autopilot: Autopilot,
     mind: Mind,
+    height_m: Option<f64>,
     guard: Option<Guard>,
     reached: usize,
     obeys: Setpoint,
@@ -52,6 +57,7 @@ impl Robot {
             instruments,
             autopilot: Autopilot::default(),
             mind: vehicle.mind.mind(&Needs::of(scenario, index)),
+            height_m: vehicle.height_m,
             guard: vehicle.safety.as_ref().and_then(|plan| {
                 let sizes = (vehicle.kind.build.radius_m, scenario.period_s());
                 Guard::new(plan, sizes, &vehicle.kind.cameras, &scenario.obstacles)
@@ -73,9 +79,14 @@ impl Robot {
         matches!(self.mind, Mind::Seeing(_))
     }
 
-    /// What its safety layer's set-points rested upon: proven, slow, braking; `None` without one.
-    pub fn rested(&self) -> Option<[usize; 3]> {
-        self.guard.as_ref().map(|guard| guard.rested)
+    /// Its safety layer, where it has one.
+    pub fn guard(&self) -> Option<&Guard> {
+        self.guard.as_ref()
+    }
+
+    /// What it takes for its velocity, in its level frame, m/s.
+    pub fn believed_velocity_m_s(&self) -> Vector3<f64> {
+        self.own.velocity_m_s
     }
 
     /// Reads its instruments.
@@ -98,6 +109,9 @@ impl Robot {
         self.setpoint = match &mut self.mind {
             Mind::Seeing(controller) => {
                 let wanted = controller.command(&own, &self.seen, period_s);
+                let wanted = self
+                    .height_m
+                    .map_or(wanted, |height_m| at_height(wanted, height_m - self.own.height_m, &own));
                 let (position_m, heading_rad) = (self.state.position_m, self.state.heading_rad());
                 let on_map = OnMap { position_m, heading_rad };
                 self.guard
@@ -163,4 +177,18 @@ impl Robot {
             height_m: Some(self.own.height_m),
         }
     }
+}
+
+/// The same along the ground, and up and down only to where a height is missing, m.
+fn at_height(wanted: Setpoint, missing_m: f64, own: &OwnState) -> Setpoint {
+    let climb_m_s = (missing_m * HEIGHT_1_S).clamp(-MOST_CLIMB_M_S, MOST_CLIMB_M_S);
+    let motion = match wanted.motion {
+        Motion::Velocity(velocity) => Motion::Velocity(Vector3::new(velocity.x, velocity.y, climb_m_s)),
+        Motion::Acceleration(acceleration) => {
+            let climbs_m_s = own.velocity_m_s.map_or(0.0, |velocity| velocity.mean.z);
+            let up_m_s2 = (climb_m_s - climbs_m_s) * VELOCITY_GAIN_1_S;
+            Motion::Acceleration(Vector3::new(acceleration.x, acceleration.y, up_m_s2))
+        }
+    };
+    Setpoint { motion, ..wanted }
 }

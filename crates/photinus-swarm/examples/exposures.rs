@@ -1,0 +1,55 @@
+//! How large a flock is that sees by one exposure or another: a table of docs/swarm.md.
+//!
+//! ```text
+//! cargo run --release -p photinus-swarm --example exposures -- SEEDS
+//! ```
+
+#![allow(clippy::print_stdout, reason = "an example prints")]
+
+use std::path::Path;
+use std::sync::Arc;
+
+use photinus_io::Result;
+use photinus_swarm::perception::StandInTable;
+use photinus_swarm::scenario::carried;
+use photinus_swarm::{Grade, Metrics, Run};
+
+const EXPOSURES_US: [f64; 7] = [50.0, 100.0, 200.0, 400.0, 1000.0, 2000.0, 4000.0];
+
+fn main() -> Result<()> {
+    let seeds: usize = std::env::args().nth(1).and_then(|word| word.parse().ok()).unwrap_or(5);
+    let Some(exposure) = carried("exposure") else { return Ok(()) };
+    let scenario = exposure.read()?;
+    println!(
+        "| exposure, us | flights | extension at the end, m | its sigma, m | connected, % | largest part, % | collisions |\n|{}",
+        "---|".repeat(7)
+    );
+    for exposure_us in EXPOSURES_US {
+        let mut steady = scenario.clone();
+        (steady.exposure_us, steady.duration_s) = (exposure_us, 60.0);
+        steady.events.clear();
+        let run = Run {
+            scenario: Arc::new(steady),
+            path: Path::new("exposure").to_owned(),
+            grade: Grade::StandIn,
+            table: Arc::new(StandInTable::carried()),
+        };
+        println!("{}", row(exposure_us, &run.monte_carlo(seeds, 2, |_| true)?));
+    }
+    Ok(())
+}
+
+fn row(exposure_us: f64, flights: &[Metrics]) -> String {
+    let mean = |of: fn(&Metrics) -> Option<f64>| {
+        flights.iter().filter_map(of).sum::<f64>() / flights.len().max(1) as f64
+    };
+    format!(
+        "| {exposure_us:.0} | {} | {:.2} | {:.2} | {:.1} | {:.1} | {} |",
+        flights.len(),
+        mean(|m| m.final_extension_m),
+        mean(|m| m.extension_sigma_m),
+        100.0 * mean(|m| Some(m.connected)),
+        100.0 * mean(|m| Some(m.largest_part)),
+        flights.iter().map(|m| m.collisions).sum::<usize>(),
+    )
+}

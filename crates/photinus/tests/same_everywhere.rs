@@ -112,5 +112,5 @@ fn neighbours_are_the_same_bit_for_bit_on_every_machine() {
     }
     println!("{neighbours} neighbours, {posed} with an attitude, {modes} modes, {:#018x}", total.value());
     assert!(neighbours > 20 && posed > 15 && modes > neighbours);
-    assert_eq!(total.value(), 0x8635_8379_d3c7_7b63);
+    assert_eq!(total.value(), 0x4544_da2d_138c_b8d5);
 }

@@ -250,14 +250,16 @@ fn who_is_followed_is_drawn_with_a_tail_also_unseen() {
     let folder = Folder::new("followed");
     std::fs::create_dir_all(&folder.0).unwrap();
     let mut overlay = Overlay::new(Place::folder(folder.0.clone()), vec![camera()]).unwrap();
-    let picture = |overlay: &mut Overlay, time_s: f64, position_m: [f64; 3]| {
-        let record = FrameRecord { time_s: Some(time_s), tracks: vec![track(position_m)], ..record() };
+    let mut picture = |frame: u64, time_s: f64, position_m: [f64; 3]| {
+        let tracks = vec![track(position_m)];
+        let source = String::new();
+        let record = FrameRecord { frame: Some(frame), time_s: Some(time_s), source, tracks, ..record() };
         overlay.draw(0, &record, None, None, &[]).unwrap();
-        read_image(folder.0.join("overlay-000017.png")).unwrap().image
+        read_image(folder.0.join(format!("overlay-{frame:06}.png"))).unwrap().image
     };
-    let begun = picture(&mut overlay, 0.0, [-1.0, 0.5, 4.0]);
-    let gone_on = picture(&mut overlay, 1.0, [0.0, 0.5, 4.5]);
-    let later = picture(&mut overlay, 3.5, [0.0, 0.5, 4.5]);
+    let begun = picture(0, 0.0, [-1.0, 0.5, 4.0]);
+    let gone_on = picture(1, 1.0, [0.0, 0.5, 4.5]);
+    let later = picture(2, 3.5, [0.0, 0.5, 4.5]);
     let marked =
         |image: &GreyImage| image.pixels().iter().filter(|&&level| (90..200).contains(&level)).count();
     let [before, after] = [&begun, &gone_on].map(marked);

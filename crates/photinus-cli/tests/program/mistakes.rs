@@ -49,7 +49,7 @@ const FILES: [Mistake; 29] = [
     ("info empty.txt", 2, &["a file that holds nothing"]),
     ("info comment.toml", 2, &["nothing but comments"]),
     ("info v.mp4", 2, &["this is an MP4 video; decode it into a pipe: `ffmpeg -i v.mp4 -pix_fmt gray"]),
-    ("info bag.mcap", 2, &["this is an MCAP recording; export its frames as images"]),
+    ("info bag.mcap", 2, &["ended in the middle", "`photinus recover` mends a recording that was cut off"]),
     ("info photos.zip", 2, &["this is a ZIP archive; unpack it first"]),
     ("info nothing", 2, &["this is a folder without frames"]),
     ("info page.html", 0, &["page.html: a page for a browser", "open it in a browser"]),

@@ -254,7 +254,7 @@ fn a_full_disk_is_told_and_leaves_no_half_file() {
 fn a_file_that_may_not_grow_is_an_error_and_no_signal() {
     let stage = Stage::new("limit");
     stage.dataset("rec", 60);
-    let done = stage.shell("ulimit -f 16; $photinus locate rec -q --out r.jsonl");
+    let done = stage.shell("ulimit -f 64; $photinus locate rec -q --out r.jsonl");
     assert!(done.code == 1 && done.err.contains("File too large"), "{}", done.err);
     assert!(whole_lines(&stage.read("r.jsonl")) > 0);
     let done = stage.shell("ulimit -f 8; $photinus convert rec v.y4m");

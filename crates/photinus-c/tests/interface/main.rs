@@ -4,6 +4,7 @@
 
 mod compiled;
 mod header;
+mod installed;
 mod leaks;
 mod programs;
 mod same_bits;

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { WIDTH = 64, HEIGHT = 48, WARM = 2000, ROOM = 16 };
+enum { WIDTH = 64, HEIGHT = 48, WARM = 5000, ROOM = 16 };
 
 static const char CAMERA[] = "model = \"equidistant\"\nwidth_px = 64\nheight_px = 48\ncentre_px = [31.5, 23.5]\nfocal_px = [30.0, 30.0]\n";
 static const char AIRFRAME[] = "name = \"one\"\n[[led]]\nposition_m = [0.0, 0.0, 0.0]\naxis = [1.0, 0.0, 0.0]\nlobe = \"lambertian\"\n";

@@ -27,7 +27,7 @@ pub(crate) fn airframe() -> String {
 
 impl Shown {
     pub(crate) fn new() -> Self {
-        let scene = Scene::read(&scenes().join("near-pass.toml")).unwrap_or_else(|error| panic!("{error}"));
+        let scene = Scene::read(scenes().join("near-pass.toml")).unwrap_or_else(|error| panic!("{error}"));
         let frame = Simulator::new(&scene, 0).unwrap().frame(100).image;
         let (width, height) = (frame.width(), frame.height());
         let pixels: Vec<u8> = (0..height).flat_map(|row| frame.view().row(row).to_vec()).collect();

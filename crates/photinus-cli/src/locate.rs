@@ -263,7 +263,12 @@ fn neighbour_line(neighbour: &NeighbourRecord) -> String {
         Some(max) => format!("{:.2} to {max:.2} m", distance.min),
         None => format!("{:.2} m or more", distance.min),
     };
-    let who = neighbour.id.map_or(String::new(), |id| format!(" {id}"));
+    // As wide where somebody blinks and is not known yet.
+    let who = match (neighbour.id, neighbour.id_probability) {
+        (Some(id), _) => format!("  #{id:<3}"),
+        (None, Some(_)) => " ".repeat(6),
+        (None, None) => String::new(),
+    };
     let [x, y, z] = neighbour.bearing;
     let (azimuth, elevation) =
         (libm::atan2(x, z).to_degrees(), libm::atan2(-y, libm::hypot(x, z)).to_degrees());

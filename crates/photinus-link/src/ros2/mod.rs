@@ -20,7 +20,7 @@ use crate::ros::{
 use crate::topics;
 
 /// Who takes part in ROS.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Settings {
     /// `ROS_DOMAIN_ID`.
     pub domain: u16,
@@ -28,12 +28,6 @@ pub struct Settings {
     pub namespace: String,
     /// Full names of topics and what they are called instead.
     pub remaps: Vec<(String, String)>,
-}
-
-impl Default for Settings {
-    fn default() -> Self {
-        Self { domain: 0, namespace: String::new(), remaps: Vec::new() }
-    }
 }
 
 impl Settings {

@@ -6,12 +6,8 @@
 
 #![allow(clippy::print_stdout, reason = "an example prints")]
 
-use std::path::Path;
-use std::sync::Arc;
-
 use photinus_io::Result;
 use photinus_swarm::metrics::Contract;
-use photinus_swarm::perception::StandInTable;
 use photinus_swarm::scenario::CARRIED;
 use photinus_swarm::{Grade, Metrics, Run};
 
@@ -33,12 +29,7 @@ fn main() -> Result<()> {
         if scenario.vehicles.iter().all(|vehicle| vehicle.safety.is_none()) {
             continue;
         }
-        let run = Run {
-            scenario: Arc::new(scenario),
-            path: Path::new(carried.name).to_owned(),
-            grade,
-            table: Arc::new(StandInTable::carried()),
-        };
+        let run = Run::new(scenario, carried.name, grade);
         println!("{}", row(carried.name, grade, &run.monte_carlo(seeds, 2, |_| true)?));
     }
     Ok(())

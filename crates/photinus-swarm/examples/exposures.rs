@@ -6,11 +6,7 @@
 
 #![allow(clippy::print_stdout, reason = "an example prints")]
 
-use std::path::Path;
-use std::sync::Arc;
-
 use photinus_io::Result;
-use photinus_swarm::perception::StandInTable;
 use photinus_swarm::scenario::carried;
 use photinus_swarm::{Grade, Metrics, Run};
 
@@ -28,12 +24,7 @@ fn main() -> Result<()> {
         let mut steady = scenario.clone();
         (steady.exposure_us, steady.duration_s) = (exposure_us, 60.0);
         steady.events.clear();
-        let run = Run {
-            scenario: Arc::new(steady),
-            path: Path::new("exposure").to_owned(),
-            grade: Grade::StandIn,
-            table: Arc::new(StandInTable::carried()),
-        };
+        let run = Run::new(steady, "exposure", Grade::StandIn);
         println!("{}", row(exposure_us, &run.monte_carlo(seeds, 2, |_| true)?));
     }
     Ok(())

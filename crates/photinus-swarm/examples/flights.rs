@@ -6,12 +6,9 @@
 
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "an example prints")]
 
-use std::path::Path;
-use std::sync::Arc;
 use std::time::Instant;
 
 use photinus_io::Result;
-use photinus_swarm::perception::StandInTable;
 use photinus_swarm::scenario::CARRIED;
 use photinus_swarm::{Grade, Metrics, Run};
 
@@ -29,18 +26,16 @@ fn main() -> Result<()> {
     );
     let wanted = |name: &&str| words.len() < 3 || words[2..].iter().any(|word| word == name);
     for carried in CARRIED.iter().filter(|carried| wanted(&carried.name)) {
-        let scenario = Arc::new(carried.read()?);
-        let run = Run {
-            scenario: Arc::clone(&scenario),
-            path: Path::new(carried.name).to_owned(),
-            grade,
-            table: Arc::new(StandInTable::carried()),
-        };
+        let run = Run::new(carried.read()?, carried.name, grade);
         let started = Instant::now();
         let flights = run.monte_carlo(seeds, 2, |_| true)?;
         let took_s = started.elapsed().as_secs_f64();
-        eprintln!("{}: {:.2} s of flight per s", carried.name, scenario.duration_s * seeds as f64 / took_s);
-        println!("{}", row(carried.name, scenario.vehicles.len(), &flights));
+        eprintln!(
+            "{}: {:.2} s of flight per s",
+            carried.name,
+            run.scenario.duration_s * seeds as f64 / took_s
+        );
+        println!("{}", row(carried.name, run.scenario.vehicles.len(), &flights));
     }
     Ok(())
 }

@@ -6,11 +6,7 @@
 
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "an example prints")]
 
-use std::path::Path;
-use std::sync::Arc;
-
 use photinus_io::Result;
-use photinus_swarm::perception::StandInTable;
 use photinus_swarm::scenario::{CARRIED, Carried};
 use photinus_swarm::{Grade, Metrics, Run};
 
@@ -46,12 +42,7 @@ fn main() -> Result<()> {
         for grade in [Grade::Rendered, Grade::StandIn, Grade::Perfect] {
             let mut scenario = carried.read()?;
             scenario.duration_s = seconds;
-            let run = Run {
-                scenario: Arc::new(scenario),
-                path: Path::new(carried.name).to_owned(),
-                grade,
-                table: Arc::new(StandInTable::carried()),
-            };
+            let run = Run::new(scenario, carried.name, grade);
             let flights = run.monte_carlo(seeds, 2, |_| true)?;
             let cell = |of: fn(&Metrics) -> Option<f64>| {
                 let numbers: Vec<f64> = flights.iter().filter_map(of).collect();

@@ -35,6 +35,12 @@ pub enum Progress {
 }
 
 impl Run {
+    /// With the table that the program carries.
+    pub fn new(scenario: Scenario, path: impl Into<PathBuf>, grade: Grade) -> Self {
+        let table = Arc::new(StandInTable::carried());
+        Self { scenario: Arc::new(scenario), path: path.into(), grade, table }
+    }
+
     /// Flies under the scenario's own seed, with eyes shared out among `threads`; `watch` is shown the world at every frame, after everybody looked and
     /// decided, and stops the flight by its error.
     ///

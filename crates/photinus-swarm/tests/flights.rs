@@ -3,9 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
 use std::path::Path;
-use std::sync::Arc;
 
-use photinus_swarm::perception::StandInTable;
 use photinus_swarm::scenario::carried;
 use photinus_swarm::{Grade, Metrics, Run, Scenario};
 
@@ -40,12 +38,7 @@ fn group(positions: &str, headings: &str, controller: &str) -> String {
 fn run(text: &str, grade: Grade) -> Run {
     let path = Path::new("t.toml");
     let scenario = Scenario::parse(text, path).unwrap_or_else(|error| panic!("{error}"));
-    Run {
-        scenario: Arc::new(scenario),
-        path: path.to_owned(),
-        grade,
-        table: Arc::new(StandInTable::carried()),
-    }
+    Run::new(scenario, path, grade)
 }
 
 fn fly(run: &Run, threads: usize) -> Metrics {
@@ -55,8 +48,7 @@ fn fly(run: &Run, threads: usize) -> Metrics {
 fn of(name: &str, seconds: f64, grade: Grade) -> Run {
     let mut scenario = carried(name).unwrap().read().unwrap();
     scenario.duration_s = seconds;
-    let path = Path::new("t.toml").to_owned();
-    Run { scenario: Arc::new(scenario), path, grade, table: Arc::new(StandInTable::carried()) }
+    Run::new(scenario, "t.toml", grade)
 }
 
 #[test]

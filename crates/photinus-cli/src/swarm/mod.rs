@@ -13,11 +13,9 @@ mod seeds;
 mod told;
 
 use std::path::PathBuf;
-use std::sync::Arc;
 use std::time::Instant;
 
 use photinus_io::Error;
-use photinus_swarm::perception::StandInTable;
 use photinus_swarm::scenario::{CARRIED, carried};
 use photinus_swarm::{Grade, Run, Scenario};
 
@@ -128,7 +126,7 @@ pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> Result<(), Failure> {
         Perception::Perfect => Grade::Perfect,
     });
     let read = if own.is_some() { Vec::new() } else { vec![path.clone()] };
-    let run = Run { scenario: Arc::new(scenario), path, grade, table: Arc::new(StandInTable::carried()) };
+    let run = Run::new(scenario, path, grade);
     let mut targets = Targets::new(args.write, read);
     let target = args.out.as_deref().map(|out| targets.folder(out)).transpose()?;
     match args.seeds {

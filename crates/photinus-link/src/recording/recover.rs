@@ -35,7 +35,8 @@ pub fn recover(from: impl AsRef<Path>, to: impl AsRef<Path>) -> Result<Recovered
     let mut magic = [0; 5];
     let begins = source.read_exact(&mut magic).is_ok() && magic == *b"\x89MCAP";
     if !begins {
-        return Err(Error::format(from, "it is no MCAP recording"));
+        let refused = Error::format(from, "it is no MCAP recording");
+        return Err(refused.advise("name the file that `[record]` or `photinus convert` wrote"));
     }
     let file = File::open(from).map_err(|error| Error::io(from, error))?;
     let target = File::create_new(to).map_err(|error| Error::io(to, error))?;

@@ -10,7 +10,6 @@
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "an example prints")]
 
 use std::path::Path;
-use std::sync::Arc;
 
 use photinus_io::Result;
 use photinus_swarm::perception::{Sampling, StandInTable};
@@ -24,12 +23,7 @@ fn main() -> Result<()> {
         let mut scenario = Scenario::parse(include_str!("fit.toml"), path)?;
         scenario.seed = seed;
         scenario.exposure_us = [1000.0, 2000.0, 500.0][seed as usize % 3];
-        let run = Run {
-            scenario: Arc::new(scenario),
-            path: path.to_owned(),
-            grade: Grade::Rendered,
-            table: Arc::new(StandInTable::carried()),
-        };
+        let run = Run::new(scenario, path, Grade::Rendered);
         sampling.begin();
         run.fly(2, |world| {
             sampling.take(world);

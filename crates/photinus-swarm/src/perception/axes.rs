@@ -39,23 +39,13 @@ mod tests {
 
     use super::*;
     use crate::chance::{Chance, Use};
+    use crate::perception::hand_made;
 
     fn seen() -> Seen {
-        let mean = Vector3::new(6.0, -2.0, 1.0);
         let covariance = Matrix3::from_diagonal(&Vector3::new(0.4, 0.02, 0.01));
+        let seen = hand_made::seen(Vector3::new(6.0, -2.0, 1.0), covariance);
         let bounds = Interval::new(5.0, 8.0).unwrap();
-        Seen {
-            track: 1,
-            identity: None,
-            bearing: Unit::new_normalize(mean),
-            bearing_bound_rad: 0.01,
-            distance: Distance { estimate: None, bounds, perpendicular_m: None, inline_m: None },
-            position_m: Some(Normal { mean, covariance }),
-            velocity_m_s: None,
-            heading: None,
-            probability: 1.0,
-            age_s: 0.0,
-        }
+        Seen { bearing_bound_rad: 0.01, distance: Distance { bounds, ..seen.distance }, ..seen }
     }
 
     #[test]

@@ -11,6 +11,8 @@
 //! Eyes are handed the truth, because they make pictures of it; what leaves them is all that a controller gets.
 
 mod axes;
+#[cfg(test)]
+mod hand_made;
 mod perfect;
 mod rendered;
 mod sight;
@@ -34,7 +36,8 @@ use crate::vehicle::Own;
 use crate::world::Obstacle;
 
 /// How vehicles see.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Grade {
     /// Frames are rendered, and Photinus locates in them.
     Rendered,

@@ -13,11 +13,10 @@ use super::files::Library;
 use super::kind;
 use super::place::{Place as Layouts, Start};
 use super::table::{
-    DaylightTable, EventTable, FacingName, GradeName, GroupTable, InstrumentsTable, ObstacleTable,
-    PlaceTable, PresetName, ScenarioTable, SkyName, WindTable,
+    DaylightTable, EventTable, FacingName, GroupTable, InstrumentsTable, ObstacleTable, PlaceTable,
+    PresetName, ScenarioTable, SkyName, WindTable,
 };
 use super::{Codes, Event, Happening, Kind, Layout, Scenario, Vehicle};
-use crate::perception::Grade;
 use crate::vehicle::{Accuracy, Wind};
 use crate::world::Obstacle;
 
@@ -169,11 +168,7 @@ impl Reader<'_> {
             daylight: table.daylight.map(|daylight| self.daylight(&daylight)).transpose()?,
             wind: self.wind(&table.wind)?,
             accuracy: self.accuracy(&table.instruments)?,
-            grade: match table.perception {
-                GradeName::Rendered => Grade::Rendered,
-                GradeName::StandIn => Grade::StandIn,
-                GradeName::Perfect => Grade::Perfect,
-            },
+            grade: table.perception,
             range_m: check.positive("range_m", table.range_m, 1e3)?,
             codes,
             vehicles,

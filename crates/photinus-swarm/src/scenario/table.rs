@@ -6,6 +6,7 @@ use serde::Deserialize;
 
 use crate::mind::guard::SafetyTable;
 use crate::mind::table::MindTable;
+use crate::perception::Grade;
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -21,7 +22,7 @@ pub(super) struct ScenarioTable {
     pub(super) exposure_us: f64,
     #[serde(default)]
     pub(super) preset: PresetName,
-    pub(super) perception: GradeName,
+    pub(super) perception: Grade,
     #[serde(default = "usual_range")]
     pub(super) range_m: f64,
     pub(super) daylight: Option<DaylightTable>,
@@ -57,14 +58,6 @@ pub(super) enum PresetName {
     Bluefox,
     #[serde(rename = "small-fisheye-960x600")]
     SmallFisheye,
-}
-
-#[derive(Clone, Copy, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub(super) enum GradeName {
-    Rendered,
-    StandIn,
-    Perfect,
 }
 
 #[derive(Deserialize)]

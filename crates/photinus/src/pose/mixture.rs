@@ -209,7 +209,7 @@ fn moments(components: &[Component], reference: &Rotation3<f64>, turns: usize) -
         distance_m += weight * away_m;
         distance2_m2 += weight * (ahead.dot(&(covariance * ahead)) + away_m * away_m);
         let Nearest { off, symmetric } = nearest_turn(reference, &component.pose.camera_from_body, turns);
-        let turned = component.turned(&symmetric);
+        let turned = symmetric.map_or(*component, |symmetric| component.turned(&symmetric));
         turn += weight * off;
         turn2 += weight * (turned.orientation_covariance_rad2 + off * off.transpose());
         both_m_rad += weight * (turned.position_orientation_covariance_m_rad + position_m * off.transpose());
@@ -232,21 +232,21 @@ fn moments(components: &[Component], reference: &Rotation3<f64>, turns: usize) -
 struct Nearest {
     /// What is left of the rotation, in the body frame: its yaw is the least that symmetry allows.
     off: Vector3<f64>,
-    /// The turn of the symmetry that is taken off.
-    symmetric: Rotation3<f64>,
+    /// The turn of the symmetry that is taken off, where one is.
+    symmetric: Option<Rotation3<f64>>,
 }
 
 fn nearest_turn(from: &Rotation3<f64>, to: &Rotation3<f64>, turns: usize) -> Nearest {
     let between = from.inverse() * to;
-    if turns == 1 {
-        return Nearest { off: turn_of(&between), symmetric: Rotation3::identity() };
-    }
     let sector_rad = core::f64::consts::TAU / turns as f64;
     let matrix = between.matrix();
     let yaw_rad = libm::atan2(matrix.m21 - matrix.m12, matrix.m11 + matrix.m22);
-    let back_rad = -(yaw_rad / sector_rad).round() * sector_rad;
-    let symmetric = Rotation3::from_axis_angle(&Vector3::z_axis(), back_rad);
-    Nearest { off: turn_of(&(between * symmetric)), symmetric }
+    let sectors = (yaw_rad / sector_rad).round();
+    if turns == 1 || sectors == 0.0 {
+        return Nearest { off: turn_of(&between), symmetric: None };
+    }
+    let symmetric = Rotation3::from_axis_angle(&Vector3::z_axis(), -sectors * sector_rad);
+    Nearest { off: turn_of(&(between * symmetric)), symmetric: Some(symmetric) }
 }
 
 impl Component {

@@ -102,29 +102,14 @@ fn surer(a: &Seen, b: &Seen) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use nalgebra::{Matrix3, Unit, Vector3};
-    use photinus::locator::Distance;
-    use photinus::ranging::Interval;
-    use photinus_control::Normal;
+    use nalgebra::{Matrix3, Vector3};
 
     use super::*;
+    use crate::perception::hand_made;
 
     fn track(track: u64, place: [f64; 3], sigma_m: f64) -> Seen {
-        let mean = Vector3::from(place);
         let covariance = Matrix3::identity() * sigma_m * sigma_m;
-        let bounds = Interval::new(0.5 * mean.norm(), 2.0 * mean.norm()).unwrap();
-        Seen {
-            track,
-            identity: None,
-            bearing: Unit::new_normalize(mean),
-            bearing_bound_rad: 0.1,
-            distance: Distance { estimate: None, bounds, perpendicular_m: None, inline_m: None },
-            position_m: Some(Normal { mean, covariance }),
-            velocity_m_s: None,
-            heading: None,
-            probability: 1.0,
-            age_s: 0.0,
-        }
+        Seen { track, ..hand_made::seen(Vector3::from(place), covariance) }
     }
 
     fn tell(joint: &mut Joint, time_s: f64, tracks: &[(usize, Seen)]) -> Vec<Seen> {

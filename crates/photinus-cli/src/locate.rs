@@ -4,10 +4,9 @@ use std::path::{Path, PathBuf};
 
 use nalgebra::{Unit, Vector3};
 use photinus::camera::Bearing;
-use photinus::locator::Settings;
+use photinus::locator::{Kind, Settings};
 use photinus::lookout::Fleet;
 use photinus::ranging::SpotCurve;
-use photinus_io::airframe::{AirframeFile, Tolerances};
 use photinus_io::calibration::read_mounting;
 use photinus_io::dataset::{Dataset, DatasetCamera};
 use photinus_io::mask::MaskFile;
@@ -65,9 +64,9 @@ pub(crate) struct Args {
     /// The camera's calibration, in any format that `photinus info` knows [default: that of the dataset]
     #[arg(long, value_name = "FILE")]
     camera: Option<PathBuf>,
-    /// The neighbours' airframe: where its LEDs sit [default: that of the dataset]
+    /// The neighbours' airframe: where its LEDs sit; once for each kind of neighbour [default: those of the dataset]
     #[arg(long, value_name = "FILE")]
-    airframe: Option<PathBuf>,
+    airframe: Vec<PathBuf>,
     /// How the camera sits on its vehicle, as `photinus calibrate mounting` writes it: neighbours are told in the body frame, too
     /// [default: that of the dataset, if any]
     #[arg(long, value_name = "FILE")]
@@ -112,9 +111,10 @@ impl Args {
 
     /// The files that are read beside the input.
     fn files(&self) -> impl Iterator<Item = PathBuf> {
-        [&self.camera, &self.airframe, &self.spot_curve, &self.mounting]
+        [&self.camera, &self.spot_curve, &self.mounting]
             .into_iter()
             .flatten()
+            .chain(&self.airframe)
             .cloned()
             .chain(self.spot_options.file())
     }
@@ -126,17 +126,22 @@ impl Args {
         }
     }
 
-    fn airframe(&self, input: &Input, terminal: &Terminal) -> std::result::Result<AirframeFile, Failure> {
-        let of_dataset = input.dataset.as_ref().map(|dataset| dataset.path(&dataset.info().airframe));
-        let path = needed(self.airframe.as_deref(), "airframe", of_dataset)?;
-        beforehand::airframe(&path, terminal).map_err(Failure::input)
+    /// The kinds of neighbours that are looked for.
+    fn kinds(&self, input: &Input, terminal: &Terminal) -> std::result::Result<Vec<Kind>, Failure> {
+        let of_dataset = || input.dataset.as_ref().map(Dataset::airframes);
+        let named = (!self.airframe.is_empty()).then(|| self.airframe.clone());
+        let paths = named.or_else(of_dataset).ok_or_else(|| missing("airframe"))?;
+        let read = |path: PathBuf| beforehand::airframe(&path, terminal).map(|file| (path, file));
+        let files = paths.into_iter().map(read).collect::<photinus_io::Result<_>>();
+        let kinds = files.and_then(watch::told_apart).map_err(Failure::input)?;
+        Ok(kinds.into_iter().map(|file| self.pose_options.kind(file)).collect())
     }
 
-    fn settings(&self, airframe: &Tolerances) -> Settings {
+    fn settings(&self) -> Settings {
         Settings {
             spots: self.spot_options.settings(),
             max_tilt_rad: self.max_tilt.to_radians(),
-            pose: self.pose_options.settings(airframe),
+            pose: self.pose_options.settings(),
             min_probability: self.min_probability,
             budget: self.budget,
         }
@@ -146,7 +151,7 @@ impl Args {
     fn views(
         &self,
         input: &Input,
-        AirframeFile { airframe, tolerances, .. }: &AirframeFile,
+        kinds: &[Kind],
         terminal: &Terminal,
     ) -> std::result::Result<Vec<View>, Failure> {
         if self.camera.is_some() || self.spot_curve.is_some() || self.mounting.is_some() {
@@ -159,8 +164,8 @@ impl Args {
         let masks = self.spot_options.masks(input, terminal)?;
         let warn = |text: String| terminal.warning(format_args!("{}: {text}", input.name));
         let dataset = input.dataset.as_ref().filter(|_| !self.no_time);
-        let fleet = watch::fleet(dataset, airframe, warn).map_err(Failure::input)?;
-        let several = fleet.as_ref().is_some_and(Fleet::has_several_signals) && !self.track;
+        let fleets = watch::fleets(dataset, kinds, warn).map_err(Failure::input)?;
+        let several = fleets.iter().flatten().any(Fleet::has_several_signals) && !self.track;
         if several {
             terminal.warning(format_args!(
                 "{}: its vehicles carry several signals each, and are not followed: every frame is located by itself (--no-time says so at once, --track follows all the same)",
@@ -181,7 +186,7 @@ impl Args {
             };
             let curve = self.spot_curve(named, terminal)?;
             let mask = mask_of(mask.as_ref());
-            let view = View::new(camera.clone(), airframe, curve, self.settings(tolerances), mask)
+            let view = View::new(camera.clone(), kinds, curve, self.settings(), mask)
                 .map_err(|error| Failure::Input(error.to_string()))?
                 .mounted(mounting)
                 .level(self.gravity);
@@ -193,8 +198,8 @@ impl Args {
                 Some(dataset) => Turns::of(dataset, is_rig, mounting.as_ref()).map_err(Failure::input)?,
                 None => Turns::Unknown,
             };
-            let beside = (fleet.as_ref(), turns, of_dataset.map(|camera| camera.exposure_us));
-            let watch = Watch::new(&camera, airframe, &self.settings(tolerances), mask, beside)
+            let beside = (fleets.as_slice(), turns, of_dataset.map(|camera| camera.exposure_us));
+            let watch = Watch::new(&camera, kinds, &self.settings(), mask, beside)
                 .map_err(|error| Failure::Input(error.to_string()))?;
             Ok(view.following(watch))
         };
@@ -225,9 +230,9 @@ impl Args {
 pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> std::result::Result<(), Failure> {
     let done = args.output.done()?;
     let input = args.open_input()?;
-    let file = args.airframe(&input, terminal)?;
+    let kinds = args.kinds(&input, terminal)?;
     let read: Vec<PathBuf> = input.files.iter().cloned().chain(args.files()).collect();
-    let mut views = args.views(&input, &file, terminal)?;
+    let mut views = args.views(&input, &kinds, terminal)?;
     let cameras = views.iter().map(|view| view.camera.clone()).collect();
     let outputs = args.output.claim(args.csv.as_deref(), &read, cameras, lines)?;
     run::run(input, outputs, done.as_ref(), terminal, &mut views)
@@ -243,9 +248,11 @@ fn needed(
     what: &str,
     of_dataset: Option<PathBuf>,
 ) -> std::result::Result<PathBuf, Failure> {
-    named.map(Path::to_owned).or(of_dataset).ok_or_else(|| {
-        Failure::Input(format!("no {what}: give --{what} FILE, or a dataset folder, which names its own"))
-    })
+    named.map(Path::to_owned).or(of_dataset).ok_or_else(|| missing(what))
+}
+
+fn missing(what: &str) -> Failure {
+    Failure::Input(format!("no {what}: give --{what} FILE, or a dataset folder, which names its own"))
 }
 
 fn lines(entry: &Entry) -> Vec<String> {

@@ -1,7 +1,8 @@
 //! What the user may believe of neighbours before a frame tells.
 
+use photinus::locator::Kind;
 use photinus::pose::Settings;
-use photinus_io::airframe::Tolerances;
+use photinus_io::airframe::AirframeFile;
 
 use crate::number;
 
@@ -34,16 +35,26 @@ pub(crate) struct PoseArgs {
 
 impl PoseArgs {
     /// The settings of the estimator for an airframe that is known so well.
-    pub(crate) fn settings(&self, airframe: &Tolerances) -> Settings {
+    pub(crate) fn settings(&self) -> Settings {
         let default = Settings::default();
         Settings {
             tilt_sigma_rad: self.tilt_sigma.to_radians(),
-            marker_sigma_m: self.marker_sigma.or(airframe.position_sigma_m).unwrap_or(default.marker_sigma_m),
-            unit_sigma: self.power_spread.or(airframe.power_sigma).unwrap_or(default.unit_sigma),
+            marker_sigma_m: self.marker_sigma.unwrap_or(default.marker_sigma_m),
+            unit_sigma: self.power_spread.unwrap_or(default.unit_sigma),
             scale_sigma: self.scale_sigma,
             missed: self.miss_rate,
             use_brightness: !self.no_brightness,
             ..default
+        }
+    }
+
+    /// What is believed of a kind of vehicle: by the options, or else by its file.
+    pub(crate) fn kind(&self, AirframeFile { airframe, tolerances, .. }: AirframeFile) -> Kind {
+        let all = self.settings();
+        Kind {
+            airframe,
+            marker_sigma_m: self.marker_sigma.or(tolerances.position_sigma_m).unwrap_or(all.marker_sigma_m),
+            unit_sigma: self.power_spread.or(tolerances.power_sigma).unwrap_or(all.unit_sigma),
         }
     }
 }

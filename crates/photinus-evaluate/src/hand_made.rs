@@ -54,6 +54,7 @@ pub(crate) fn found_at(position_m: [f64; 3]) -> NeighbourRecord {
         position_orientation_covariance_m_rad: None,
         probability: None,
         misfit: None,
+        airframe_probability: None,
         runner_up: None,
         modes: vec![],
     }

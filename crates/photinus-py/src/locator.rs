@@ -166,7 +166,7 @@ impl Locator {
 impl Locator {
     /// The record with what was located in its frame.
     fn told(&self, mut record: FrameRecord, located: &Located) -> Record {
-        record.put_located(located, self.airframe.get().0.airframe.name());
+        record.put_located(located, &[self.airframe.get().0.airframe.name()]);
         if let Some(mounting) = &self.mounting {
             record.put_mounting(mounting);
         }

@@ -158,7 +158,7 @@ impl Dataset {
     /// The neighbours' airframe. Raises FileError.
     #[getter]
     fn airframe(&self, py: Python<'_>) -> PyResult<Airframe> {
-        Airframe::open(py, &self.dataset.path(&self.dataset.info().airframe))
+        Airframe::open(py, &self.dataset.path(&self.dataset.info().airframe.first))
     }
 
     /// The image that says where not to look, if there is one.

@@ -13,6 +13,7 @@
 
 mod clock;
 pub mod config;
+mod disputes;
 mod entry;
 pub mod exposure;
 pub mod fault;

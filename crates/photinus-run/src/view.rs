@@ -1,10 +1,9 @@
 //! What looks through one camera: enters a frame, leaves its record with neighbours, tracks and names, in the body frame where the mounting is known.
 
 use nalgebra::{Unit, Vector3};
-use photinus::airframe::Airframe;
 use photinus::camera::Camera;
 use photinus::frame::Mask;
-use photinus::locator::{Locator, LocatorError, Settings, Stage};
+use photinus::locator::{Kind, Locator, LocatorError, Settings, Stage};
 use photinus::ranging::SpotCurve;
 use photinus::spots::Spot;
 use photinus_io::calibration::MountingFile;
@@ -21,27 +20,28 @@ pub struct View {
     mask: Option<Mask>,
     locator: Locator,
     watch: Option<Watch>,
-    airframe: String,
+    /// The names of the neighbours' airframes, by kind.
+    airframes: Vec<String>,
     gravity: Option<Unit<Vector3<f64>>>,
 }
 
 impl View {
-    /// For neighbours that are built like `airframe`.
+    /// For neighbours of these kinds.
     ///
     /// # Errors
     /// [`LocatorError`] when a setting has no meaning, or the mask is of another size.
     pub fn new(
         camera: Camera,
-        airframe: &Airframe,
+        kinds: &[Kind],
         curve: Option<SpotCurve>,
         settings: Settings,
         mask: Option<&Mask>,
     ) -> std::result::Result<Self, LocatorError> {
-        let mut locator = Locator::new(camera.clone(), airframe, curve, settings)?;
+        let mut locator = Locator::of_kinds(camera.clone(), kinds, curve, settings)?;
         locator.set_mask(mask.cloned())?;
-        let airframe = airframe.name().to_owned();
+        let airframes = kinds.iter().map(|kind| kind.airframe.name().to_owned()).collect();
         let mask = mask.cloned();
-        Ok(Self { camera, mounting: None, mask, locator, watch: None, airframe, gravity: None })
+        Ok(Self { camera, mounting: None, mask, locator, watch: None, airframes, gravity: None })
     }
 
     /// How it sits on its vehicle, where that is known.
@@ -77,9 +77,9 @@ impl Work for View {
     fn fill(&mut self, entry: &mut Entry, clock: &mut Clock) -> Result<()> {
         let live = || self.watch.as_ref()?.down(entry.record.time_s?);
         entry.gravity = self.gravity.or(entry.gravity).or_else(live);
-        locate(entry, &mut self.locator, &self.airframe, clock)?;
+        locate(entry, &mut self.locator, &self.airframes, clock)?;
         if let Some(watch) = &mut self.watch {
-            watch.follow(entry, self.locator.located(), &self.airframe);
+            watch.follow(entry, self.locator.located());
             clock.lap("following");
         }
         if let Some(mounting) = &self.mounting {
@@ -126,7 +126,12 @@ impl Work for Vec<View> {
 ///
 /// # Errors
 /// [`Error`] when the frame is not of the camera's size.
-pub fn locate(entry: &mut Entry, locator: &mut Locator, airframe: &str, clock: &mut Clock) -> Result<()> {
+pub fn locate(
+    entry: &mut Entry,
+    locator: &mut Locator,
+    airframes: &[impl AsRef<str>],
+    clock: &mut Clock,
+) -> Result<()> {
     let gravity = entry.gravity.as_ref();
     let finished = &mut |stage| clock.lap(name(stage));
     let located = match &entry.image {
@@ -140,7 +145,7 @@ pub fn locate(entry: &mut Entry, locator: &mut Locator, airframe: &str, clock: &
             locator.locate_signalled(&spots, gravity, finished)
         }
     };
-    entry.record.put_located(located, airframe);
+    entry.record.put_located(located, airframes);
     Ok(())
 }
 

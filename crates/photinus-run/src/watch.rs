@@ -2,21 +2,23 @@
 //!
 //! In: the dataset's book of words, its vehicles, its gyro or odometry. Out: [`Watch`], which completes the record of each frame.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use nalgebra::{Rotation3, Unit, UnitQuaternion, Vector3};
 use photinus::airframe::Airframe;
 use photinus::camera::Camera;
 use photinus::frame::Mask;
 use photinus::identity::CodeBook;
-use photinus::locator::{Located, Settings};
+use photinus::locator::{Kind, Located, Settings};
 use photinus::lookout::{Fleet, FleetError, Glance, Lookout, LookoutError, Name, Vehicle};
 use photinus::tracking::{self, Placed, Turned};
+use photinus_io::airframe::AirframeFile;
 use photinus_io::calibration::MountingFile;
 use photinus_io::dataset::{self, Dataset, OdometryRow};
 use photinus_io::{Error, Result};
 
 use crate::Entry;
+use crate::disputes::Disputes;
 use crate::motion::Motion;
 
 /// The exposure of frames of which nobody says it, s.
@@ -26,58 +28,81 @@ const ODOMETRY_SIGMA_RAD: f64 = 3e-3;
 /// Attitudes of an odometry that are this far apart, s, say nothing of what is between.
 const LONGEST_GAP_S: f64 = 0.25;
 
-/// The vehicles of a dataset that blink, and are built like this.
+/// The vehicles of a dataset that blink, by kind; `None` where nobody of a kind does.
 ///
 /// # Errors
 /// [`Error`] when their words or rates make no fleet.
-pub fn fleet(
+pub fn fleets(
     dataset: Option<&Dataset>,
-    airframe: &Airframe,
+    kinds: &[Kind],
     mut warn: impl FnMut(String),
-) -> Result<Option<Fleet>> {
-    let Some(dataset) = dataset else { return Ok(None) };
-    let Some(book) = dataset.codes() else { return Ok(None) };
+) -> Result<Vec<Option<Fleet>>> {
+    let nobody = || Ok(kinds.iter().map(|_| None).collect());
+    let Some(dataset) = dataset else { return nobody() };
+    let Some(book) = dataset.codes() else { return nobody() };
     if dataset.vehicles().is_empty() {
         warn(
             "codes are given, but no vehicles: nobody can be named; list who blinks what in a vehicles.toml"
                 .to_owned(),
         );
-        return Ok(None);
+        return nobody();
     }
     let file = dataset.info().vehicles.as_deref().map(|named| dataset.path(named)).unwrap_or_default();
-    fleet_of(book, dataset.vehicles(), &file, airframe, warn)
+    fleets_of(book, dataset.vehicles(), &file, kinds, warn)
 }
 
-/// Those of `vehicles` that blink words of the book and are built like this; `file` is for the messages.
+/// Those of `all` that blink words of the book, by kind; `file` is for the messages.
 ///
 /// # Errors
 /// [`Error`] when their words or rates make no fleet.
-pub fn fleet_of(
+pub fn fleets_of(
     book: &CodeBook,
     all: &[dataset::Vehicle],
     file: &Path,
-    airframe: &Airframe,
+    kinds: &[Kind],
     mut warn: impl FnMut(String),
-) -> Result<Option<Fleet>> {
-    let mut vehicles = Vec::new();
+) -> Result<Vec<Option<Fleet>>> {
+    let mut vehicles = vec![Vec::new(); kinds.len()];
     for vehicle in all {
         let Some(blink) = &vehicle.blink else { continue };
-        if !is_built_like(&vehicle.airframe, airframe) {
+        let Some(kind) = kinds.iter().position(|kind| is_built_like(&vehicle.airframe, &kind.airframe))
+        else {
             let file = vehicle.airframe_file.display();
             warn(format!(
-                "vehicle {} is not looked for: it is built as {file}, and one kind of airframe is located at a time",
+                "vehicle {} is not looked for: it is built as {file}, which is none of the airframes given",
                 vehicle.id
             ));
             continue;
-        }
-        vehicles.push((Vehicle { id: vehicle.id, words: blink.words.clone() }, blink.bit_rate_hz));
-    }
-    if vehicles.is_empty() {
-        return Ok(None);
+        };
+        vehicles[kind].push((Vehicle { id: vehicle.id, words: blink.words.clone() }, blink.bit_rate_hz));
     }
     let refuse =
         |error: FleetError| Error::format(file, error.to_string()).advise("or locate with --no-time");
-    Fleet::new(book.clone(), vehicles).map(Some).map_err(refuse)
+    let fleet = |vehicles: Vec<_>| match vehicles.is_empty() {
+        true => Ok(None),
+        false => Fleet::new(book.clone(), vehicles).map(Some).map_err(refuse),
+    };
+    vehicles.into_iter().map(fleet).collect()
+}
+
+/// The airframes that are told apart: those built alike are one kind.
+///
+/// # Errors
+/// [`Error`] for two kinds of one name: results tell them by it.
+pub fn told_apart(files: Vec<(PathBuf, AirframeFile)>) -> Result<Vec<AirframeFile>> {
+    let mut kinds: Vec<AirframeFile> = Vec::new();
+    for (path, file) in files {
+        if kinds.iter().any(|kind| is_built_like(&kind.airframe, &file.airframe)) {
+            continue;
+        }
+        let name = file.airframe.name();
+        if kinds.iter().any(|kind| kind.airframe.name() == name) {
+            let reason = format!("another kind of airframe is called `{name}`, too");
+            return Err(Error::format(path, reason).advise("give each a name of its own: results have them"));
+        }
+        kinds.push(file);
+    }
+    Ok(kinds)
 }
 
 /// Names of airframes are for people: LEDs count.
@@ -87,8 +112,10 @@ fn is_built_like(one: &Airframe, other: &Airframe) -> bool {
 
 /// What follows the vehicles that one camera sees.
 pub struct Watch {
-    lookout: Lookout,
-    has_names: bool,
+    /// By kind.
+    lookouts: Vec<(Lookout, bool)>,
+    airframes: Vec<String>,
+    disputes: Disputes,
     exposure_s: f64,
     turns: Turns,
     last_s: Option<f64>,
@@ -193,17 +220,28 @@ impl Watch {
     /// [`LookoutError`] when a setting has no meaning.
     pub fn new(
         camera: &Camera,
-        airframe: &Airframe,
+        kinds: &[Kind],
         settings: &Settings,
         mask: Option<&Mask>,
-        (fleet, turns, exposure_us): (Option<&Fleet>, Turns, Option<f64>),
+        (fleets, turns, exposure_us): (&[Option<Fleet>], Turns, Option<f64>),
     ) -> std::result::Result<Self, LookoutError> {
-        let mut lookout =
-            Lookout::new(camera.clone(), airframe, settings, tracking::Settings::default(), fleet)?;
-        lookout.set_mask(mask.cloned())?;
+        let lookout = |(number, (kind, fleet)): (usize, (&Kind, &Option<Fleet>))| {
+            let followed = tracking::Settings { kind: number, ..Default::default() };
+            let settings = Settings { pose: kind.believed(&settings.pose), ..*settings };
+            let mut lookout =
+                Lookout::new(camera.clone(), &kind.airframe, &settings, followed, fleet.as_ref())?;
+            lookout.set_mask(mask.cloned())?;
+            Ok((lookout, fleet.is_some()))
+        };
         Ok(Self {
-            lookout,
-            has_names: fleet.is_some(),
+            lookouts: kinds
+                .iter()
+                .zip(fleets)
+                .enumerate()
+                .map(lookout)
+                .collect::<std::result::Result<_, LookoutError>>()?,
+            disputes: Disputes::default(),
+            airframes: kinds.iter().map(|kind| kind.airframe.name().to_owned()).collect(),
             exposure_s: exposure_us.map_or(EXPOSURE_S, |us| us * 1e-6),
             turns,
             last_s: None,
@@ -219,19 +257,25 @@ impl Watch {
     }
 
     /// Completes the record of a frame that was located, if it has a time that comes after the one before.
-    pub fn follow(&mut self, entry: &mut Entry, located: &Located, airframe: &str) {
+    pub fn follow(&mut self, entry: &mut Entry, located: &Located) {
         let Some(time_s) = entry.record.time_s else { return };
         let turned = self.last_s.and_then(|last_s| self.turns.between(last_s, time_s));
         let exposure_s = entry.exposure_s.unwrap_or(self.exposure_s);
         let glance = Glance { time_s, exposure_s, turned, gravity: entry.gravity, located };
         let frame = entry.record.frame.unwrap_or_default();
-        if let Err(error) = self.lookout.look(&glance) {
-            self.remark("refused", || format!("frame {frame} tells nothing of tracks: {error}"));
-            return;
+        let mut placed = Placed::Newest;
+        for kind in 0..self.lookouts.len() {
+            let (lookout, has_names) = &mut self.lookouts[kind];
+            if let Err(error) = lookout.look(&glance) {
+                self.remark("refused", || format!("frame {frame} tells nothing of tracks: {error}"));
+                return;
+            }
+            let (tracked, names) = (lookout.tracked(), has_names.then(|| lookout.names()));
+            entry.record.add_tracked(tracked, names, kind, &self.airframes);
+            placed = tracked.placed;
         }
-        let (tracked, names) = (self.lookout.tracked(), self.has_names.then(|| self.lookout.names()));
-        entry.record.put_tracked(tracked, names, airframe);
-        let placed = tracked.placed;
+        self.disputes.settle(&mut entry.record.tracks);
+        entry.record.name_neighbours();
         if placed != Placed::Late {
             self.last_s = Some(time_s);
         }
@@ -258,7 +302,8 @@ impl Watch {
     /// Two that blink the words of one.
     fn tell_contested(&mut self, frame: u64) {
         let is_new = |name: &&Name| name.is_contested && !self.contested.contains(&name.id);
-        let Some(name) = self.lookout.names().iter().find(is_new) else { return };
+        let mut names = self.lookouts.iter().flat_map(|(lookout, _)| lookout.names());
+        let Some(name) = names.find(is_new) else { return };
         let id = name.id;
         self.contested.push(id);
         self.remarks.push(format!("frame {frame}: two tracks blink the words of vehicle {id}; none of them has its id meanwhile (said once)"));

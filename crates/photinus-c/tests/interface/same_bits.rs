@@ -58,8 +58,9 @@ fn record(shown: &Shown, camera: &Camera, file: &AirframeFile) -> FrameRecord {
         neighbours: Vec::new(),
         tracks: Vec::new(),
     };
-    record.put_located(locator.located(), file.airframe.name());
-    record.put_tracked(lookout.tracked(), None, file.airframe.name());
+    record.put_located(locator.located(), &[file.airframe.name()]);
+    record.add_tracked(lookout.tracked(), None, 0, &[file.airframe.name()]);
+    record.name_neighbours();
     record
 }
 

@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 
 use photinus_io::airframe::read_airframe;
 use photinus_io::dataset::{
-    Dataset, DatasetCamera, DatasetInfo, DatasetWriter, GravityLog, IMU_FILE, ODOMETRY_FILE, TruthFrame,
-    Vehicle, VehicleInfo, vehicles_text,
+    AirframeFiles, Dataset, DatasetCamera, DatasetInfo, DatasetWriter, GravityLog, IMU_FILE, ODOMETRY_FILE,
+    TruthFrame, Vehicle, VehicleInfo, vehicles_text,
 };
 use photinus_io::mask::read_mask;
 use photinus_io::spot_curve::read_spot_curve;
@@ -33,7 +33,7 @@ pub(super) struct DatasetSink {
 /// The files of a dataset, wherever they lie.
 struct Parts {
     camera: PathBuf,
-    airframe: PathBuf,
+    airframe: AirframeFiles,
     spot_curve: Option<PathBuf>,
     mask: Option<PathBuf>,
 }
@@ -51,9 +51,10 @@ impl DatasetSink {
         let of_source = |named: fn(&DatasetCamera) -> Option<&PathBuf>| {
             source.and_then(|(dataset, camera)| Some(dataset.path(named(camera)?)))
         };
-        let of_dataset = || source.map(|(dataset, _)| dataset.path(&dataset.info().airframe));
+        let of_dataset =
+            || source.map(|(dataset, _)| dataset.info().airframe.map(|named| dataset.path(named)));
         let camera = args.camera.clone().or_else(|| of_source(|camera| Some(&camera.camera)));
-        let airframe = args.airframe.clone().or_else(of_dataset);
+        let airframe = args.airframe.clone().map(AirframeFiles::from).or_else(of_dataset);
         let exposure_us = args.exposure_us.or(source.map(|(_, camera)| camera.exposure_us));
         let parts = Parts {
             camera: camera.ok_or_else(|| needed("camera"))?,
@@ -180,7 +181,7 @@ impl Parts {
     /// Only files that can be read make a dataset that can be.
     fn check(&self) -> Result<()> {
         let camera = read_camera(&self.camera)?.camera;
-        read_airframe(&self.airframe)?;
+        self.airframe.iter().try_for_each(|file| read_airframe(file).map(drop))?;
         self.spot_curve.as_ref().map(read_spot_curve).transpose()?;
         let mask = self.mask.as_ref().map(read_mask).transpose()?;
         mask.map_or(Ok(()), |mask| mask.check_size(camera.width(), camera.height()))
@@ -191,9 +192,14 @@ impl Parts {
             let extension = path.extension().map_or(String::new(), |e| format!(".{}", e.to_string_lossy()));
             PathBuf::from(format!("{name}{extension}"))
         };
+        let mut kinds = 0;
+        let airframe = |path: &PathBuf| {
+            kinds += 1;
+            inside(path, &if kinds == 1 { "airframe".to_owned() } else { format!("airframe-{kinds}") })
+        };
         DatasetInfo {
             camera: inside(&self.camera, "camera"),
-            airframe: inside(&self.airframe, "airframe"),
+            airframe: self.airframe.map(airframe),
             exposure_us,
             rate_hz,
             spot_curve: self.spot_curve.as_ref().map(|path| inside(path, "spot_curve")),
@@ -206,11 +212,11 @@ impl Parts {
     fn copy(&self, info: &DatasetInfo, out: &Path) -> Result<()> {
         let files = [
             (Some(&self.camera), Some(&info.camera)),
-            (Some(&self.airframe), Some(&info.airframe)),
             (self.spot_curve.as_ref(), info.spot_curve.as_ref()),
             (self.mask.as_ref(), info.mask.as_ref()),
         ];
-        for (from, to) in files.into_iter().filter_map(|(from, to)| from.zip(to)) {
+        let files = files.into_iter().filter_map(|(from, to)| from.zip(to));
+        for (from, to) in files.chain(self.airframe.iter().zip(info.airframe.iter())) {
             let to = out.join(to);
             std::fs::copy(from, &to).map_err(|error| Error::io(to, error))?;
         }

@@ -168,7 +168,7 @@ fn fly(scene: &Scene, making: &WholeFolder, terminal: &mut Terminal) -> std::res
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     let take = |rendered: Rendered| -> Result<()> {
         let (truth, mut entry) = apart(rendered);
-        photinus_run::locate(&mut entry, &mut locator, airframe.name(), &mut clock)?;
+        photinus_run::locate(&mut entry, &mut locator, &[airframe.name()], &mut clock)?;
         write_truth(&mut truth_file, &truth, &truth_path)?;
         results.write(&entry.record)?;
         if pace.is_due(truth.time_s) {

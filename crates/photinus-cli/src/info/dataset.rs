@@ -22,10 +22,11 @@ pub(super) fn dataset(folder: &Path) -> Result<Report> {
         [_] => "a dataset".to_owned(),
         several => format!("a dataset of {} cameras", several.len()),
     });
-    let airframe = read_airframe(dataset.path(&info.airframe));
-    let told =
-        airframe.map(|file| format!("{}: {}", info.airframe.display(), airframe::in_a_line(&file.airframe)));
-    part(&mut report, "airframe", told);
+    for named in info.airframe.iter() {
+        let file = read_airframe(dataset.path(named));
+        let told = file.map(|file| format!("{}: {}", named.display(), airframe::in_a_line(&file.airframe)));
+        part(&mut report, "airframe", told);
+    }
     if let Some(codes) = dataset.codes() {
         let words = format!("{} of {} bits", counted(codes.words().len(), "word"), codes.length());
         report.fact("codes", words);

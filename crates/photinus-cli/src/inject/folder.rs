@@ -46,7 +46,7 @@ impl Files<'_> {
     fn one(&mut self, info: DatasetInfo) -> Result<DatasetInfo> {
         Ok(DatasetInfo {
             camera: self.camera(&info.camera)?,
-            airframe: self.airframe(&info.airframe)?,
+            airframe: info.airframe.try_map(|named| self.airframe(named))?,
             spot_curve: self.copied(info.spot_curve)?,
             mask: self.copied(info.mask)?,
             codes: self.copied(info.codes)?,
@@ -68,7 +68,7 @@ impl Files<'_> {
         };
         let cameras = info.cameras.into_iter().map(camera).collect::<Result<_>>()?;
         Ok(RigInfo {
-            airframe: self.airframe(&info.airframe)?,
+            airframe: info.airframe.try_map(|named| self.airframe(named))?,
             codes: self.copied(info.codes)?,
             vehicles: info.vehicles.map(|named| self.vehicles(&named)).transpose()?,
             cameras,

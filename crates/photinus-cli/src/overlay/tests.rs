@@ -56,6 +56,7 @@ fn neighbour(spots: Vec<usize>, bearing: Vector3<f64>, distance_m: Distance) -> 
         position_orientation_covariance_m_rad: None,
         probability: None,
         misfit: None,
+        airframe_probability: None,
         runner_up: None,
         modes: Vec::new(),
     }

@@ -56,7 +56,7 @@ pub(super) fn save(
     };
     for &number in numbers {
         let (truth, mut entry) = apart(simulator.frame(number));
-        photinus_run::locate(&mut entry, &mut locator, airframe.name(), &mut clock).map_err(broken)?;
+        photinus_run::locate(&mut entry, &mut locator, &[airframe.name()], &mut clock).map_err(broken)?;
         let places_m: Vec<Vector3<f64>> =
             truth.neighbours.iter().map(|neighbour| Vector3::from(neighbour.position_m)).collect();
         let image = entry.image.as_ref().map(|image| image.view());

@@ -60,6 +60,7 @@ fn result(frame: u64) -> FrameRecord {
         position_orientation_covariance_m_rad: None,
         probability: None,
         misfit: None,
+        airframe_probability: None,
         runner_up: None,
         modes: vec![],
     };

@@ -20,6 +20,7 @@ mod doctor;
 mod evaluate;
 mod files_survive;
 mod inject;
+mod kinds;
 mod live;
 mod mistakes;
 mod mutated;

@@ -118,7 +118,7 @@ impl Row {
                 let located = locator.locate(&frame.image.view(), frame.gravity.as_ref(), &mut |_| ());
                 let located = located.expect("the camera's size");
                 let mut record = record_of(&frame);
-                record.put_located(located, told.name());
+                record.put_located(located, &[told.name()]);
                 lights.add(&located.sightings, &record.spots, &fallen);
                 records.push(record);
                 truth.extend(there);

@@ -90,6 +90,7 @@ fn record(number: u64, time_s: f64, place: &Vector3<f64>, sigma_m: f64) -> Frame
         position_orientation_covariance_m_rad: None,
         probability: None,
         misfit: None,
+        airframe_probability: None,
         runner_up: None,
         modes: vec![],
     };

@@ -10,7 +10,7 @@ impl Dataset {
     pub fn files(&self) -> Vec<PathBuf> {
         let info = self.info();
         let own = [DATASET_FILE, TRUTH_FILE, IMU_FILE, ODOMETRY_FILE].map(PathBuf::from);
-        let named = [Some(&info.airframe), info.codes.as_ref(), info.vehicles.as_ref()].into_iter().flatten();
+        let named = info.airframe.iter().chain(&info.codes).chain(&info.vehicles);
         let flown = self.vehicles().iter().map(|vehicle| &vehicle.airframe_file);
         let of_camera = |camera: &DatasetCamera| {
             let tables = [

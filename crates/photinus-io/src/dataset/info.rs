@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
+use super::airframe_key::AirframeFiles;
 use super::camera_key::CameraKey;
 use crate::{Error, Place, Result, physics, table};
 
@@ -12,8 +13,8 @@ use crate::{Error, Place, Result, physics, table};
 pub struct DatasetInfo {
     /// Any camera file that Photinus reads.
     pub camera: PathBuf,
-    /// Any airframe file that Photinus reads.
-    pub airframe: PathBuf,
+    /// Any airframe file that Photinus reads; several where neighbours are of several kinds.
+    pub airframe: AirframeFiles,
     /// Exposure of a frame, us.
     pub exposure_us: f64,
     /// Frames per second.
@@ -35,8 +36,8 @@ pub struct DatasetInfo {
 /// What dataset.toml says of a dataset with cameras that are mounted on one vehicle. Paths are relative to the folder.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RigInfo {
-    /// Any airframe file that Photinus reads.
-    pub airframe: PathBuf,
+    /// Any airframe file that Photinus reads; several where neighbours are of several kinds.
+    pub airframe: AirframeFiles,
     /// Exposure of a frame, us, of the cameras that do not say their own.
     pub exposure_us: f64,
     /// Frames per second.
@@ -88,7 +89,7 @@ pub enum DatasetToml {
 #[serde(deny_unknown_fields)]
 struct Table {
     camera: CameraKey,
-    airframe: PathBuf,
+    airframe: AirframeFiles,
     exposure_us: f64,
     rate_hz: f64,
     spot_curve: Option<PathBuf>,
@@ -148,7 +149,7 @@ impl DatasetInfo {
     pub(super) fn check(&self, path: &Path) -> Result<()> {
         check_numbers(path, self.exposure_us, self.rate_hz)?;
         check_named(path, "camera", Some(&self.camera))?;
-        check_named(path, "airframe", Some(&self.airframe))?;
+        check_airframes(path, &self.airframe)?;
         check_named(path, "spot_curve", self.spot_curve.as_ref())?;
         check_named(path, "mask", self.mask.as_ref())?;
         check_named(path, "codes", self.codes.as_ref())?;
@@ -159,7 +160,7 @@ impl DatasetInfo {
 impl RigInfo {
     pub(super) fn check(&self, path: &Path) -> Result<()> {
         check_numbers(path, self.exposure_us, self.rate_hz)?;
-        check_named(path, "airframe", Some(&self.airframe))?;
+        check_airframes(path, &self.airframe)?;
         check_named(path, "codes", self.codes.as_ref())?;
         check_named(path, "vehicles", self.vehicles.as_ref())?;
         if self.cameras.is_empty() {
@@ -198,6 +199,10 @@ fn check_numbers(path: &Path, exposure_us: f64, rate_hz: f64) -> Result<()> {
     physics::within(path, "exposure_us", exposure_us, &physics::EXPOSURE_US)?;
     physics::within(path, "rate_hz", rate_hz, &physics::RATE_HZ)?;
     Ok(())
+}
+
+fn check_airframes(path: &Path, files: &AirframeFiles) -> Result<()> {
+    files.iter().try_for_each(|file| check_named(path, "airframe", Some(file)))
 }
 
 fn check_named(path: &Path, key: &str, named: Option<&PathBuf>) -> Result<()> {

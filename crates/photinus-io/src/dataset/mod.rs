@@ -11,6 +11,7 @@
 //! ```
 //! Several cameras on one vehicle each have a frames.csv and a mounting of their own.
 
+mod airframe_key;
 mod camera_key;
 mod cameras;
 mod files;
@@ -31,6 +32,7 @@ use photinus::identity::CodeBook;
 
 use crate::codes::read_codes;
 use crate::{Error, Result, airframe, whole};
+pub use airframe_key::AirframeFiles;
 pub use cameras::DatasetCamera;
 pub use frames_csv::{FrameRow, parse_frames_csv};
 pub use gravity::GravityLog;
@@ -115,6 +117,19 @@ impl Dataset {
     /// The vehicles that there may be; empty when the dataset does not list them.
     pub fn vehicles(&self) -> &[Vehicle] {
         &self.vehicles
+    }
+
+    /// The airframes of the vehicles that there may be, a file each, as they can be opened: those that dataset.toml names, and further ones of its vehicles.
+    pub fn airframes(&self) -> Vec<PathBuf> {
+        let mut files: Vec<&PathBuf> = Vec::new();
+        for file in
+            self.info.airframe.iter().chain(self.vehicles.iter().map(|vehicle| &vehicle.airframe_file))
+        {
+            if !files.contains(&file) {
+                files.push(file);
+            }
+        }
+        files.into_iter().map(|file| self.path(file)).collect()
     }
 
     /// The truth of every frame that has one; `None` when the folder holds none.

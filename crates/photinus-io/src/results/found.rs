@@ -21,20 +21,34 @@ const SURE: f64 = 0.99;
 
 impl FrameRecord {
     /// Puts what was located in the place of the spots and neighbours that the record holds; what was rejected joins what
-    /// another detector rejected before. `airframe` is the name of the neighbours' airframe.
-    pub fn put_located(&mut self, located: &Located, airframe: &str) {
+    /// another detector rejected before. `airframes` are the names of those that were looked for, by kind. Tracks are added afterwards.
+    pub fn put_located(&mut self, located: &Located, airframes: &[impl AsRef<str>]) {
         self.incomplete = !located.is_complete;
         self.spots = located.sightings.iter().map(SpotRecord::from).collect();
         self.rejected.extend(located.rejected.iter().map(RejectedRecord::from));
-        let record = |neighbour| NeighbourRecord::new(neighbour, located, airframe);
+        let record = |neighbour| NeighbourRecord::new(neighbour, located, airframes);
         self.neighbours = located.neighbours.iter().map(record).collect();
+        self.tracks.clear();
     }
 
-    /// Puts in who is followed and who that may be, `None` where nobody blinks; and for each neighbour which of them it is: the one that was seen by most of
-    /// its spots.
-    pub fn put_tracked(&mut self, tracked: &Tracked, names: Option<&[Name]>, airframe: &str) {
-        let record = |track| TrackRecord::new(track, tracked, names, airframe);
-        self.tracks = tracked.tracks.iter().map(record).collect();
+    /// Adds who is followed of a kind and who that may be, `None` where nobody blinks. `airframes` are as for [`Self::put_located`]: no two kinds share a name,
+    /// nor numbers of tracks.
+    pub fn add_tracked(
+        &mut self,
+        tracked: &Tracked,
+        names: Option<&[Name]>,
+        kind: usize,
+        airframes: &[impl AsRef<str>],
+    ) {
+        let airframe = airframes.get(kind).map_or("", AsRef::as_ref);
+        let number = |track: &Track| track.id * airframes.len() as u64 + kind as u64;
+        let record =
+            |track| TrackRecord { track: number(track), ..TrackRecord::new(track, tracked, names, airframe) };
+        self.tracks.extend(tracked.tracks.iter().map(record));
+    }
+
+    /// Says of each neighbour which of the tracks it is: the one that was seen by most of its spots.
+    pub fn name_neighbours(&mut self) {
         for neighbour in &mut self.neighbours {
             let common = |track: &TrackRecord| {
                 track.spots.iter().filter(|spot| neighbour.spots.contains(spot)).count()
@@ -77,7 +91,8 @@ impl TrackRecord {
 }
 
 impl NeighbourRecord {
-    fn new(neighbour: &Neighbour, located: &Located, airframe: &str) -> Self {
+    fn new(neighbour: &Neighbour, located: &Located, airframes: &[impl AsRef<str>]) -> Self {
+        let airframe = airframes.get(neighbour.kind).map_or("", AsRef::as_ref);
         let orientation = neighbour.orientation;
         Self {
             track: None,
@@ -86,6 +101,7 @@ impl NeighbourRecord {
             velocity_m_s: None,
             velocity_covariance_m2_s2: None,
             airframe: airframe.to_owned(),
+            airframe_probability: (airframes.len() > 1).then_some(neighbour.kind_probability),
             spots: located.members(neighbour).to_vec(),
             bearing: (*neighbour.bearing.vector()).into(),
             distance_m: Distance::from(&neighbour.distance),
@@ -267,7 +283,7 @@ mod tests {
         let mut record: FrameRecord = serde_json::from_str(text).unwrap();
         let spots: Vec<Spot> = record.spots.iter().map(Spot::from).collect();
         let located = locator.locate_spots(&spots, None, &mut |_| ());
-        record.put_located(located, "quad");
+        record.put_located(located, &["quad"]);
 
         assert_eq!(record.rejected[0].reason, "sun", "what came in rejected stays");
         assert_eq!(record.spots.len() + record.rejected.len(), 4);

@@ -131,6 +131,9 @@ pub struct NeighbourRecord {
     pub velocity_covariance_m2_s2: Option<[[f64; 3]; 3]>,
     /// Name of its airframe.
     pub airframe: String,
+    /// How likely it is of that airframe rather than of another that is looked for; `None` where one kind is.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub airframe_probability: Option<f64>,
     /// Indices of its spots in the frame's list.
     pub spots: Vec<usize>,
     /// Unit vector towards it.

@@ -53,6 +53,7 @@ fn neighbour() -> NeighbourRecord {
         position_orientation_covariance_m_rad: None,
         probability: None,
         misfit: None,
+        airframe_probability: None,
         runner_up: None,
         modes: vec![],
     }

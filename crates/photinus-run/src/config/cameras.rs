@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use nalgebra::{Unit, Vector3};
-use photinus::locator;
+use photinus::locator::{self, Kind};
 use photinus::lookout::Fleet;
 use photinus::spots::Brightness;
 use photinus_io::airframe::{AirframeFile, read_airframe};
@@ -58,9 +58,8 @@ impl Config {
         let named = self.keys.camera.iter().enumerate().map(|(number, keys)| self.named(number, keys));
         let named: Vec<Named<'_>> = named.collect::<Result<_>>()?;
         let first = named.iter().find_map(|camera| camera.recording.as_ref());
-        let airframe = self.airframe(first.map(|(dataset, _)| dataset))?;
-        airframe.notes.iter().for_each(|text| note(text.clone()));
-        let fleet = self.fleet(first.map(|(dataset, _)| dataset), &airframe, note)?;
+        let kinds = self.kinds(first.map(|(dataset, _)| dataset), note)?;
+        let fleets = self.fleets(first.map(|(dataset, _)| dataset), &kinds, note)?;
         let clock = HostClock::start();
         let start_s = named
             .iter()
@@ -71,7 +70,7 @@ impl Config {
         let start_s = start_s.reduce(f64::min).unwrap_or(0.0);
         named
             .iter()
-            .map(|camera| self.camera(camera, &airframe, fleet.as_ref(), motion, (clock, start_s), note))
+            .map(|camera| self.camera(camera, (&kinds, &fleets), motion, (clock, start_s), note))
             .collect()
     }
 
@@ -94,51 +93,48 @@ impl Config {
         Ok(Named { keys, recording: Some((dataset, place)) })
     }
 
-    fn airframe(&self, dataset: Option<&Dataset>) -> Result<AirframeFile> {
-        let own = self.keys.airframe.as_ref().map(|keys| self.located(&keys.file));
-        let path = own.or_else(|| dataset.map(|dataset| dataset.path(&dataset.info().airframe)));
-        let Some(path) = path else {
+    fn kinds(&self, dataset: Option<&Dataset>, note: &mut dyn FnMut(String)) -> Result<Vec<Kind>> {
+        let own = self.keys.airframe.as_ref().map(|keys| keys.file.iter().map(|file| self.located(file)));
+        let paths = own.map(Iterator::collect).or_else(|| dataset.map(Dataset::airframes));
+        let Some(paths) = paths else {
             return Err(self.refuse(
                 "airframe",
                 "nobody says how neighbours are built",
                 "add [airframe] with file = \"...\"",
             ));
         };
-        read_airframe(path)
+        let read = |path: PathBuf| read_airframe(&path).map(|file| (path, file));
+        let files = watch::told_apart(paths.into_iter().map(read).collect::<Result<_>>()?)?;
+        let settings = &self.keys.locate;
+        files.iter().flat_map(|file| &file.notes).for_each(|text| note(text.clone()));
+        Ok(files.into_iter().map(|file| settings.kind(file)).collect())
     }
 
-    fn fleet(
+    fn fleets(
         &self,
         dataset: Option<&Dataset>,
-        airframe: &AirframeFile,
+        kinds: &[Kind],
         note: &mut dyn FnMut(String),
-    ) -> Result<Option<Fleet>> {
-        let fleet = match &self.keys.vehicles {
-            None => watch::fleet(dataset, &airframe.airframe, note)?,
+    ) -> Result<Vec<Option<Fleet>>> {
+        let fleets = match &self.keys.vehicles {
+            None => watch::fleets(dataset, kinds, note)?,
             Some(keys) => {
                 let codes = keys.codes.as_ref().map(|path| read_codes(self.located(path))).transpose()?;
                 let vehicles =
                     dataset::read_vehicles(&self.located(Path::new("")), &keys.file, codes.as_ref())?;
                 match codes {
-                    Some(book) => watch::fleet_of(
-                        &book,
-                        &vehicles,
-                        &self.located(&keys.file),
-                        &airframe.airframe,
-                        note,
-                    )?,
-                    None => None,
+                    Some(book) => watch::fleets_of(&book, &vehicles, &self.located(&keys.file), kinds, note)?,
+                    None => kinds.iter().map(|_| None).collect(),
                 }
             }
         };
-        Ok(fleet)
+        Ok(fleets)
     }
 
     fn camera(
         &self,
         named: &Named<'_>,
-        file: &AirframeFile,
-        fleet: Option<&Fleet>,
+        (kinds, fleets): (&[Kind], &[Option<Fleet>]),
         motion: &Motion,
         (clock, start_s): (HostClock, f64),
         note: &mut dyn FnMut(String),
@@ -168,15 +164,15 @@ impl Config {
             Some(path) => Some(read_spot_curve(path)?.curve),
             None => None,
         };
-        let settings = self.keys.locate.settings(file);
+        let settings = self.keys.locate.settings();
         let refuse = |error: String| Error::format(&self.path, error).at(Place::Key("locate".to_owned()));
-        let mut view = View::new(camera.clone(), &file.airframe, curve, settings, mask.as_ref())
+        let mut view = View::new(camera.clone(), kinds, curve, settings, mask.as_ref())
             .map_err(|error| refuse(error.to_string()))?
             .mounted(mounting)
             .level(self.gravity()?);
         let exposure_us =
             keys.exposure_us.or_else(|| named.of_dataset().map(|(_, camera)| camera.exposure_us));
-        let several = fleet.is_some_and(Fleet::has_several_signals);
+        let several = fleets.iter().flatten().any(Fleet::has_several_signals);
         if self.keys.locate.time.unwrap_or(!several) {
             let turns = match named.of_dataset() {
                 Some((dataset, camera)) => Turns::of(dataset, camera.name.is_some(), mounting.as_ref())?,
@@ -185,8 +181,8 @@ impl Config {
                     body_from_camera: mounting.body_from_camera,
                 }),
             };
-            let beside = (fleet, turns, exposure_us);
-            let watch = Watch::new(&camera, &file.airframe, &settings, mask.as_ref(), beside)
+            let beside = (fleets, turns, exposure_us);
+            let watch = Watch::new(&camera, kinds, &settings, mask.as_ref(), beside)
                 .map_err(|error| refuse(error.to_string()))?;
             view = view.following(watch);
         } else if several && self.keys.locate.time.is_none() {
@@ -250,7 +246,7 @@ fn began(clock: &HostClock, start_s: f64) -> Instant {
 }
 
 impl LocateKeys {
-    fn settings(&self, file: &AirframeFile) -> locator::Settings {
+    fn settings(&self) -> locator::Settings {
         let mut settings = locator::Settings::default();
         settings.spots.brightness = match (self.threshold, self.contrast) {
             (Some(level), _) => Brightness::Threshold(level),
@@ -265,13 +261,21 @@ impl LocateKeys {
         settings.budget = self.budget.unwrap_or(settings.budget);
         let pose = &mut settings.pose;
         pose.tilt_sigma_rad = self.tilt_sigma_deg.unwrap_or(5.0).to_radians();
-        let tolerances = &file.tolerances;
-        pose.marker_sigma_m =
-            self.marker_sigma_m.or(tolerances.position_sigma_m).unwrap_or(pose.marker_sigma_m);
-        pose.unit_sigma = self.power_spread.or(tolerances.power_sigma).unwrap_or(pose.unit_sigma);
+        pose.marker_sigma_m = of(self.marker_sigma_m, pose.marker_sigma_m);
+        pose.unit_sigma = of(self.power_spread, pose.unit_sigma);
         pose.scale_sigma = of(self.scale_sigma, 0.01);
         pose.missed = of(self.miss_rate, 0.02);
         pose.use_brightness = self.brightness.unwrap_or(true);
         settings
+    }
+
+    /// What is believed of a kind of vehicle: by the configuration, or else by its file.
+    fn kind(&self, AirframeFile { airframe, tolerances, .. }: AirframeFile) -> Kind {
+        let all = self.settings().pose;
+        Kind {
+            airframe,
+            marker_sigma_m: self.marker_sigma_m.or(tolerances.position_sigma_m).unwrap_or(all.marker_sigma_m),
+            unit_sigma: self.power_spread.or(tolerances.power_sigma).unwrap_or(all.unit_sigma),
+        }
     }
 }

@@ -13,6 +13,7 @@ mod tests;
 use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
 
+use photinus_io::dataset::AirframeFiles;
 use photinus_io::video::RawFormat;
 use photinus_io::{Error, Place, Result, table, whole};
 use serde::Deserialize;
@@ -113,7 +114,7 @@ enum TimesKey {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct AirframeKeys {
-    file: PathBuf,
+    file: AirframeFiles,
 }
 
 #[derive(Clone, Debug, Deserialize)]

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use photinus::airframe::{Airframe, Ring};
 use photinus::camera::{Ideal, IdealLaw, Model, Pixel};
-use photinus::locator::Settings;
+use photinus::locator::{Kind, Settings};
 use photinus_io::Error;
 use photinus_io::frames::Frame;
 use photinus_io::image::GreyImage;
@@ -19,7 +19,9 @@ fn view() -> View {
     let lens = Ideal::new(IdealLaw::Equidistant, [20.0; 2], Pixel::new(31.5, 23.5)).unwrap();
     let camera = photinus::camera::Camera::new(Model::Ideal(lens), 64, 48, None).unwrap();
     let ring = Ring { arms: 4, radius_m: 0.3, leds_per_arm: 1, splay_rad: 0.0 };
-    View::new(camera, &Airframe::from_ring("quad", ring).unwrap(), None, Settings::default(), None).unwrap()
+    let settings = Settings::default();
+    let quad = Kind::new(Airframe::from_ring("quad", ring).unwrap(), &settings.pose);
+    View::new(camera, &[quad], None, settings, None).unwrap()
 }
 
 fn frame(index: u64, time_s: f64) -> Entry {

@@ -9,7 +9,7 @@ use core::ops::Range;
 
 use super::context::Context;
 use super::grouping::Groups;
-use super::matching::Matcher;
+use super::kinds::Kinds;
 
 /// So many of the nearest observations are put together with one.
 const NEAREST: usize = 6;
@@ -90,12 +90,12 @@ impl Alternatives {
     }
 
     /// Looks at the handfuls of an observation, but those that were looked at before. Returns how many it looked at.
-    pub(super) fn look(&mut self, context: &Context<'_>, observation: usize, matcher: &mut Matcher) -> u32 {
+    pub(super) fn look(&mut self, context: &Context<'_>, observation: usize, kinds: &mut Kinds) -> u32 {
         if self.windows[observation].is_some() {
             return 0;
         }
-        self.open_window(context, observation, matcher);
-        let most = matcher.most_visible().max(1) as u32;
+        self.open_window(context, observation, kinds);
+        let most = kinds.most_visible().max(1) as u32;
         let (seen, first) = (self.seen_before(), self.looks.len());
         let mut looks = 0;
         for mask in (1usize..1 << self.window.len()).step_by(2) {
@@ -104,7 +104,7 @@ impl Alternatives {
             }
             looks += 1;
             self.gather(mask);
-            if let Some(log_density) = matcher.log_density(context, &self.handful) {
+            if let Some(log_density) = kinds.log_density(context, &self.handful) {
                 self.looks.push(Look { log_density, first: self.members.len(), spots: self.handful.len() });
                 self.members.extend_from_slice(&self.handful);
             }
@@ -154,13 +154,13 @@ impl Alternatives {
     }
 
     /// Opens the window around an observation.
-    fn open_window(&mut self, context: &Context<'_>, observation: usize, matcher: &Matcher) {
+    fn open_window(&mut self, context: &Context<'_>, observation: usize, kinds: &Kinds) {
         let own = &context.sightings[observation];
         let Self { window, nearest, .. } = self;
         context.near.nearest(own.bearing.vector(), 1 + NEAREST, nearest);
         nearest.retain(|&(_, index)| index != observation);
         self.beside[observation] = nearest.first().map(|&(_, index)| index);
-        let reach_rad = matcher.widest_rad(own);
+        let reach_rad = kinds.widest_rad(own);
         let within = nearest.iter().filter(|(gap2, _)| *gap2 < reach_rad * reach_rad);
         window.clear();
         window.push(observation);

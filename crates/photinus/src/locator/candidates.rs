@@ -15,6 +15,8 @@ const CLEAR_P_VALUE: f64 = 0.01;
 /// Observations that may be one neighbour, and what it then is.
 #[derive(Clone, Debug)]
 pub(super) struct Candidate {
+    /// Which of the kinds that are looked for.
+    pub(super) kind: usize,
     pub(super) bearing: Bearing,
     pub(super) distance: Distance,
     pub(super) position: Option<Position>,
@@ -35,6 +37,7 @@ pub(super) struct Candidate {
 
 /// What is told of a candidate besides which observations it is of.
 pub(super) struct Told {
+    pub(super) kind: usize,
     pub(super) bearing: Bearing,
     pub(super) distance: Distance,
     pub(super) position: Option<Position>,
@@ -92,13 +95,21 @@ impl Candidates {
         &self.modes[first_mode..first_mode + modes]
     }
 
-    /// The candidate of just these observations, ascending.
-    pub(super) fn find(&self, group: &[usize]) -> Option<usize> {
-        let mut candidate = self.last.get(*group.first()?).copied().flatten();
-        while let Some(index) = candidate.filter(|&index| self.members(index) != group) {
-            candidate = self.all[index].before;
-        }
-        candidate
+    /// The candidates of just these observations, ascending: one of each kind at most.
+    fn of<'a>(&'a self, group: &'a [usize]) -> impl Iterator<Item = &'a Candidate> {
+        let last = group.first().and_then(|&first| self.last.get(first).copied().flatten());
+        let with_first = std::iter::successors(last, |&index| self.all[index].before);
+        with_first.filter(move |&index| self.members(index) == group).map(|index| &self.all[index])
+    }
+
+    /// Whether just these observations, ascending, are a candidate.
+    pub(super) fn has(&self, group: &[usize]) -> bool {
+        self.of(group).next().is_some()
+    }
+
+    /// Whether they are one of this kind.
+    pub(super) fn has_as(&self, kind: usize, group: &[usize]) -> bool {
+        self.of(group).any(|candidate| candidate.kind == kind)
     }
 
     /// Whether these observations may be something else than one neighbour, for all that is known.
@@ -108,22 +119,22 @@ impl Candidates {
         clutter_log_density: &[f64],
         log_neighbours: f64,
     ) -> bool {
-        let Some(index) = self.find(group) else { return true };
-        let Candidate { log_density, misfit, worst_sigma, .. } = &self.all[index];
         let clutter: f64 = group.iter().map(|&spot| clutter_log_density[spot]).sum();
-        let is_clear = group.len() > 1
-            && log_density + log_neighbours - clutter > CLEAR_GAIN
-            && *worst_sigma < CLEAR_SIGMAS
-            && misfit.p_value() > CLEAR_P_VALUE;
-        !is_clear
+        let is_clear = |Candidate { log_density, misfit, worst_sigma, .. }: &Candidate| {
+            log_density + log_neighbours - clutter > CLEAR_GAIN
+                && *worst_sigma < CLEAR_SIGMAS
+                && misfit.p_value() > CLEAR_P_VALUE
+        };
+        group.len() < 2 || !self.of(group).any(is_clear)
     }
 
     /// Adds a candidate.
     pub(super) fn push(&mut self, group: &[usize], modes: &[Mode], told: Told) {
-        let Told { bearing, distance, position, orientation, misfit, worst_sigma, log_density } = told;
+        let Told { kind, bearing, distance, position, orientation, misfit, worst_sigma, log_density } = told;
         self.last.resize(self.last.len().max(group[0] + 1), None);
         let before = self.last[group[0]].replace(self.all.len());
         self.all.push(Candidate {
+            kind,
             bearing,
             distance,
             position,

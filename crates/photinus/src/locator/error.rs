@@ -7,6 +7,9 @@ use crate::{pose, spots};
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum LocatorError {
+    /// No kind of vehicle to look for.
+    #[error("no kind of vehicle to look for: give at least one airframe")]
+    NoKind,
     /// A setting of the detector has no meaning.
     #[error("{0}")]
     Spots(#[from] spots::SettingsError),

@@ -22,17 +22,15 @@ use super::context::Context;
 use super::explanation::Explanation;
 use super::fixtures::Fixtures;
 use super::grouping::Groups;
-use super::matching::Matcher;
+use super::kinds::{Kind, Kinds};
 use super::memory::Memory;
 use super::near::Near;
 use super::neighbour::Located;
-use super::posing::{self, Poser};
 use super::settings::Settings;
 use super::telling::Telling;
-use super::{Sighting, Stage};
-use crate::airframe::Airframe;
+use super::{LocatorError, Sighting, Stage};
 use crate::camera::{Camera, Watched};
-use crate::pose::{self, LogLight};
+use crate::pose::LogLight;
 
 /// Most first looks, each at what the one before leaves as clutter.
 const LOOKS: usize = 4;
@@ -57,8 +55,7 @@ pub(super) struct Inference {
     min_probability: f64,
     budget: u32,
     near: Near,
-    matcher: Matcher,
-    poser: Poser,
+    kinds: Kinds,
     groups: Groups,
     memory: Memory,
     size: [usize; 2],
@@ -79,23 +76,17 @@ pub(super) struct Inference {
 }
 
 impl Inference {
-    pub(super) fn new(
-        camera: &Camera,
-        airframe: &Airframe,
-        settings: &Settings,
-    ) -> Result<Self, pose::SettingsError> {
+    pub(super) fn new(camera: &Camera, kinds: &[Kind], settings: &Settings) -> Result<Self, LocatorError> {
         let size = [camera.width(), camera.height()];
         // A larger budget finds its room as it goes.
         let most = (settings.budget.min(Settings::DEFAULT_BUDGET) / LOOKS_PER_WEIGHING) as usize;
-        let faintest_light = posing::faintest_light(&settings.spots);
         let with_light = settings.pose.use_brightness;
         let clutter = Clutter::new(size, with_light);
         Ok(Self {
             min_probability: settings.min_probability,
             budget: settings.budget,
             near: Near::default(),
-            poser: Poser::new(airframe, settings.pose, &settings.spots)?,
-            matcher: Matcher::new(airframe, settings.max_tilt_rad, &settings.pose, faintest_light),
+            kinds: Kinds::new(kinds, settings)?,
             groups: Groups::default(),
             memory: Memory::new(clutter.counts().len()),
             size,
@@ -147,11 +138,11 @@ impl Inference {
             clutter: &[],
             log_neighbours: 0.0,
         };
-        let of_frame = self.groups.sort_out(&context, &mut self.matcher);
+        let of_frame = self.groups.sort_out(&context, &mut self.kinds);
         self.companions.find(sightings, self.size, self.with_light);
         self.fixtures.find(sightings);
         self.look(&context);
-        let clear_power = self.groups.clear_log_power(&context, &mut self.matcher);
+        let clear_power = self.groups.clear_log_power(&context, &mut self.kinds);
         finished(Stage::Grouping);
         let context = Context { power: self.memory.power().or(of_frame), ..context };
         let mut work = Work { left: self.budget };
@@ -165,18 +156,24 @@ impl Inference {
         }
         self.fixtures.remember(sightings, |spot| self.explanation.clutter(spot));
         self.memory.remember(self.clutter.counts(), self.explanation.neighbours(), clear_power);
-        self.near = near;
         located.is_complete = work.left > 0 && besides.is_empty();
+        self.telling.tell(
+            &self.candidates,
+            &self.explanation,
+            (self.min_probability, sightings.len()),
+            located,
+        );
+        self.kinds.widen_bounds(&context, located);
         located.sightings = all;
-        self.telling.tell(&self.candidates, &self.explanation, self.min_probability, located);
+        self.near = near;
         finished(Stage::Posing);
     }
 
     /// Takes a first look at each group, and tells from that how dense clutter is.
     fn look(&mut self, context: &Context<'_>) {
-        let Self { groups, first_clutter, besides, companions, fixtures, memory, matcher, .. } = self;
+        let Self { groups, first_clutter, besides, companions, fixtures, memory, kinds, .. } = self;
         let frame = Surroundings { sightings: context.sightings, besides, companions, fixtures, memory };
-        groups.look(context, matcher);
+        groups.look(context, kinds);
         let mut supposed = |share: f64| {
             groups.suppose(context.sightings.len(), share);
             let mut gain = f64::NAN;
@@ -200,7 +197,7 @@ impl Inference {
 
     /// Weighs the groups that may be neighbours by a first look, the likeliest first.
     fn weigh_groups(&mut self, context: &Context<'_>, work: &mut Work) {
-        let Self { groups, memory, first_clutter, candidates, promising, poser, matcher, .. } = self;
+        let Self { groups, memory, first_clutter, candidates, promising, kinds, .. } = self;
         let log_neighbours = log_neighbours(groups.neighbours(), memory);
         let context = Context { clutter: first_clutter.log_density(), log_neighbours, ..*context };
         candidates.clear();
@@ -209,9 +206,7 @@ impl Inference {
         promising.extend((0..groups.len()).filter(|&group| groups.gain(group) > poor_gain));
         promising.sort_unstable_by(|&a, &b| groups.gain(b).total_cmp(&groups.gain(a)).then(a.cmp(&b)));
         for &group in promising.iter() {
-            if work.weigh() {
-                poser.weigh(&context, groups.group(group), matcher, candidates);
-            }
+            kinds.weigh(&context, groups.group(group), candidates, || work.weigh());
         }
         self.explanation.explain(&self.candidates, context.clutter, log_neighbours);
     }
@@ -241,19 +236,18 @@ impl Inference {
         };
         let log_neighbours = log_neighbours(neighbours, &self.memory);
         let context = Context { clutter: clutter.log_density(), log_neighbours, ..*context };
-        let Self { alternatives, doubtful, groups, matcher, poser, candidates, explanation, .. } = self;
+        let Self { alternatives, doubtful, groups, kinds, candidates, explanation, .. } = self;
         explanation.hold(candidates);
         for &spot in doubtful.iter() {
             if work.left == 0 {
                 break;
             }
-            work.look(alternatives.look(&context, spot, matcher));
+            work.look(alternatives.look(&context, spot, kinds));
             let held = |handful: &[usize]| explanation.held(candidates, handful);
             alternatives.choose(&context, groups, spot, held);
             for handful in alternatives.chosen() {
-                let can_be = handful.len() <= matcher.most_visible() && candidates.find(handful).is_none();
-                if can_be && work.weigh() {
-                    poser.weigh(&context, handful, matcher, candidates);
+                if !candidates.has(handful) {
+                    kinds.weigh(&context, handful, candidates, || work.weigh());
                 }
             }
         }

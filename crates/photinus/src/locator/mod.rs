@@ -25,6 +25,7 @@ mod explanation;
 mod fixtures;
 mod grouping;
 mod inference;
+mod kinds;
 mod matching;
 mod memory;
 mod near;
@@ -46,6 +47,7 @@ use crate::spots::{Detector, Reason, Rejected, Spot};
 use cells::ByCell;
 pub use error::{LocateError, LocatorError};
 use inference::Inference;
+pub use kinds::Kind;
 pub use neighbour::{Distance, Located, Neighbour, Orientation, Position, RunnerUp};
 pub(crate) use posing::{RESOLUTION_PX, faintest_light, of_mean_calibration};
 pub use settings::Settings;
@@ -64,8 +66,8 @@ pub enum Stage {
     Posing,
 }
 
-/// Locates neighbours of one kind of airframe in the frames of one camera. Keeps its room from frame to frame, so that a
-/// warm locator allocates nothing.
+/// Locates neighbours of one kind of airframe, or of several, in the frames of one camera. Keeps its room from frame to
+/// frame, so that a warm locator allocates nothing.
 #[derive(Debug)]
 pub struct Locator {
     camera: Camera,
@@ -78,13 +80,26 @@ pub struct Locator {
 }
 
 impl Locator {
-    /// A locator; lays out what the airframe can look like, which takes a tenth of a second to a second.
+    /// A locator of one kind; lays out what the airframe can look like, which takes a tenth of a second to a second.
     ///
     /// # Errors
     /// [`LocatorError`] when a setting has no meaning.
     pub fn new(
         camera: Camera,
         airframe: &Airframe,
+        curve: Option<SpotCurve>,
+        settings: Settings,
+    ) -> Result<Self, LocatorError> {
+        Self::of_kinds(camera, &[Kind::new(airframe.clone(), &settings.pose)], curve, settings)
+    }
+
+    /// A locator of several kinds at once, each as likely beforehand. [`Neighbour::kind`] is the place in `kinds`.
+    ///
+    /// # Errors
+    /// [`LocatorError`] when a setting has no meaning, or there is no kind.
+    pub fn of_kinds(
+        camera: Camera,
+        kinds: &[Kind],
         curve: Option<SpotCurve>,
         settings: Settings,
     ) -> Result<Self, LocatorError> {
@@ -95,7 +110,7 @@ impl Locator {
             return Err(LocatorError::Probability(settings.min_probability));
         }
         let detector = Detector::with_optics(settings.spots, camera.optics().cloned())?;
-        let inference = Inference::new(&camera, airframe, &settings)?;
+        let inference = Inference::new(&camera, kinds, &settings)?;
         Ok(Self {
             camera,
             curve,

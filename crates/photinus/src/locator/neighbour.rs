@@ -54,13 +54,17 @@ pub struct RunnerUp {
 /// Another robot.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Neighbour {
+    /// Which of the kinds that are looked for it most likely is, from 0.
+    pub kind: usize,
+    /// How likely it is that kind, if it is there: 1 where one kind is looked for.
+    pub kind_probability: f64,
     /// Direction of the airframe's origin in the camera frame.
     pub bearing: Bearing,
     /// How far away.
     pub distance: Distance,
-    /// Where, over all modes.
+    /// Where, over all kinds and modes.
     pub position: Option<Position>,
-    /// How turned, over all modes.
+    /// How turned, over all modes of its kind.
     pub orientation: Option<Orientation>,
     /// How likely it is there at all.
     pub probability: f64,

@@ -39,6 +39,9 @@ const CALIBRATION_LENGTH_RAD: f64 = 0.5;
 /// Tells the neighbours behind groups of sightings.
 #[derive(Debug)]
 pub(super) struct Poser {
+    /// Which of the kinds that are looked for, and the logarithm of how likely it is beforehand.
+    kind: usize,
+    log_share: f64,
     airframe: Airframe,
     estimator: Estimator,
     hypotheses: Hypotheses,
@@ -52,12 +55,16 @@ pub(super) struct Poser {
 }
 
 impl Poser {
+    /// Of a kind, by its number among so many.
     pub(super) fn new(
         airframe: &Airframe,
         settings: pose::Settings,
         spots: &spots::Settings,
+        (kind, kinds): (usize, usize),
     ) -> Result<Self, SettingsError> {
         Ok(Self {
+            kind,
+            log_share: -libm::log(kinds as f64),
             airframe: airframe.clone(),
             estimator: Estimator::new(airframe, settings)?,
             hypotheses: Hypotheses::with_room(airframe.markers().len()),
@@ -80,7 +87,7 @@ impl Poser {
         matcher: &mut Matcher,
         candidates: &mut Candidates,
     ) {
-        if group.is_empty() || candidates.find(group).is_some() {
+        if group.is_empty() || candidates.has_as(self.kind, group) {
             return;
         }
         let Some(bounds) = self.estimate(context, group, matcher) else { return };
@@ -189,6 +196,7 @@ impl Poser {
         let within_m = length_m.clamp(bounds.min_m(), bounds.max_m());
         let [perpendicular_m, inline_m] = self.pairs.distances_m(context.sightings, group, markers);
         let told = Told {
+            kind: self.kind,
             bearing: Bearing::new(pose.position_m).unwrap_or(context.sightings[group[0]].bearing),
             distance: Distance { estimate: Some(distance), bounds, perpendicular_m, inline_m },
             position: Some(Position {
@@ -202,7 +210,9 @@ impl Poser {
             }),
             misfit: *misfit,
             worst_sigma: *worst_sigma,
-            log_density: log_evidence - log_range(group.len()) + power_agreement(context, group, *log_power),
+            log_density: log_evidence - log_range(group.len())
+                + power_agreement(context, group, *log_power)
+                + self.log_share,
         };
         candidates.push(group, modes, told);
     }

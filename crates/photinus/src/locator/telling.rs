@@ -32,19 +32,19 @@ impl Telling {
         Self { order: Vec::with_capacity(count), taken: Vec::new(), same: Vec::with_capacity(count) }
     }
 
-    /// Puts the neighbours that are at least so likely into `located`, in the order of their first observation.
+    /// Puts the neighbours that are at `least` so likely, of so many observations, into `located`, in the order of their first observation.
     pub(super) fn tell(
         &mut self,
         candidates: &Candidates,
         explanation: &Explanation,
-        least: f64,
+        (least, observations): (f64, usize),
         located: &mut Located,
     ) {
         located.neighbours.clear();
         located.members.clear();
         located.modes.clear();
         self.taken.clear();
-        self.taken.resize(located.sightings.len(), false);
+        self.taken.resize(observations, false);
         self.order.clear();
         let negligible = NEGLIGIBLE.min(least);
         self.order
@@ -108,7 +108,10 @@ impl Telling {
     ) {
         let candidate = candidates.get(own);
         let first_mode = located.modes.len();
-        for &(index, share) in &self.same {
+        let is_kind = |&&(index, _): &&(usize, f64)| candidates.get(index).kind == candidate.kind;
+        let all: f64 = self.same.iter().map(|&(_, share)| share).sum();
+        let of_kind: f64 = self.same.iter().filter(is_kind).map(|&(_, share)| share).sum();
+        for &(index, share) in self.same.iter().filter(is_kind) {
             let weigh = |mode: &Mode| Mode { weight: mode.weight * share, ..*mode };
             located.modes.extend(candidates.modes(index).iter().map(weigh));
         }
@@ -121,6 +124,8 @@ impl Telling {
         distance.estimate = estimate.or(distance.estimate);
         distance.bounds = bounds.unwrap_or(distance.bounds);
         located.neighbours.push(Neighbour {
+            kind: candidate.kind,
+            kind_probability: of_kind / all,
             bearing: candidate.bearing,
             distance,
             position: position.or(candidate.position),
@@ -171,9 +176,10 @@ impl Telling {
     }
 }
 
-/// Whether two candidates that share an observation are one neighbour: no further apart than they are unsure.
+/// Whether two candidates that share an observation are one neighbour: no further apart than they are unsure, or of the same observations, which are one
+/// vehicle of whatever kind.
 fn is_same(candidates: &Candidates, a: usize, b: usize) -> bool {
-    if a == b {
+    if a == b || candidates.members(a) == candidates.members(b) {
         return true;
     }
     let (Some(first), Some(second)) = (candidates.get(a).position, candidates.get(b).position) else {

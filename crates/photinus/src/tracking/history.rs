@@ -70,7 +70,7 @@ impl History {
             .spare
             .pop()
             .unwrap_or_else(|| Entry { moment: Moment::with_room(), state: State::empty(look.time_s, 0) });
-        entry.moment.keep(look);
+        entry.moment.keep(look, model.settings.kind);
         if place > 0 && place < self.entries.len() {
             let before_s = self.entries[place - 1].moment.time_s;
             self.entries[place].moment.follow(&mut entry.moment, before_s);

@@ -147,7 +147,7 @@ impl Moment {
     }
 
     /// Takes over a frame.
-    pub(super) fn keep(&mut self, look: &Look<'_>) {
+    pub(super) fn keep(&mut self, look: &Look<'_>, kind: usize) {
         let Look { time_s, turned, gravity, located, signals, lit, blinking } = *look;
         (self.time_s, self.turned, self.up) = (time_s, turned, gravity.map(|down| -down));
         self.observations.clear();
@@ -167,11 +167,11 @@ impl Moment {
         self.appearances.clear();
         self.members.clear();
         self.modes.clear();
-        for neighbour in &located.neighbours {
+        for neighbour in located.neighbours.iter().filter(|neighbour| neighbour.kind == kind) {
             let (members, modes) = (located.members(neighbour), located.modes(neighbour));
             let modes = &modes[..modes.len().min(MOST_MODES)];
             self.appearances.push(Appearance {
-                probability: neighbour.probability,
+                probability: neighbour.probability * neighbour.kind_probability,
                 first_member: self.members.len(),
                 members: members.len(),
                 first_mode: self.modes.len(),

@@ -29,6 +29,8 @@ pub struct Settings {
     pub min_existence: f64,
     /// How spots are given to vehicles.
     pub association: Association,
+    /// Which of the kinds that the locator looks for is followed: the others' spots are clutter to it. Default 0, the first.
+    pub kind: usize,
 }
 
 /// How spots are given to vehicles.
@@ -54,6 +56,7 @@ impl Default for Settings {
             coast_s: 3.0,
             min_existence: 0.5,
             association: Association::Joint,
+            kind: 0,
         }
     }
 }

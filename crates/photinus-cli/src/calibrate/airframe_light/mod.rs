@@ -111,7 +111,7 @@ fn tolerances(found: &Light, before: &Tolerances) -> Tolerances {
 }
 
 fn of_dataset(input: &Input) -> Option<PathBuf> {
-    input.dataset.as_ref().map(|dataset| dataset.path(&dataset.info().airframe))
+    input.dataset.as_ref().map(|dataset| dataset.path(&dataset.info().airframe.first))
 }
 
 /// Frames of one camera, and what locates the neighbour in them.

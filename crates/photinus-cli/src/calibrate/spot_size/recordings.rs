@@ -91,7 +91,7 @@ fn of_dataset(
     let frames = InputArgs::of(&[input.to_owned()], choice).open()?;
     let camera = frames.one_camera()?.cloned();
     let dataset = Dataset::read(input).map_err(Failure::input)?;
-    let airframe_file = dataset.path(&dataset.info().airframe);
+    let airframe_file = dataset.path(&dataset.info().airframe.first);
     let airframe = beforehand::airframe(&airframe_file, terminal).map_err(Failure::input)?.airframe;
     let truth = dataset.truth().map_err(Failure::input)?.ok_or_else(|| {
         let advice = "the distances must be known: add the truth, or give a table of distances and areas";

@@ -1,7 +1,7 @@
 //! Which spots are one neighbour.
 //!
 //! In: the sightings of a frame. Out: groups of them, each a neighbour, by the least total cost; what a group costs,
-//! [`Matcher`] says. Three steps, the later ones for fewer and fewer spots:
+//! [`Kinds`] says. Three steps, the later ones for fewer and fewer spots:
 //!
 //! 1. [`tree`]: the trees of nearest neighbours; every neighbour that keeps its distance in the image is a branch;
 //! 2. their cheapest cut into branches, from the top down, without looking into a branch that cannot be beaten;
@@ -15,7 +15,8 @@ use nalgebra::Vector3;
 
 use super::Sighting;
 use super::context::Context;
-use super::matching::{Matcher, NEIGHBOUR_NATS};
+use super::kinds::Kinds;
+use super::matching::NEIGHBOUR_NATS;
 use super::memory::LOG_POWER_SIGMA;
 use crate::pose::LogLight;
 use partition::{MOST_PARTITIONED, Partition};
@@ -99,25 +100,25 @@ impl GroupList {
 
 impl Groups {
     /// Finds the groups of a frame's observations, and what the clear ones tell of the light of its LEDs.
-    pub(super) fn sort_out(&mut self, context: &Context<'_>, matcher: &mut Matcher) -> Option<LogLight> {
-        self.tree.grow(context, matcher);
-        self.cut_tree(context, matcher);
-        let log_power = self.log_power(context, matcher);
+    pub(super) fn sort_out(&mut self, context: &Context<'_>, kinds: &mut Kinds) -> Option<LogLight> {
+        self.tree.grow(context, kinds);
+        self.cut_tree(context, kinds);
+        let log_power = self.log_power(context, kinds);
         let power = log_power.map(|value| LogLight { value, sigma: LOG_POWER_SIGMA });
         let context = &Context { power, ..*context };
         if power.is_some() && (0..self.list.len()).any(|group| self.is_doubtful(group)) {
-            self.cut_tree(context, matcher);
+            self.cut_tree(context, kinds);
         }
-        self.part_overlapping(context, matcher);
+        self.part_overlapping(context, kinds);
         self.put_in_order();
         power
     }
 
     /// Takes a first look at how well each group is one neighbour.
-    pub(super) fn look(&mut self, context: &Context<'_>, matcher: &mut Matcher) {
+    pub(super) fn look(&mut self, context: &Context<'_>, kinds: &mut Kinds) {
         self.first_looks.clear();
         for group in 0..self.list.len() {
-            let looked = matcher.log_density(context, self.list.group(group));
+            let looked = kinds.log_density(context, self.list.group(group));
             self.first_looks.push(match looked {
                 Some(log_density) => log_density,
                 None if self.is_doubtful(group) => f64::NEG_INFINITY,
@@ -168,12 +169,12 @@ impl Groups {
     }
 
     /// What neighbours that are clear by that look tell of the light of the frame's LEDs: the median of their logarithms.
-    pub(super) fn clear_log_power(&mut self, context: &Context<'_>, matcher: &mut Matcher) -> Option<f64> {
+    pub(super) fn clear_log_power(&mut self, context: &Context<'_>, kinds: &mut Kinds) -> Option<f64> {
         self.powers.clear();
         for group in 0..self.list.len() {
             let members = self.list.group(group);
             if members.len() > 1 && self.clutter[members[0]] < CLEAR_SHARE {
-                self.powers.extend(matcher.log_power(context, members));
+                self.powers.extend(kinds.log_power(context, members));
             }
         }
         self.powers.sort_unstable_by(f64::total_cmp);
@@ -195,18 +196,18 @@ impl Groups {
         self.list.group(self.of[observation])
     }
 
-    fn cut_tree(&mut self, context: &Context<'_>, matcher: &mut Matcher) {
+    fn cut_tree(&mut self, context: &Context<'_>, kinds: &mut Kinds) {
         self.list.clear();
-        self.tree.cost(|group| matcher.nats(context, group));
+        self.tree.cost(|group| kinds.nats(context, group));
         self.tree.cut(|group, nats| self.list.push(group.iter().copied(), nats));
     }
 
     /// What the clear neighbours of the frame tell of its LEDs' light: the median of their logarithms.
-    fn log_power(&mut self, context: &Context<'_>, matcher: &mut Matcher) -> Option<f64> {
+    fn log_power(&mut self, context: &Context<'_>, kinds: &mut Kinds) -> Option<f64> {
         self.powers.clear();
         for group in 0..self.list.len() {
             if self.list.group(group).len() >= CLEAR_SPOTS && !self.is_doubtful(group) {
-                self.powers.extend(matcher.log_power(context, self.list.group(group)));
+                self.powers.extend(kinds.log_power(context, self.list.group(group)));
             }
         }
         self.powers.sort_unstable_by(f64::total_cmp);
@@ -218,22 +219,22 @@ impl Groups {
     }
 
     /// Takes groups that overlap in the image apart and puts them together anew, at the least cost.
-    fn part_overlapping(&mut self, context: &Context<'_>, matcher: &mut Matcher) {
-        if matcher.most_visible() > LARGEST_ORDERED {
+    fn part_overlapping(&mut self, context: &Context<'_>, kinds: &mut Kinds) {
+        if kinds.most_visible() > LARGEST_ORDERED {
             return;
         }
         let (mut rounds, mut first) = (0, 0);
-        self.measure_circles(context.sightings, matcher);
+        self.measure_circles(context.sightings, kinds);
         while first < self.list.len() && rounds < MOST_ROUNDS {
             self.gather_around(first);
             let mut parted = false;
             if self.partition.groups() > 1 {
                 rounds += 1;
-                parted = self.partition.improve(|group| matcher.nats(context, group));
+                parted = self.partition.improve(|group| kinds.nats(context, group));
             }
             if parted {
                 self.replace_partitioned();
-                self.measure_circles(context.sightings, matcher);
+                self.measure_circles(context.sightings, kinds);
                 first = 0;
             } else {
                 first += 1;
@@ -241,7 +242,7 @@ impl Groups {
         }
     }
 
-    fn measure_circles(&mut self, sightings: &[Sighting], matcher: &Matcher) {
+    fn measure_circles(&mut self, sightings: &[Sighting], kinds: &Kinds) {
         self.circles.clear();
         for group in 0..self.list.len() {
             let members = self.list.group(group);
@@ -250,7 +251,7 @@ impl Groups {
             let off = |spot: &usize| (direction(spot) - middle).norm();
             let radius_rad = members.iter().map(off).fold(0.0, f64::max);
             let doubtful = self.is_doubtful(group);
-            let widest = |&spot: &usize| matcher.widest_rad(&sightings[spot]);
+            let widest = |&spot: &usize| kinds.widest_rad(&sightings[spot]);
             let reach_rad =
                 if doubtful { members.iter().map(widest).fold(f64::INFINITY, f64::min) } else { 0.0 };
             self.circles.push(Circle { middle, radius_rad, reach_rad, doubtful });

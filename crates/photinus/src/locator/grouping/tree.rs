@@ -1,7 +1,8 @@
 //! The trees of nearest neighbours (single linkage), and their cheapest cut. What is unlikely a marker is as far away as it is unlikely: it joins last.
 
 use crate::locator::context::Context;
-use crate::locator::matching::{IMPOSSIBLE, Matcher, NEIGHBOUR_NATS};
+use crate::locator::kinds::Kinds;
+use crate::locator::matching::{IMPOSSIBLE, NEIGHBOUR_NATS};
 
 /// A spot is joined to so many of the nearest, and to as many as one neighbour shows.
 const FEWEST_LINKS: usize = 16;
@@ -41,8 +42,8 @@ const LEAF: Branch =
 
 impl Tree {
     /// Grows the trees of a frame's observations.
-    pub(super) fn grow(&mut self, context: &Context<'_>, matcher: &Matcher) {
-        self.link_nearest(context, matcher);
+    pub(super) fn grow(&mut self, context: &Context<'_>, kinds: &Kinds) {
+        self.link_nearest(context, kinds);
         self.join(context.sightings.len());
         self.order_spots(context.sightings.len());
     }
@@ -87,10 +88,10 @@ impl Tree {
     }
 
     /// Links every spot to those nearest to it.
-    fn link_nearest(&mut self, context: &Context<'_>, matcher: &Matcher) {
+    fn link_nearest(&mut self, context: &Context<'_>, kinds: &Kinds) {
         let Self { doubts, nearest, links, .. } = self;
         let Context { sightings, near, .. } = *context;
-        let most = matcher.most_visible().max(FEWEST_LINKS) + 1;
+        let most = kinds.most_visible().max(FEWEST_LINKS) + 1;
         doubts.clear();
         doubts.extend(
             sightings.iter().map(|sighting| 1.0 + libm::exp(-sighting.spot.marker_log_odds.max(-20.0))),

@@ -1,0 +1,151 @@
+//! The kinds of vehicles that may be seen, taken together: a handful of observations is a neighbour of any one of them, each as likely beforehand.
+//!
+//! In: groups of observations. Out: how well a group is a neighbour of some kind, and a candidate for each kind that it may be.
+
+use super::Sighting;
+use super::candidates::Candidates;
+use super::context::Context;
+use super::error::LocatorError;
+use super::matching::Matcher;
+use super::neighbour::Located;
+use super::posing::{self, Poser};
+use super::settings::Settings;
+use crate::airframe::Airframe;
+use crate::pose;
+
+/// A group whose first look as one kind is less likely than as another by so much, nats, is not weighed as that kind.
+const UNLIKE: f64 = 12.0;
+
+/// A kind of vehicle that is looked for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Kind {
+    /// How it is built.
+    pub airframe: Airframe,
+    /// How far its markers are from where the airframe has them, m per axis: takes the place of [`pose::Settings::marker_sigma_m`].
+    pub marker_sigma_m: f64,
+    /// Spread of power between its LEDs, sigma of its natural logarithm: takes the place of [`pose::Settings::unit_sigma`].
+    pub unit_sigma: f64,
+}
+
+impl Kind {
+    /// An airframe of which nothing else is known than what the settings have of all.
+    pub fn new(airframe: Airframe, settings: &pose::Settings) -> Self {
+        Self { airframe, marker_sigma_m: settings.marker_sigma_m, unit_sigma: settings.unit_sigma }
+    }
+
+    /// What is believed of its pose, of these settings for all kinds.
+    pub fn believed(&self, settings: &pose::Settings) -> pose::Settings {
+        pose::Settings { marker_sigma_m: self.marker_sigma_m, unit_sigma: self.unit_sigma, ..*settings }
+    }
+}
+
+/// The kinds that are looked for.
+#[derive(Debug)]
+pub(super) struct Kinds {
+    each: Vec<Looked>,
+    /// How likely a group is each kind by a first look, for [`Self::weigh`].
+    looks: Vec<Option<f64>>,
+}
+
+/// What one kind is recognised by.
+#[derive(Debug)]
+struct Looked {
+    matcher: Matcher,
+    poser: Poser,
+}
+
+impl Kinds {
+    pub(super) fn new(kinds: &[Kind], settings: &Settings) -> Result<Self, LocatorError> {
+        if kinds.is_empty() {
+            return Err(LocatorError::NoKind);
+        }
+        let faintest_light = posing::faintest_light(&settings.spots);
+        let looked = |(number, kind): (usize, &Kind)| {
+            let (airframe, believed) = (&kind.airframe, kind.believed(&settings.pose));
+            Ok(Looked {
+                poser: Poser::new(airframe, believed, &settings.spots, (number, kinds.len()))?,
+                matcher: Matcher::new(airframe, settings.max_tilt_rad, &believed, faintest_light),
+            })
+        };
+        let each = kinds.iter().enumerate().map(looked).collect::<Result<_, LocatorError>>()?;
+        Ok(Self { each, looks: Vec::with_capacity(kinds.len()) })
+    }
+
+    /// Most spots that one neighbour can show.
+    pub(super) fn most_visible(&self) -> usize {
+        self.each.iter().map(|kind| kind.matcher.most_visible()).max().unwrap_or(0)
+    }
+
+    /// How far apart spots of one neighbour may be when one of them looks like this, rad: as near as its size suggests.
+    pub(super) fn widest_rad(&self, sighting: &Sighting) -> f64 {
+        self.each.iter().map(|kind| kind.matcher.widest_rad(sighting)).fold(0.0, f64::max)
+    }
+
+    /// What the claim costs that these spots, at least one, are one neighbour of some kind, nats.
+    pub(super) fn nats(&mut self, context: &Context<'_>, group: &[usize]) -> f64 {
+        self.each.iter_mut().map(|kind| kind.matcher.nats(context, group)).fold(f64::INFINITY, f64::min)
+    }
+
+    /// The light that an LED of a group would have straight ahead at 1 m if it is the neighbour it looks like, as a logarithm. Of several kinds nobody tells
+    /// it: as another kind the group is at another distance with other LEDs, and its own guess would confirm itself.
+    pub(super) fn log_power(&mut self, context: &Context<'_>, group: &[usize]) -> Option<f64> {
+        match self.each.as_mut_slice() {
+            [only] => only.matcher.log_power(context, group),
+            _ => None,
+        }
+    }
+
+    /// A first look at how likely a handful is one neighbour of any kind, as [`Matcher::log_density`] has it of one.
+    pub(super) fn log_density(&mut self, context: &Context<'_>, group: &[usize]) -> Option<f64> {
+        match self.each.as_mut_slice() {
+            [only] => only.matcher.log_density(context, group),
+            several => {
+                self.looks.clear();
+                self.looks.extend(several.iter_mut().map(|kind| kind.matcher.log_density(context, group)));
+                let best = likeliest(&self.looks)?;
+                let sum: f64 = self.looks.iter().flatten().map(|look| libm::exp(look - best)).sum();
+                Some(best + libm::log(sum / self.looks.len() as f64))
+            }
+        }
+    }
+
+    /// Widens the bounds of neighbours to those of every kind that they may be: no probability rules a kind out of a strict bound.
+    pub(super) fn widen_bounds(&mut self, context: &Context<'_>, located: &mut Located) {
+        if self.each.len() == 1 {
+            return;
+        }
+        let Located { neighbours, members, .. } = located;
+        for neighbour in neighbours {
+            let group = &members[neighbour.first_member..][..neighbour.members];
+            let bounds = &mut neighbour.distance.bounds;
+            let of_kinds = self.each.iter_mut().filter_map(|kind| kind.matcher.bounds(context, group));
+            *bounds = of_kinds.fold(*bounds, |all, own| all.hull(&own));
+        }
+    }
+
+    /// Adds the candidates that a group, ascending, is: one of each kind that it may be, where `has_work` for it.
+    pub(super) fn weigh(
+        &mut self,
+        context: &Context<'_>,
+        group: &[usize],
+        candidates: &mut Candidates,
+        mut has_work: impl FnMut() -> bool,
+    ) {
+        if self.each.len() > 1 {
+            self.log_density(context, group);
+        }
+        let likeliest = likeliest(&self.looks);
+        for (number, Looked { matcher, poser }) in self.each.iter_mut().enumerate() {
+            // What a look cannot tell it does not rule out.
+            let look = self.looks.get(number).copied().flatten();
+            let is_unlike = look.zip(likeliest).is_some_and(|(look, best)| look < best - UNLIKE);
+            if !is_unlike && group.len() <= matcher.most_visible() && has_work() {
+                poser.weigh(context, group, matcher, candidates);
+            }
+        }
+    }
+}
+
+fn likeliest(looks: &[Option<f64>]) -> Option<f64> {
+    looks.iter().copied().flatten().reduce(f64::max)
+}

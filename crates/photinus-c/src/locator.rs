@@ -5,7 +5,7 @@ use std::sync::{Mutex, MutexGuard, TryLockError};
 use nalgebra::{Unit, Vector3};
 use photinus::camera::Bearing;
 use photinus::frame::Mask;
-use photinus::locator;
+use photinus::locator::{self, Input};
 use photinus::lookout::{Glance, Lookout};
 use photinus::tracking;
 
@@ -57,7 +57,7 @@ impl State {
         // SAFETY: the caller of the border promises it for the time of the call.
         let view = unsafe { image.view(size)? };
         let located = locator
-            .locate(&view, gravity.as_ref(), &mut |_stage| ())
+            .locate(Input::frame(&view).gravity(gravity.as_ref()))
             .map_err(|error| Refusal::new(Status::Image, error))?;
         if let Some(lookout) = lookout {
             // How long an exposure lasts matters to what blinks alone.

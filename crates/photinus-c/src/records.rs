@@ -188,8 +188,8 @@ impl Frame {
     }
 }
 
-impl Neighbour {
-    pub(crate) fn new(neighbour: &locator::Neighbour, located: &Located) -> Self {
+impl From<&locator::Neighbour> for Neighbour {
+    fn from(neighbour: &locator::Neighbour) -> Self {
         let known = |value: Option<f64>| value.unwrap_or(f64::NAN);
         let locator::Neighbour { distance, position, orientation, misfit, runner_up, .. } = neighbour;
         Self {
@@ -211,8 +211,8 @@ impl Neighbour {
             misfit_dof: misfit.degrees,
             runner_up_probability: runner_up.probability,
             runner_up_distance_m: known(runner_up.distance_m),
-            members: located.members(neighbour).len(),
-            modes: located.modes(neighbour).len(),
+            members: neighbour.sightings.len(),
+            modes: neighbour.modes.len(),
         }
     }
 }

@@ -21,7 +21,7 @@ pub unsafe extern "C" fn photinus_neighbours(
     let places = || unsafe { Places::new(neighbours, capacity, count, "the neighbours") };
     tell(locator, places, |state, places| {
         let located = state.locator.located();
-        places.fill(located.neighbours.iter().map(|neighbour| Neighbour::new(neighbour, located)));
+        places.fill(located.neighbours.iter().map(Neighbour::from));
         Ok(())
     })
 }
@@ -38,7 +38,7 @@ pub unsafe extern "C" fn photinus_members(
     // SAFETY: as the header asks of its pointers.
     let places = || unsafe { Places::new(spots, capacity, count, "the numbers of spots") };
     tell(locator, places, |state, places| {
-        places.fill(state.locator.located().members(state.neighbour(neighbour)?).iter().copied());
+        places.fill(state.neighbour(neighbour)?.sightings.iter().copied());
         Ok(())
     })
 }
@@ -55,7 +55,7 @@ pub unsafe extern "C" fn photinus_modes(
     // SAFETY: as the header asks of its pointers.
     let places = || unsafe { Places::new(modes, capacity, count, "the modes") };
     tell(locator, places, |state, places| {
-        places.fill(state.locator.located().modes(state.neighbour(neighbour)?).iter().map(Mode::from));
+        places.fill(state.neighbour(neighbour)?.modes.iter().map(Mode::from));
         Ok(())
     })
 }

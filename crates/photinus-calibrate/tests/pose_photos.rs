@@ -17,7 +17,7 @@ use grid_photos::{Set, seven_by_five};
 use nalgebra::{Isometry3, Matrix3, Rotation3, Unit, UnitQuaternion, Vector3};
 use photinus::airframe::{Airframe, Led, Lobe};
 use photinus::camera::{Bearing, Camera, Pixel};
-use photinus::locator::{Located, Locator, Settings};
+use photinus::locator::{Input, Located, Locator, Settings};
 use photinus::pose::{self, Mode, pnp};
 use photinus::ranging::Estimate;
 use photinus::spots::Reason;
@@ -89,8 +89,7 @@ impl Search {
     /// The board in a photo of the set: the only neighbour, with all of its LEDs that the camera has a bearing for.
     fn find(&mut self, set: &Set, photo: usize) -> Found<'_> {
         let Self { camera, board, locator } = self;
-        let located =
-            locator.locate(&set.images[photo].view(), None, &mut |_| ()).expect("the camera's size");
+        let located = locator.locate(Input::frame(&set.images[photo].view())).expect("the camera's size");
         let found = Found::of(located, board, camera);
         let all: BTreeSet<usize> = found.leds.iter().copied().collect();
         let outside = located.rejected.iter().filter(|rejected| rejected.reason == Reason::Outside).count();
@@ -118,9 +117,9 @@ struct Found<'a> {
 impl<'a> Found<'a> {
     fn of(located: &'a Located, board: &'a Airframe, camera: &'a Camera) -> Self {
         let [neighbour] = &located.neighbours[..] else { panic!("{} neighbours", located.neighbours.len()) };
-        let modes = located.modes(neighbour);
+        let modes = &neighbour.modes;
         let pose = isometry(&modes[0]);
-        let sightings = || located.members(neighbour).iter().map(|&member| &located.sightings[member]);
+        let sightings = || neighbour.sightings.iter().map(|&member| &located.sightings[member]);
         let nearest = |centre: &Pixel| {
             let gap_px = |&led: &usize| off_px(&pose, board, led, centre, camera);
             (0..board.leds().len()).min_by(|a, b| gap_px(a).total_cmp(&gap_px(b))).expect("an LED")

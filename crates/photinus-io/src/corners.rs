@@ -46,7 +46,8 @@ const ADVICE: &str = "the first line must be `image,u,v` or `image,row,col`, opt
 ///
 /// # Errors
 /// [`Error`] with the line when the file cannot be read, has other columns, or a value is no number.
-pub fn read_corners(path: &Path) -> Result<Vec<PhotoCorners>> {
+pub fn read_corners(path: impl AsRef<Path>) -> Result<Vec<PhotoCorners>> {
+    let path = path.as_ref();
     let bytes = whole::read_bytes(path)?;
     let text = std::str::from_utf8(&bytes)
         .map_err(|_| Error::format(path, "it is no text").advise("save it as a CSV in UTF-8"))?;
@@ -57,7 +58,8 @@ pub fn read_corners(path: &Path) -> Result<Vec<PhotoCorners>> {
 ///
 /// # Errors
 /// As [`read_corners`].
-pub fn parse_corners(text: &str, path: &Path) -> Result<Vec<PhotoCorners>> {
+pub fn parse_corners(text: &str, path: impl AsRef<Path>) -> Result<Vec<PhotoCorners>> {
+    let path = path.as_ref();
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let mut lines = text.lines().zip(1..).filter(|(line, _)| !line.trim().is_empty());
     let header = lines.next().map_or("", |(line, _)| line);

@@ -3,6 +3,25 @@
 //! A reader returns a checked value of the `photinus` crate, or an [`Error`] that names the file, the place in it,
 //! the reason and what to do. A number from a file is never trusted: it may be NaN, infinite, huge or negative.
 //!
+//! ```no_run
+//! use photinus::locator::{Input, Locator, Settings};
+//! use photinus_io::airframe::read_airframe;
+//! use photinus_io::dataset::Dataset;
+//! use photinus_io::frames::FrameSource;
+//! use photinus_io::read_camera;
+//!
+//! let dataset = Dataset::read("recording")?;
+//! let camera = read_camera(dataset.path(&dataset.info().camera))?.camera;
+//! let airframe = read_airframe(&dataset.airframes()[0])?.airframe;
+//! let mut locator = Locator::new(camera, &airframe, None, Settings::default())?;
+//! for frame in FrameSource::dataset(dataset) {
+//!     let frame = frame?;
+//!     let located = locator.locate(Input::frame(&frame.image.view()).gravity(frame.gravity.as_ref()))?;
+//!     println!("{}: {} neighbours", frame.source, located.neighbours.len());
+//! }
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
 //! ```text
 //! image, video, dataset -> frames -> (photinus) -> results
 //! camera, airframe, mask, codes, spot_curve: what the method is told beforehand

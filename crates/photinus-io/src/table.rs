@@ -10,7 +10,8 @@ use crate::{ContentError, Error, Place, Result};
 ///
 /// # Errors
 /// [`Error`] with the line for what is no TOML, for unknown and missing keys, and for values of another kind.
-pub fn parse<T: DeserializeOwned>(text: &str, path: &Path) -> Result<T> {
+pub fn parse<T: DeserializeOwned>(text: &str, path: impl AsRef<Path>) -> Result<T> {
+    let path = path.as_ref();
     toml::from_str(text).map_err(|error| {
         let cause = ContentError::of::<T>(toml::from_str(text).ok(), || error.message().to_owned());
         let advice = cause.advice().unwrap_or("correct it there; docs/file-formats.md has an example");

@@ -5,7 +5,7 @@
 use nalgebra::{Unit, Vector3};
 use photinus::airframe::{Airframe, Led, Lobe, Ring};
 use photinus::camera::{Camera, KannalaBrandt, Model, Pixel};
-use photinus::locator::{Locator, Settings};
+use photinus::locator::{Input, Locator, Settings};
 use photinus_io::image::read_image;
 use photinus_testing::real_data;
 
@@ -59,10 +59,10 @@ fn a_board_of_leds_is_one_neighbour_at_its_distance() {
     for (photo, distance_m) in PHOTOS {
         let file = photos.join(format!("grid_{photo}.png"));
         let image = read_image(&file).expect("a photo").image;
-        let located = locator.locate(&image.view(), None, &mut |_| ()).expect("the camera's size");
+        let located = locator.locate(Input::frame(&image.view())).expect("the camera's size");
         assert_eq!(located.neighbours.len(), 1, "photo {photo}");
         let neighbour = &located.neighbours[0];
-        assert_eq!(located.members(neighbour).len(), 35, "photo {photo}");
+        assert_eq!(neighbour.sightings.len(), 35, "photo {photo}");
         let estimate = neighbour.distance.estimate.expect("an estimate");
         println!(
             "photo {photo}: {distance_m} m, estimate {estimate:.3?}, bounds {:.3?}",
@@ -93,9 +93,9 @@ fn a_board_of_leds_is_no_quadrotor() {
         let image = read_image(photos.join(format!("grid_{photo}.png"))).expect("a photo").image;
         // Each alone: the boards of the photos before would tell how dense clutter is.
         let mut locator = Locator::new(camera(), &quadrotor, None, settings).expect("a locator");
-        let located = locator.locate(&image.view(), None, &mut |_| ()).expect("the camera's size");
+        let located = locator.locate(Input::frame(&image.view())).expect("the camera's size");
         told.extend(located.neighbours.iter().map(|neighbour| {
-            let (probability, members) = (neighbour.probability, located.members(neighbour).len());
+            let (probability, members) = (neighbour.probability, neighbour.sightings.len());
             let spots = located.sightings.len();
             let misfit = neighbour.misfit;
             format!(

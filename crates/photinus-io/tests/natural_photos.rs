@@ -6,7 +6,7 @@ use std::path::Path;
 use nalgebra::Vector3;
 use photinus::airframe::{Airframe, Ring};
 use photinus::camera::{Camera, Ideal, IdealLaw, Model, Pixel};
-use photinus::locator::{Locator, Neighbour, Settings};
+use photinus::locator::{Input, Locator, Neighbour, Settings};
 use photinus_io::image::{GreyImage, read_image};
 use photinus_testing::natural_photos;
 
@@ -52,14 +52,14 @@ fn camera([width, height]: [usize; 2]) -> Camera {
 fn neighbours(picture: &GreyImage, airframe: &Airframe) -> Vec<String> {
     let camera = camera([picture.width(), picture.height()]);
     let mut locator = Locator::new(camera, airframe, None, Settings::default()).expect("default settings");
-    let located = locator.locate(&picture.view(), Some(&Vector3::y_axis()), &mut |_| ());
+    let located = locator.locate(Input::frame(&picture.view()).gravity(&Vector3::y_axis()));
     let located = located.expect("the camera's size");
     let line = |neighbour: &Neighbour| {
         let Neighbour { probability, misfit, distance, .. } = neighbour;
         format!(
             "{}: {probability:.3} likely, {} of {} spots, chi-square {:.1} of {}, {:.2?}",
             airframe.name(),
-            located.members(neighbour).len(),
+            neighbour.sightings.len(),
             located.sightings.len(),
             misfit.chi_square,
             misfit.degrees,

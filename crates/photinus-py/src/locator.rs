@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use photinus::locator::{self, Located, Settings};
+use photinus::locator::{self, Input, LocateError, Located, Settings};
 use photinus::pose;
 use photinus::spots::Spot;
 use photinus_io::airframe::Tolerances;
@@ -118,11 +118,8 @@ impl Locator {
         detached(py, || {
             // Whatever a fault left is made anew by the frame.
             let mut locator = self.locator.lock().unwrap_or_else(PoisonError::into_inner);
-            let located = locator.locate(&view, gravity.as_ref(), &mut |_stage| ()).map_err(|error| {
-                ImageError::new_err(format!(
-                    "{error}; give the calibration of this camera at this resolution"
-                ))
-            })?;
+            let located =
+                locator.locate(Input::frame(&view).gravity(gravity.as_ref())).map_err(wrong_size)?;
             Ok(self.told(record, located))
         })
     }
@@ -141,7 +138,8 @@ impl Locator {
             let spots: Vec<(Spot, Option<u32>)> =
                 record.spots.iter().map(|spot| (Spot::from(spot), spot.signal)).collect();
             let mut locator = self.locator.lock().unwrap_or_else(PoisonError::into_inner);
-            Ok(self.told(record, locator.locate_signalled(&spots, gravity.as_ref(), &mut |_stage| ())))
+            let input = Input::signalled(&spots).gravity(gravity.as_ref());
+            Ok(self.told(record, locator.locate(input).map_err(wrong_size)?))
         })
     }
 
@@ -172,4 +170,8 @@ impl Locator {
         }
         Record(Arc::new(record))
     }
+}
+
+fn wrong_size(error: LocateError) -> PyErr {
+    ImageError::new_err(format!("{error}; give the calibration of this camera at this resolution"))
 }

@@ -5,7 +5,7 @@
 
 use nalgebra::{Quaternion, Unit, UnitQuaternion, Vector3};
 use photinus::camera::{Bearing, Camera, Pixel};
-use photinus::locator::{Locator, Settings};
+use photinus::locator::{Input, Locator, Settings};
 use photinus::ranging::{AdjacentPair, Interval, bearing_bound_rad};
 use photinus::spots::{self, Brightness, Detector, Spot};
 use photinus_sim::Rendered;
@@ -148,7 +148,7 @@ impl<'a> Observer<'a> {
                 pair: widest_pair(self.rig, &self.pair, spots),
             });
         }
-        let located = self.locator.locate(&view, Some(&rendered.gravity), &mut |_| ()).ok()?;
+        let located = self.locator.locate(Input::frame(&view).gravity(&rendered.gravity)).ok()?;
         let spots: Vec<Spot> = located.sightings.iter().map(|sighting| sighting.spot.clone()).collect();
         let camera = self.rig.camera();
         let own_markers = markers(&lit, &spots, |spot| camera.bearing(spot.centre));

@@ -3,10 +3,11 @@
 use nalgebra::{Unit, Vector3};
 use photinus::camera::Camera;
 use photinus::frame::Mask;
-use photinus::locator::{Kind, Locator, LocatorError, Settings, Stage};
+use photinus::locator::{Input, Kind, Locator, LocatorError, Settings, Stage};
 use photinus::ranging::SpotCurve;
 use photinus::spots::Spot;
 use photinus_io::calibration::MountingFile;
+use photinus_io::image::GreyImage;
 use photinus_io::{Error, Place, Result};
 
 use crate::watch::Watch;
@@ -133,18 +134,15 @@ pub fn locate(
     clock: &mut Clock,
 ) -> Result<()> {
     let gravity = entry.gravity.as_ref();
-    let finished = &mut |stage| clock.lap(name(stage));
-    let located = match &entry.image {
-        Some(image) => locator.locate(&image.view(), gravity, finished).map_err(|error| {
-            let advice = "give the calibration of this camera at this resolution; frames are not scaled";
-            in_frame(Error::format(&entry.record.source, error.to_string()).advise(advice), entry)
-        })?,
-        None => {
-            let given = entry.record.spots.iter().map(|record| (Spot::from(record), record.signal));
-            let spots: Vec<(Spot, Option<u32>)> = given.collect();
-            locator.locate_signalled(&spots, gravity, finished)
-        }
-    };
+    let finished = &mut |stage: Stage| clock.lap(stage.name());
+    let view = entry.image.as_ref().map(GreyImage::view);
+    let given = entry.record.spots.iter().map(|record| (Spot::from(record), record.signal));
+    let spots: Vec<(Spot, Option<u32>)> = given.collect();
+    let input = view.as_ref().map_or_else(|| Input::signalled(&spots), Input::frame);
+    let located = locator.locate(input.gravity(gravity).finished(finished)).map_err(|error| {
+        let advice = "give the calibration of this camera at this resolution; frames are not scaled";
+        in_frame(Error::format(&entry.record.source, error.to_string()).advise(advice), entry)
+    })?;
     entry.record.put_located(located, airframes);
     Ok(())
 }
@@ -154,14 +152,5 @@ pub fn in_frame(error: Error, entry: &Entry) -> Error {
     match entry.record.frame {
         Some(frame) => error.at(Place::Frame(frame)),
         None => error,
-    }
-}
-
-fn name(stage: Stage) -> &'static str {
-    match stage {
-        Stage::Spots => "spots",
-        Stage::Bearings => "bearings",
-        Stage::Grouping => "grouping",
-        Stage::Posing => "posing",
     }
 }

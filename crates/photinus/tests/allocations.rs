@@ -12,7 +12,7 @@ use photinus::following::{self, Follower};
 use photinus::frame::{FrameView, Mask};
 use photinus::identity::decoder::{self, Decoder};
 use photinus::identity::{CodeBook, Evidence, Word};
-use photinus::locator::{self, Located, Locator};
+use photinus::locator::{self, Input, Located, Locator};
 use photinus::lookout::{Fleet, Glance, Lookout, Vehicle};
 use photinus::pose::{p3p, pnp};
 use photinus::spots::{Brightness, Detector, Extent, Settings, Spot};
@@ -154,7 +154,7 @@ fn a_warm_locator_allocates_nothing() {
     let mut locate = |pixels: &[u8]| {
         let frame = FrameView::packed(pixels, WIDTH, HEIGHT).unwrap();
         let gravity = Vector3::y_axis();
-        neighbours += locator.locate(&frame, Some(&gravity), &mut |_| ()).unwrap().neighbours.len();
+        neighbours += locator.locate(Input::frame(&frame).gravity(&gravity)).unwrap().neighbours.len();
     };
     // Warm is who has seen such frames.
     warm_up.iter().chain(&frames).for_each(|pixels| locate(pixels));
@@ -212,7 +212,7 @@ fn a_warm_tracker_allocates_nothing() {
         if number.is_multiple_of(3) {
             spots.push(spot(Pixel::new(150.0 + f64::from(number), 80.0), 900.0));
         }
-        locator.locate_spots(&spots, Some(&gravity), &mut |_| ()).clone()
+        locator.locate(Input::spots(&spots).gravity(&gravity)).expect("spots have no size").clone()
     };
     let located: Vec<_> = (0..60).map(&mut locate).collect();
     let mut tracker =
@@ -274,7 +274,7 @@ fn a_warm_lookout_allocates_nothing() {
                 }
                 spots.extend(spots_of(&camera, &airframe, Vector3::from(place_m)));
             }
-            let located = locator.locate_spots(&spots, Some(&gravity), &mut |_| ());
+            let located = locator.locate(Input::spots(&spots).gravity(&gravity)).expect("spots have no size");
             let time_s = f64::from(number) / 60.0;
             let glance = Glance { time_s, exposure_s: 1e-3, turned: None, gravity: Some(gravity), located };
             let own = requests_during(|| {
@@ -322,7 +322,7 @@ fn a_warm_follower_allocates_nothing() {
     let shown: Vec<Vec<u8>> = (0..8).map(|i| frame(20 + i, &mut rng)).collect();
     let mut see = |pixels: &Vec<u8>| {
         let frame = FrameView::packed(pixels, WIDTH, HEIGHT).unwrap();
-        locator.locate(&frame, None, &mut |_| ()).unwrap().sightings.to_vec()
+        locator.locate(Input::frame(&frame)).unwrap().sightings.to_vec()
     };
     let frames: Vec<_> = shown.iter().map(&mut see).collect();
     let bits = |text: &str| text.chars().map(|bit| bit == '1').collect::<Vec<_>>();

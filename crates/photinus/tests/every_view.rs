@@ -12,7 +12,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use nalgebra::{Matrix2, Rotation3, Unit, Vector3};
 use photinus::airframe::Airframe;
 use photinus::camera::{Bearing, Camera, Ideal, IdealLaw, Model, Pixel};
-use photinus::locator::{Located, Locator, Neighbour, Settings};
+use photinus::locator::{Input, Locator, Neighbour, Settings};
 use photinus::pose;
 use photinus::spots::{Extent, Spot};
 use rand_distr::{Distribution, StandardNormal, Uniform};
@@ -102,7 +102,7 @@ fn spot(place: Pixel, flux: f64, rng: &mut Pcg64) -> Spot {
 }
 
 /// What must hold of every neighbour, whatever is seen of it.
-fn assert_answers(located: &Located, neighbour: &Neighbour, what: &str) {
+fn assert_answers(neighbour: &Neighbour, what: &str) {
     let (bounds, estimate) = (neighbour.distance.bounds, neighbour.distance.estimate);
     let estimate = estimate.unwrap_or_else(|| panic!("{what}: no estimate"));
     assert!(estimate.distance_m.is_finite() && estimate.sigma_m > 0.0, "{what}: {estimate:?}");
@@ -119,7 +119,7 @@ fn assert_answers(located: &Located, neighbour: &Neighbour, what: &str) {
         assert!(positive && covariance.iter().all(|number| number.is_finite()), "{what}: {covariance}");
     }
     assert!(orientation.camera_from_body.matrix().iter().all(|number| number.is_finite()), "{what}");
-    let weight: f64 = located.modes(neighbour).iter().map(|mode| mode.weight).sum();
+    let weight: f64 = neighbour.modes.iter().map(|mode| mode.weight).sum();
     assert!((weight - 1.0).abs() < 1e-9, "{what}: modes weigh {weight}");
 }
 
@@ -152,7 +152,9 @@ fn every_view_has_an_answer() {
                     let gravity = (number % 2 == 0).then_some(&down);
                     for shown in 1..=all.len() {
                         locator.forget();
-                        let located = locator.locate_spots(&all[..shown], gravity, &mut |_| ());
+                        let located = locator
+                            .locate(Input::spots(&all[..shown]).gravity(gravity))
+                            .expect("spots have no size");
                         let what = format!(
                             "{} at {distance_m} m, yaw {yaw_deg} deg, {off_axis_rad:.2} rad off the axis, {shown} of {} markers",
                             airframe.name(),
@@ -160,7 +162,7 @@ fn every_view_has_an_answer() {
                         );
                         assert!(!located.neighbours.is_empty(), "{what}: nobody");
                         for neighbour in &located.neighbours {
-                            assert_answers(located, neighbour, &what);
+                            assert_answers(neighbour, &what);
                             let bounds = neighbour.distance.bounds;
                             assert!(bounds.contains(distance_m), "{what}: outside {bounds:?}");
                         }
@@ -211,9 +213,9 @@ fn coverage(airframe: &Airframe, neighbours: usize, seed: u64) -> Coverage {
             truth_m.push(distance_m);
         }
         locator.forget();
-        let located = locator.locate_spots(&spots, gravity, &mut |_| ());
+        let located = locator.locate(Input::spots(&spots).gravity(gravity)).expect("spots have no size");
         for neighbour in &located.neighbours {
-            let members = located.members(neighbour);
+            let members = &neighbour.sightings;
             let owner = owners[members[0]];
             if members.iter().any(|&member| owners[member] != owner) {
                 coverage.mixed += 1;
@@ -221,7 +223,7 @@ fn coverage(airframe: &Airframe, neighbours: usize, seed: u64) -> Coverage {
             }
             let (what, bounds) = (format!("{} in frame {frame}", airframe.name()), neighbour.distance.bounds);
             assert!(bounds.contains(truth_m[owner]), "{what}: {} m outside {bounds:?}", truth_m[owner]);
-            assert_answers(located, neighbour, &what);
+            assert_answers(neighbour, &what);
             coverage.held += 1;
         }
     }

@@ -12,7 +12,7 @@ use nalgebra::{Matrix2, Rotation3, Unit, Vector3};
 use photinus::airframe::Airframe;
 use photinus::camera::{Bearing, Pixel};
 use photinus::frame::{FrameView, Mask};
-use photinus::locator::{Locator, Settings};
+use photinus::locator::{Input, Locator, Settings};
 use photinus::pose;
 use photinus::spots::{Extent, Spot};
 use rand_distr::{Distribution, StandardNormal, Uniform};
@@ -106,11 +106,11 @@ fn partly_seen(airframe: &Airframe, views: usize, masked: bool) -> [Tally; 7] {
         count += 1;
         let down: Unit<Vector3<f64>> = Vector3::y_axis();
         locator.forget();
-        let located = locator.locate_spots(&spots, Some(&down), &mut |_| ());
+        let located = locator.locate(Input::spots(&spots).gravity(&down)).expect("spots have no size");
         let tally = &mut tallies[spots.len()];
         tally.views += 1.0;
         let [neighbour] = &located.neighbours[..] else { continue };
-        if located.members(neighbour).len() != spots.len() {
+        if neighbour.sightings.len() != spots.len() {
             continue;
         }
         tally.whole += 1.0;

@@ -14,7 +14,7 @@ use nalgebra::{Rotation3, Unit, Vector3};
 use photinus::airframe::Airframe;
 use photinus::camera::{Bearing, Camera};
 use photinus::frame::FrameView;
-use photinus::locator::{Locator, Settings};
+use photinus::locator::{Input, Locator, Settings};
 use photinus::pose;
 use rand_distr::{Distribution, StandardNormal, Uniform};
 use rand_pcg::Pcg64;
@@ -100,7 +100,7 @@ fn truth_never_leaves_the_bounds_of_a_rendered_neighbour() {
             let pixels = expose(&light, &mut rng);
             let frame = FrameView::packed(&pixels, WIDTH, HEIGHT).expect("a frame");
             let gravity = (round % 2 == 0).then_some(&down);
-            let located = locator.locate(&frame, gravity, &mut |_| ()).expect("the camera's size");
+            let located = locator.locate(Input::frame(&frame).gravity(gravity)).expect("the camera's size");
             frames += 1;
             assert!(!located.neighbours.is_empty(), "{} at {distance_m} m is not found", airframe.name());
             let [neighbour] = &located.neighbours[..] else { continue };

@@ -11,7 +11,7 @@ use nalgebra::{Rotation3, Unit, Vector3};
 use photinus::airframe::Airframe;
 use photinus::camera::{Bearing, Camera};
 use photinus::frame::FrameView;
-use photinus::locator::{Located, Locator, Settings};
+use photinus::locator::{Input, Located, Locator, Settings};
 
 use hash::Hash;
 use paper::{HEIGHT, WIDTH, camera, hexarotor, quadrotor};
@@ -63,7 +63,7 @@ fn hash(hash: &mut Hash, located: &Located) {
     }
     hash.word(located.rejected.len() as u64);
     for neighbour in &located.neighbours {
-        located.members(neighbour).iter().for_each(|&member| hash.word(member as u64));
+        neighbour.sightings.iter().for_each(|&member| hash.word(member as u64));
         hash.numbers(neighbour.bearing.vector().iter());
         hash.numbers(&[neighbour.probability, neighbour.misfit.chi_square]);
         let distance = &neighbour.distance;
@@ -80,7 +80,7 @@ fn hash(hash: &mut Hash, located: &Located) {
         if let Some(orientation) = &neighbour.orientation {
             hash.numbers(orientation.camera_from_body.matrix().iter().chain(&orientation.covariance_rad2));
         }
-        for mode in located.modes(neighbour) {
+        for mode in &neighbour.modes {
             hash.number(mode.weight);
             hash.numbers(mode.pose.position_m.iter().chain(mode.pose.camera_from_body.matrix()));
             hash.numbers(mode.position_covariance_m2.iter().chain(&mode.orientation_covariance_rad2));
@@ -103,10 +103,10 @@ fn neighbours_are_the_same_bit_for_bit_on_every_machine() {
             let pixels: Vec<u8> = light.iter().map(|light| (light + 2.0 * dice.share()) as u8).collect();
             let view = FrameView::packed(&pixels, WIDTH, HEIGHT).expect("a frame");
             let gravity = (frame % 2 == 0).then_some(&down);
-            let located = locator.locate(&view, gravity, &mut |_| ()).expect("the camera's size");
+            let located = locator.locate(Input::frame(&view).gravity(gravity)).expect("the camera's size");
             neighbours += located.neighbours.len();
             posed += located.neighbours.iter().filter(|neighbour| neighbour.orientation.is_some()).count();
-            modes += located.neighbours.iter().map(|neighbour| located.modes(neighbour).len()).sum::<usize>();
+            modes += located.neighbours.iter().map(|neighbour| neighbour.modes.len()).sum::<usize>();
             hash(&mut total, located);
         }
     }

@@ -10,7 +10,7 @@ use std::f64::consts::TAU;
 use nalgebra::{Matrix2, Rotation3, Unit, Vector3};
 use photinus::airframe::Airframe;
 use photinus::camera::{Bearing, Camera, Pixel};
-use photinus::locator::{Kind, Locator, LocatorError, Settings};
+use photinus::locator::{Input, Kind, Locator, LocatorError, Settings};
 use photinus::pose;
 use photinus::spots::{Extent, Spot};
 use rand_distr::{Distribution, StandardNormal, Uniform};
@@ -125,7 +125,7 @@ fn kinds_are_told_apart_as_surely_as_said() {
     for _ in 0..600 {
         let (spots, truth) = frame(&airframes, &camera, &mut rng);
         locator.forget();
-        let located = locator.locate_spots(&spots, Some(&down), &mut |_| ());
+        let located = locator.locate(Input::spots(&spots).gravity(&down)).expect("spots have no size");
         there += truth.len();
         let mut found = vec![false; truth.len()];
         for neighbour in &located.neighbours {
@@ -143,7 +143,7 @@ fn kinds_are_told_apart_as_surely_as_said() {
             let factor = position.covariance_m2.cholesky().expect("a covariance");
             let off_m = position.mean_m - position_m;
             let sure = neighbour.kind_probability;
-            let tally = &mut tallies[located.members(neighbour).len().min(6)];
+            let tally = &mut tallies[neighbour.sightings.len().min(6)];
             tally.told += 1.0;
             tally.right += f64::from(u8::from(neighbour.kind == *kind));
             tally.claimed += sure;
@@ -184,8 +184,8 @@ fn one_kind_of_a_list_is_as_one_alone() {
     let mut rng = Pcg64::new(5, 12);
     for _ in 0..20 {
         let (spots, _) = frame(&[hexarotor(), hexarotor()], &camera, &mut rng);
-        let located = alone.locate_spots(&spots, Some(&down), &mut |_| ());
-        assert_eq!(located, listed.locate_spots(&spots, Some(&down), &mut |_| ()));
+        let located = alone.locate(Input::spots(&spots).gravity(&down)).expect("spots have no size");
+        assert_eq!(located, listed.locate(Input::spots(&spots).gravity(&down)).expect("spots have no size"));
         assert!(located.neighbours.iter().all(|one| one.kind == 0 && one.kind_probability >= 1.0));
     }
     let nobody = Locator::of_kinds(camera, &[], None, settings);

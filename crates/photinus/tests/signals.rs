@@ -10,7 +10,7 @@ use std::f64::consts::TAU;
 use nalgebra::{Matrix2, Matrix3, Rotation3, SMatrix, Unit, UnitQuaternion, Vector3};
 use photinus::airframe::{Airframe, Led};
 use photinus::camera::{Bearing, Camera, Pixel};
-use photinus::locator::{Located, Locator, Settings};
+use photinus::locator::{Input, Located, Locator, Settings};
 use photinus::pose;
 use photinus::spots::{Extent, Spot};
 use rand_distr::{Distribution, StandardNormal, Uniform};
@@ -93,7 +93,7 @@ impl View {
 
     /// The weight of all modes that are turned as this view is, to a quarter of a hexarotor's sector.
     fn weight_of_truth(&self, located: &Located) -> f64 {
-        let modes = located.modes(&located.neighbours[0]).iter();
+        let modes = located.neighbours[0].modes.iter();
         let off_rad = |turned: &Rotation3<f64>| (turned.inverse() * self.camera_from_body).angle();
         modes.filter(|mode| off_rad(&mode.pose.camera_from_body) < 0.5).map(|mode| mode.weight).sum()
     }
@@ -142,7 +142,7 @@ fn scores(airframe: &Airframe, least_spots: usize, change: impl Fn(&mut [(Spot, 
         }
         change(&mut spots);
         locator.forget();
-        let located = locator.locate_signalled(&spots, Some(&down), &mut |_| ());
+        let located = locator.locate(Input::signalled(&spots).gravity(&down)).expect("spots have no size");
         let [neighbour] = located.neighbours.as_slice() else {
             apart += 1.0;
             continue;
@@ -188,13 +188,20 @@ fn signals_that_tell_no_turn_leave_the_pose_as_it_is() {
             let view = View::draw(&mut rng);
             let mut spots = view.spots(&airframe, &camera, &mut rng);
             let down: Unit<Vector3<f64>> = Vector3::y_axis();
-            let told = locator.locate_signalled(&spots, Some(&down), &mut |_| ()).neighbours[0].clone();
+            let told = locator
+                .locate(Input::signalled(&spots).gravity(&down))
+                .expect("spots have no size")
+                .neighbours[0]
+                .clone();
             let yaw_sigma_rad = told.orientation.expect("an attitude").covariance_rad2[(2, 2)].sqrt();
             assert!(yaw_sigma_rad < TAU / turns / 2.0, "yaw modulo {turns} turns: {yaw_sigma_rad}");
             for spot in &mut spots {
                 spot.1 = None;
             }
-            let anonymous = &locator.locate_signalled(&spots, Some(&down), &mut |_| ()).neighbours[0];
+            let anonymous = &locator
+                .locate(Input::signalled(&spots).gravity(&down))
+                .expect("spots have no size")
+                .neighbours[0];
             let [told_m, anonymous_m] = [told.distance, anonymous.distance]
                 .map(|distance| distance.estimate.expect("an estimate").distance_m);
             assert!((told_m / anonymous_m - 1.0).abs() < 0.02, "{told_m} {anonymous_m}");
@@ -226,7 +233,8 @@ fn covary(airframe: &Airframe) -> [f64; 3] {
             continue;
         }
         locator.forget();
-        let located = locator.locate_signalled(&spots, Some(&Vector3::y_axis()), &mut |_| ());
+        let located =
+            locator.locate(Input::signalled(&spots).gravity(&Vector3::y_axis())).expect("spots have no size");
         let [neighbour] = located.neighbours.as_slice() else { continue };
         let (position, turned) = (neighbour.position.expect("known"), neighbour.orientation.expect("known"));
         let off_m = view.position_m - position.mean_m;

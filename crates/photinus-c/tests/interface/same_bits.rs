@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use photinus::camera::Camera;
 use photinus::frame::FrameView;
-use photinus::locator::{Locator, Settings};
+use photinus::locator::{Input, Locator, Settings};
 use photinus::lookout::{Glance, Lookout};
 use photinus::pose;
 use photinus::tracking;
@@ -40,7 +40,7 @@ fn record(shown: &Shown, camera: &Camera, file: &AirframeFile) -> FrameRecord {
     let view = FrameView::packed(&shown.pixels, shown.width, shown.height).unwrap();
     let down = nalgebra::Vector3::y_axis();
     for number in 0..FRAMES {
-        let located = locator.locate(&view, Some(&down), &mut |_| ()).unwrap();
+        let located = locator.locate(Input::frame(&view).gravity(&down)).unwrap();
         let time_s = f64::from(number) / 30.0;
         lookout
             .look(&Glance { time_s, exposure_s: 0.0, turned: None, gravity: Some(down), located })
@@ -120,7 +120,7 @@ fn printed(record: &FrameRecord) -> String {
 fn c_reads_the_bits_that_rust_is_told() {
     let Some(program) = Program::compile("tests/interface/bits.c", Under::Nothing) else { return };
     let shown = Shown::new();
-    let camera_file = read_camera(camera().as_ref()).unwrap();
+    let camera_file = read_camera(camera()).unwrap();
     let record = record(&shown, &camera_file.camera, &read_airframe(airframe()).unwrap());
     assert_eq!((record.neighbours.len(), record.tracks.len()), (1, 1), "the frame shows one quadrotor");
     let told = program.run(&[&camera(), &airframe(), &shown.path(), &FRAMES.to_string()]);

@@ -134,9 +134,9 @@ impl Flight {
             self.not_alone += 1;
             return;
         };
-        let Some(mode) = located.modes(neighbour).first() else { return };
+        let Some(mode) = neighbour.modes.first() else { return };
         let members: Vec<&locator::Sighting> =
-            located.members(neighbour).iter().map(|&member| &located.sightings[member]).collect();
+            neighbour.sightings.iter().map(|&member| &located.sightings[member]).collect();
         let sightings = self.sightings(&mode.pose, &members, &located.sightings);
         if sightings.len() < 2 {
             return;

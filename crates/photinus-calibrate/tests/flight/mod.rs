@@ -5,7 +5,7 @@ use std::path::Path;
 
 use nalgebra::Vector3;
 use photinus::airframe::{Airframe, Led, Lobe};
-use photinus::locator::{Located, Locator, Settings};
+use photinus::locator::{Input, Located, Locator, Settings};
 use photinus::pose;
 use photinus_calibrate::airframe_light::{Flight, Known, Light, calibrate};
 use photinus_sim::scene::Scene;
@@ -96,7 +96,7 @@ pub(crate) fn locate(
     let mut simulator = Simulator::new(scene.clone(), 0).expect("a scene with a camera");
     for rendered in simulator.frames() {
         let located = locator
-            .locate(&rendered.image.view(), Some(&rendered.gravity), &mut |_| ())
+            .locate(Input::frame(&rendered.image.view()).gravity(&rendered.gravity))
             .expect("frames of the camera's size");
         each(located, &rendered);
     }

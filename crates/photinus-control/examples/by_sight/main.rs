@@ -10,7 +10,7 @@ mod painted;
 
 use nalgebra::{UnitVector3, Vector3};
 use photinus::frame::FrameView;
-use photinus::locator::{Locator, Settings};
+use photinus::locator::{Input, Locator, Settings};
 use photinus_control::controllers::Boids;
 use photinus_control::safety::{Cone, Detection, Limits, Safety, Watch};
 use photinus_control::{Controller, Held, Motion, Normal, OwnState, Seen};
@@ -38,13 +38,14 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let distance_m = 12.0 - 2.0 * limits.period_s * f64::from(frame);
         let place = Vector3::new(distance_m, 1.0, 0.3);
         let pixels = painted::paint(&camera, &airframe, &(place - held.camera_m), 0.2);
-        let located = locator.locate(&FrameView::packed(&pixels, 752, 480)?, Some(&gravity), &mut |_| ())?;
+        let located =
+            locator.locate(Input::frame(&FrameView::packed(&pixels, 752, 480)?).gravity(&gravity))?;
         let seen: Vec<Seen> = located
             .neighbours
             .iter()
             .enumerate()
             .map(|(k, neighbour)| {
-                let members = located.members(neighbour).iter().map(|k| &located.sightings[*k]);
+                let members = neighbour.sightings.iter().map(|k| &located.sightings[*k]);
                 held.seen(neighbour, members, airframe.max_radius_m(), k as u64, None, None)
             })
             .collect();

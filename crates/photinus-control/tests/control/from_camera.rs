@@ -2,7 +2,7 @@
 
 use nalgebra::{UnitVector3, Vector3};
 use photinus::frame::FrameView;
-use photinus::locator::{Locator, Settings};
+use photinus::locator::{Input, Locator, Settings};
 use photinus_control::Held;
 use rand_pcg::Pcg64Mcg;
 
@@ -26,9 +26,9 @@ fn distances_and_bearings_are_bounded_from_the_vehicles_origin() {
         let pixels =
             painted::paint(&camera, &airframe, &(place - held.camera_m), between(&mut rng, -3.0, 3.0));
         let frame = FrameView::packed(&pixels, 752, 480).unwrap();
-        let located = locator.locate(&frame, Some(&gravity), &mut |_| ()).unwrap();
+        let located = locator.locate(Input::frame(&frame).gravity(&gravity)).unwrap();
         for neighbour in &located.neighbours {
-            let members = located.members(neighbour).iter().map(|k| &located.sightings[*k]);
+            let members = neighbour.sightings.iter().map(|k| &located.sightings[*k]);
             let seen = held.seen(neighbour, members, airframe.max_radius_m(), 7, None, None);
             assert!(seen.distance.bounds.contains(place.norm()), "{place:?}: {:?}", seen.distance.bounds);
             assert!(seen.bearing.angle(&place) <= seen.bearing_bound_rad, "{place:?}");

@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 use nalgebra::Matrix3;
 use photinus::airframe::{Airframe, Ring};
 use photinus::camera::{Camera, Ideal, IdealLaw, Model, Pixel};
-use photinus::locator::{Located, Locator, Neighbour, Settings};
+use photinus::locator::{Input, Located, Locator, Neighbour, Settings};
 use photinus::pose;
 use photinus::spots;
 use rand_pcg::Pcg64;
@@ -146,7 +146,7 @@ pub(crate) fn run(
     let mut tallies = [Tally::default(); MOST_SPOTS + 1];
     let mut nothing = 0;
     let mut add = |view: &View, located: &Located| {
-        let spots = |neighbour: &Neighbour| located.members(neighbour).len();
+        let spots = |neighbour: &Neighbour| neighbour.sightings.len();
         let Some(neighbour) = located.neighbours.iter().max_by_key(|neighbour| spots(neighbour)) else {
             nothing += 1;
             return;
@@ -163,7 +163,7 @@ pub(crate) fn run(
                     render::batch(&render::PAPER, airframe, distance_m, done as u64, &mut rng)
                 {
                     locator.forget();
-                    let located = locator.locate(&frame.image.view(), Some(&view.gravity), &mut |_| ());
+                    let located = locator.locate(Input::frame(&frame.image.view()).gravity(&view.gravity));
                     let located = located.expect("the camera's size");
                     add(&view, located);
                     done += 1;
@@ -173,7 +173,10 @@ pub(crate) fn run(
                 let view = View::draw(distance_m, &mut rng);
                 let spots = view.spots(airframe, &camera, sigma_px, &mut rng);
                 locator.forget();
-                add(&view, locator.locate_spots(&spots, Some(&view.gravity), &mut |_| ()));
+                add(
+                    &view,
+                    locator.locate(Input::spots(&spots).gravity(&view.gravity)).expect("spots have no size"),
+                );
                 done += 1;
             }
         }

@@ -38,7 +38,7 @@ impl Experiment {
         let view = View::draw(airframe, distance_m, rng);
         let located = view.locate(locator);
         let walked = chain::walk(&view.model(airframe, located), steps, rng);
-        let told = located.modes(&located.neighbours[0]);
+        let told = &located.neighbours[0].modes;
         let main_m = told[0].pose.position_m.norm();
         let [samples, modes] = [
             walked.iter().map(Part::of_sample).collect::<Vec<_>>(),

@@ -5,7 +5,7 @@ use std::f64::consts::FRAC_PI_2;
 use nalgebra::Vector3;
 use photinus::airframe::{Airframe, Ring};
 use photinus::camera::{Camera, Ideal, IdealLaw, Model as Lens, Pixel};
-use photinus::locator::{Located, Locator, Settings};
+use photinus::locator::{Input, Located, Locator, Settings};
 use photinus::pose;
 use photinus::spots::Spot;
 use rand_pcg::Pcg64;
@@ -53,7 +53,9 @@ impl View {
     /// What the locator reports: one neighbour of both spots.
     pub(crate) fn locate<'a>(&self, locator: &'a mut Locator) -> &'a Located {
         locator.forget();
-        let located = locator.locate_spots(&self.spots, Some(&self.neighbour.gravity), &mut |_| ());
+        let located = locator
+            .locate(Input::spots(&self.spots).gravity(&self.neighbour.gravity))
+            .expect("spots have no size");
         assert_eq!(located.neighbours.len(), 1, "both spots are one neighbour");
         located
     }

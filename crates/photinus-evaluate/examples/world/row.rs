@@ -3,7 +3,7 @@
 use nalgebra::{Isometry3, Translation3, Unit, Vector3};
 use photinus::airframe::{Airframe, Ring};
 use photinus::camera::Camera;
-use photinus::locator::{Locator, Settings};
+use photinus::locator::{Input, Locator, Settings};
 use photinus::optics::Optics;
 use photinus_calibrate::optics::{Collection, learn};
 use photinus_evaluate::{Scores, evaluate};
@@ -115,7 +115,8 @@ impl Row {
             let shots = wrong(first).inject(shots.into_iter().map(Ok));
             for (shot, fallen) in shots.zip(fallen) {
                 let Shot { frame, truth: there } = shot.expect("frames of memory");
-                let located = locator.locate(&frame.image.view(), frame.gravity.as_ref(), &mut |_| ());
+                let located =
+                    locator.locate(Input::frame(&frame.image.view()).gravity(frame.gravity.as_ref()));
                 let located = located.expect("the camera's size");
                 let mut record = record_of(&frame);
                 record.put_located(located, &[told.name()]);

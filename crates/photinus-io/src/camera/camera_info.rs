@@ -40,7 +40,8 @@ struct Matrix {
 /// # Errors
 /// An [`crate::Error`] with the line or key when the text is no YAML, a key is missing or has the wrong count, the
 /// distortion is unknown, the matrix is skewed, or the numbers do not make a camera.
-pub fn parse_camera_info(text: &str, path: &Path) -> Result<CameraFile> {
+pub fn parse_camera_info(text: &str, path: impl AsRef<Path>) -> Result<CameraFile> {
+    let path = path.as_ref();
     let document: Document = parse(text, path)?;
     let model = document.model(path)?.map_err(|error| camera_error(path, error))?;
     let limit = document.field_limit_deg.map(|limit| limit.0);

@@ -32,7 +32,8 @@ struct Chain {
 /// # Errors
 /// An [`crate::Error`] with the line or key when the text is no YAML, holds several cameras, a model that Photinus does not
 /// have, the wrong count of numbers, or numbers that do not make a camera.
-pub fn parse_kalibr(text: &str, path: &Path) -> Result<CameraFile> {
+pub fn parse_kalibr(text: &str, path: impl AsRef<Path>) -> Result<CameraFile> {
+    let path = path.as_ref();
     let cameras: Vec<String> = keys(text, path)?.into_iter().filter(|key| is_kalibr_camera(key)).collect();
     let chain: Chain = match cameras.as_slice() {
         [] => parse(text, path)?,

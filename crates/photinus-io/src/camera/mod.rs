@@ -117,7 +117,8 @@ pub enum CameraFormat {
 /// # Errors
 /// An [`Error`] with the line or key when the file cannot be read, is of no known format, does not follow it, or does
 /// not make a camera.
-pub fn read_camera(path: &Path) -> Result<CameraFile> {
+pub fn read_camera(path: impl AsRef<Path>) -> Result<CameraFile> {
+    let path = path.as_ref();
     parse_camera(&whole::read_bytes(path)?, path)
 }
 
@@ -125,7 +126,8 @@ pub fn read_camera(path: &Path) -> Result<CameraFile> {
 ///
 /// # Errors
 /// Those of [`read_camera`].
-pub fn parse_camera(bytes: &[u8], path: &Path) -> Result<CameraFile> {
+pub fn parse_camera(bytes: &[u8], path: impl AsRef<Path>) -> Result<CameraFile> {
+    let path = path.as_ref();
     let (format, text) = detect::format(bytes, path)?;
     match format {
         CameraFormat::OcamText => parse_ocam_text(text, path),

@@ -21,7 +21,8 @@ const COUNT: &str = "correct the count or the numbers; a comment or blank line e
 /// # Errors
 /// An [`Error`] with the line where a number, a count or a block is missing, too many or not finite, and where
 /// the numbers do not make a camera.
-pub fn parse_ocam_text(text: &str, path: &Path) -> Result<CameraFile> {
+pub fn parse_ocam_text(text: &str, path: impl AsRef<Path>) -> Result<CameraFile> {
+    let path = path.as_ref();
     let mut blocks = Blocks::of(text, path);
     let direct = blocks.counted("the direct polynomial")?;
     let inverse = blocks.counted("the inverse polynomial")?;

@@ -60,7 +60,8 @@ enum Name {
 /// # Errors
 /// An [`Error`] with the line or key when the text is no TOML, a key is missing, unknown or of another model, or the
 /// numbers do not make a camera.
-pub fn parse_camera_toml(text: &str, path: &Path) -> Result<CameraFile> {
+pub fn parse_camera_toml(text: &str, path: impl AsRef<Path>) -> Result<CameraFile> {
+    let path = path.as_ref();
     let mut table: Table = table::parse(text, path)?;
     let model = table.take_model(path)?.map_err(|error| camera_error(path, error))?;
     if let Some(key) = table.left_over() {

@@ -31,7 +31,8 @@ struct Document {
 /// # Errors
 /// An [`Error`] with the line or key when the text is no JSON, a key is missing or of another shape, or the numbers do
 /// not make a camera.
-pub fn parse_pyocamcalib(text: &str, path: &Path) -> Result<CameraFile> {
+pub fn parse_pyocamcalib(text: &str, path: impl AsRef<Path>) -> Result<CameraFile> {
+    let path = path.as_ref();
     let document: Document = serde_json::from_str(text).map_err(|error| {
         let cause = ContentError::of_json::<Document>(text.as_bytes(), &error);
         let advice = cause.advice().unwrap_or(RENEW);

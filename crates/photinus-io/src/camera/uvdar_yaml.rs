@@ -36,7 +36,8 @@ struct Document {
 /// # Errors
 /// An [`crate::Error`] with the line or key when the text is no YAML, a key is missing or has the wrong count, the model is
 /// unknown, or the numbers do not make a camera.
-pub fn parse_uvdar_yaml(text: &str, path: &Path) -> Result<CameraFile> {
+pub fn parse_uvdar_yaml(text: &str, path: impl AsRef<Path>) -> Result<CameraFile> {
+    let path = path.as_ref();
     let document: Document = parse(text, path)?;
     let size = document.size(path)?;
     let limit = document.field_limit_deg.map(|limit| limit.0);

@@ -194,7 +194,12 @@ fn in_folder(folder: &Path, name: &Path) -> Result<(String, PathBuf)> {
 ///
 /// # Errors
 /// As [`parse_vehicles`], and for words that the book does not hold, and airframes that cannot be read.
-pub fn read_vehicles(folder: &Path, named: &Path, codes: Option<&CodeBook>) -> Result<Vec<Vehicle>> {
+pub fn read_vehicles(
+    folder: impl AsRef<Path>,
+    named: impl AsRef<Path>,
+    codes: Option<&CodeBook>,
+) -> Result<Vec<Vehicle>> {
+    let (folder, named) = (folder.as_ref(), named.as_ref());
     let (text, path) = in_folder(folder, named)?;
     let vehicles = parse_vehicles(&text, &path)?.into_iter().enumerate();
     vehicles

@@ -26,7 +26,7 @@ impl FrameRecord {
         self.incomplete = !located.is_complete;
         self.spots = located.sightings.iter().map(SpotRecord::from).collect();
         self.rejected.extend(located.rejected.iter().map(RejectedRecord::from));
-        let record = |neighbour| NeighbourRecord::new(neighbour, located, airframes);
+        let record = |neighbour| NeighbourRecord::new(neighbour, airframes);
         self.neighbours = located.neighbours.iter().map(record).collect();
         self.tracks.clear();
     }
@@ -91,7 +91,7 @@ impl TrackRecord {
 }
 
 impl NeighbourRecord {
-    fn new(neighbour: &Neighbour, located: &Located, airframes: &[impl AsRef<str>]) -> Self {
+    fn new(neighbour: &Neighbour, airframes: &[impl AsRef<str>]) -> Self {
         let airframe = airframes.get(neighbour.kind).map_or("", AsRef::as_ref);
         let orientation = neighbour.orientation;
         Self {
@@ -102,7 +102,7 @@ impl NeighbourRecord {
             velocity_covariance_m2_s2: None,
             airframe: airframe.to_owned(),
             airframe_probability: (airframes.len() > 1).then_some(neighbour.kind_probability),
-            spots: located.members(neighbour).to_vec(),
+            spots: neighbour.sightings.clone(),
             bearing: (*neighbour.bearing.vector()).into(),
             distance_m: Distance::from(&neighbour.distance),
             position_m: neighbour.position.map(|position| position.mean_m.into()),
@@ -123,7 +123,7 @@ impl NeighbourRecord {
                 probability: neighbour.runner_up.probability,
                 distance_m: neighbour.runner_up.distance_m,
             }),
-            modes: located.modes(neighbour).iter().map(ModeRecord::from).collect(),
+            modes: neighbour.modes.iter().map(ModeRecord::from).collect(),
         }
     }
 }
@@ -263,7 +263,7 @@ pub(super) fn rows(matrix: &Matrix3<f64>) -> [[f64; 3]; 3] {
 mod tests {
     use photinus::airframe::{Airframe, Ring};
     use photinus::camera::{Camera, Ideal, IdealLaw, Model};
-    use photinus::locator::{Locator, Settings};
+    use photinus::locator::{Input, Locator, Settings};
     use photinus::ranging::SpotCurve;
     use proptest::prelude::*;
     use proptest::{collection, sample::Index};
@@ -282,7 +282,7 @@ mod tests {
             "rejected":[{"u_px":1,"v_px":2,"area_px":900,"reason":"sun"}]}"#;
         let mut record: FrameRecord = serde_json::from_str(text).unwrap();
         let spots: Vec<Spot> = record.spots.iter().map(Spot::from).collect();
-        let located = locator.locate_spots(&spots, None, &mut |_| ());
+        let located = locator.locate(Input::spots(&spots)).expect("spots have no size");
         record.put_located(located, &["quad"]);
 
         assert_eq!(record.rejected[0].reason, "sun", "what came in rejected stays");

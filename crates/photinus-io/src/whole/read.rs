@@ -21,7 +21,8 @@ pub(crate) fn read_bytes(path: &Path) -> Result<Vec<u8>> {
 ///
 /// # Errors
 /// [`Error`] when it is missing, a pipe or a device.
-pub fn open_regular(path: &Path) -> Result<File> {
+pub fn open_regular(path: impl AsRef<Path>) -> Result<File> {
+    let path = path.as_ref();
     let metadata = std::fs::metadata(path).map_err(|error| Error::io(path, error))?;
     if !metadata.is_file() && !metadata.is_dir() {
         return Err(Error::format(path, "this is a pipe or a device, no file")
@@ -44,7 +45,8 @@ fn bytes_of(source: impl Read, path: &Path) -> Result<Vec<u8>> {
 }
 
 /// The text of a file, without the byte order mark that some editors add.
-pub fn read_text(path: &Path) -> Result<String> {
+pub fn read_text(path: impl AsRef<Path>) -> Result<String> {
+    let path = path.as_ref();
     let text = String::from_utf8(read_bytes(path)?).map_err(|error| {
         Error::format(path, format!("byte {} is not UTF-8 text", error.utf8_error().valid_up_to()))
             .advise("check that this is the text file that was meant, and save it as UTF-8")

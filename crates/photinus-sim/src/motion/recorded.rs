@@ -25,7 +25,8 @@ impl Recorded {
     /// # Errors
     /// [`Error`] with the line for other columns, for what is no number, for times that do not grow, for a quaternion whose
     /// length is more than 1 % from 1, and for a table without rows; and when the file cannot be read.
-    pub fn read(path: &Path) -> Result<Self> {
+    pub fn read(path: impl AsRef<Path>) -> Result<Self> {
+        let path = path.as_ref();
         let text = std::fs::read_to_string(path).map_err(|error| Error::io(path, error))?;
         Self::parse(&text, path)
     }
@@ -34,7 +35,8 @@ impl Recorded {
     ///
     /// # Errors
     /// As [`Recorded::read`].
-    pub fn parse(text: &str, path: &Path) -> Result<Self> {
+    pub fn parse(text: &str, path: impl AsRef<Path>) -> Result<Self> {
+        let path = path.as_ref();
         let mut lines = text.lines().zip(1..).filter(|(line, _)| !line.trim().is_empty());
         let header = lines.next().map_or("", |(line, _)| line.trim().trim_start_matches('\u{feff}'));
         if header != COLUMNS {

@@ -6,7 +6,7 @@ use std::hint::black_box;
 use nalgebra::{Matrix2, Unit, Vector3};
 use photinus::airframe::{Airframe, Led, Lobe};
 use photinus::camera::Pixel;
-use photinus::locator::{Locator, Settings};
+use photinus::locator::{Input, Locator, Settings};
 use photinus::spots::{Extent, Spot};
 use rand_distr::{Distribution, Uniform};
 use rand_pcg::Pcg64;
@@ -31,7 +31,9 @@ pub(crate) fn run() {
         let locator = Locator::new(crate::camera(), &airframe, None, Settings::default());
         let mut locator = locator.expect("a locator");
         contest.add(&name, move |_| {
-            black_box(locator.locate_spots(&spots, Some(&Vector3::y_axis()), &mut |_| ()));
+            black_box(
+                locator.locate(Input::spots(&spots).gravity(&Vector3::y_axis())).expect("spots have no size"),
+            );
         });
     };
     let many = many_leds();

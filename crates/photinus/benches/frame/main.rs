@@ -21,7 +21,7 @@ use nalgebra::Vector3;
 use photinus::airframe::{Airframe, Ring};
 use photinus::camera::{Camera, Ideal, IdealLaw, Model, Pixel};
 use photinus::frame::FrameView;
-use photinus::locator::{self, Locator};
+use photinus::locator::{self, Input, Locator};
 
 fn main() {
     let asked = std::env::args().skip(1).find(|argument| !argument.starts_with('-'));
@@ -70,7 +70,7 @@ fn locating() {
             contest.add(&format!("locate, {count} hexarotors{known}"), move |i| {
                 let frame =
                     FrameView::packed(&frames[i % frames.len()], PAPER.width, PAPER.height).expect("a frame");
-                let located = locator.locate(&frame, gravity.as_ref(), &mut |_| ());
+                let located = locator.locate(Input::frame(&frame).gravity(gravity.as_ref()));
                 black_box(located.expect("the camera's size"));
             });
         }
@@ -93,7 +93,7 @@ fn posing() {
         let mut locator =
             Locator::new(camera.clone(), &airframe, None, locator::Settings::default()).expect("a locator");
         contest.add(name, move |_| {
-            black_box(locator.locate_spots(&spots, Some(&gravity), &mut |_| ()));
+            black_box(locator.locate(Input::spots(&spots).gravity(&gravity)).expect("spots have no size"));
         });
     }
     contest.run();

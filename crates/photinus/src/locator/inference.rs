@@ -12,8 +12,6 @@
 //! How dense clutter is and how many neighbours there are is told by the frame itself, with what [`Memory`] has of those before. Little clutter
 //! and much both bear themselves out (what is near clutter is clutter): both are tried, and what makes the frame likelier is right.
 
-use nalgebra::{Unit, Vector3};
-
 use super::alternatives::{Alternatives, POOR_GAIN};
 use super::candidates::Candidates;
 use super::clutter::{Clutter, Counts, Surroundings};
@@ -22,6 +20,7 @@ use super::context::Context;
 use super::explanation::Explanation;
 use super::fixtures::Fixtures;
 use super::grouping::Groups;
+use super::input::Input;
 use super::kinds::{Kind, Kinds};
 use super::memory::Memory;
 use super::near::Near;
@@ -117,13 +116,7 @@ impl Inference {
     }
 
     /// Tells the neighbours behind the observations of `located`.
-    pub(super) fn explain(
-        &mut self,
-        located: &mut Located,
-        gravity: Option<&Unit<Vector3<f64>>>,
-        watched: Watched<'_>,
-        finished: &mut dyn FnMut(Stage),
-    ) {
+    pub(super) fn explain(&mut self, located: &mut Located, watched: Watched<'_>, input: &mut Input<'_>) {
         let all = std::mem::take(&mut located.sightings);
         let (sightings, besides) = all.split_at(all.len().min(self.most()));
         self.besides.count(besides);
@@ -132,7 +125,7 @@ impl Inference {
         let context = Context {
             sightings,
             near: &near,
-            gravity,
+            gravity: input.gravity,
             watched,
             power: None,
             clutter: &[],
@@ -143,7 +136,7 @@ impl Inference {
         self.fixtures.find(sightings);
         self.look(&context);
         let clear_power = self.groups.clear_log_power(&context, &mut self.kinds);
-        finished(Stage::Grouping);
+        input.tell(Stage::Grouping);
         let context = Context { power: self.memory.power().or(of_frame), ..context };
         let mut work = Work { left: self.budget };
         self.weigh_groups(&context, &mut work);
@@ -166,7 +159,7 @@ impl Inference {
         self.kinds.widen_bounds(&context, located);
         located.sightings = all;
         self.near = near;
-        finished(Stage::Posing);
+        input.tell(Stage::Posing);
     }
 
     /// Takes a first look at each group, and tells from that how dense clutter is.

@@ -7,7 +7,7 @@ use super::candidates::Candidates;
 use super::context::Context;
 use super::error::LocatorError;
 use super::matching::Matcher;
-use super::neighbour::Located;
+use super::neighbour::{Distance, Located, Neighbour};
 use super::posing::{self, Poser};
 use super::settings::Settings;
 use crate::airframe::Airframe;
@@ -114,11 +114,8 @@ impl Kinds {
         if self.each.len() == 1 {
             return;
         }
-        let Located { neighbours, members, .. } = located;
-        for neighbour in neighbours {
-            let group = &members[neighbour.first_member..][..neighbour.members];
-            let bounds = &mut neighbour.distance.bounds;
-            let of_kinds = self.each.iter_mut().filter_map(|kind| kind.matcher.bounds(context, group));
+        for Neighbour { sightings, distance: Distance { bounds, .. }, .. } in &mut located.neighbours {
+            let of_kinds = self.each.iter_mut().filter_map(|kind| kind.matcher.bounds(context, sightings));
             *bounds = of_kinds.fold(*bounds, |all, own| all.hull(&own));
         }
     }

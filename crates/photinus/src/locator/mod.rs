@@ -25,6 +25,7 @@ mod explanation;
 mod fixtures;
 mod grouping;
 mod inference;
+mod input;
 mod kinds;
 mod matching;
 mod memory;
@@ -37,8 +38,6 @@ mod sighting;
 mod telling;
 mod views;
 
-use nalgebra::{Unit, Vector3};
-
 use crate::airframe::Airframe;
 use crate::camera::{Camera, Watched};
 use crate::frame::{FrameView, Mask};
@@ -47,6 +46,8 @@ use crate::spots::{Detector, Reason, Rejected, Spot};
 use cells::ByCell;
 pub use error::{LocateError, LocatorError};
 use inference::Inference;
+pub use input::Input;
+use input::Seen;
 pub use kinds::Kind;
 pub use neighbour::{Distance, Located, Neighbour, Orientation, Position, RunnerUp};
 pub(crate) use posing::{RESOLUTION_PX, faintest_light, of_mean_calibration};
@@ -55,6 +56,7 @@ pub use sighting::Sighting;
 
 /// A stage of the flow, named when it ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Stage {
     /// Spots were found.
     Spots,
@@ -64,6 +66,18 @@ pub enum Stage {
     Grouping,
     /// Neighbours have poses and distances.
     Posing,
+}
+
+impl Stage {
+    /// One lowercase word.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Spots => "spots",
+            Self::Bearings => "bearings",
+            Self::Grouping => "grouping",
+            Self::Posing => "posing",
+        }
+    }
 }
 
 /// Locates neighbours of one kind of airframe, or of several, in the frames of one camera. Keeps its room from frame to
@@ -118,7 +132,7 @@ impl Locator {
             detector,
             inference,
             by_cell: ByCell::default(),
-            located: Located::with_room(),
+            located: Located { is_complete: true, ..Located::default() },
         })
     }
 
@@ -150,89 +164,50 @@ impl Locator {
         &self.camera
     }
 
-    /// Locates the neighbours in `frame`. `gravity` is down in the camera frame, where it is known. `finished` is told
-    /// each stage as it ends, so that a caller with a clock can time it.
+    /// Locates the neighbours in a frame, or behind the spots of one.
     ///
     /// # Errors
-    /// [`LocateError::Size`] when the frame is not of the camera's size.
-    pub fn locate(
-        &mut self,
-        frame: &FrameView<'_>,
-        gravity: Option<&Unit<Vector3<f64>>>,
-        finished: &mut dyn FnMut(Stage),
-    ) -> Result<&Located, LocateError> {
-        let size = self.wrong_size(frame);
+    /// [`LocateError::Size`] when the frame is not of the camera's size; spots have none.
+    pub fn locate(&mut self, mut input: Input<'_>) -> Result<&Located, LocateError> {
+        match input.seen {
+            Seen::Frame(frame) => self.detect(frame, &mut input)?,
+            Seen::Spots(spots) => self.sight(spots.iter().map(|spot| (spot, None)), &mut input),
+            Seen::Signalled(spots) => {
+                self.sight(spots.iter().map(|(spot, signal)| (spot, *signal)), &mut input);
+            }
+        }
+        let size = [self.camera.width(), self.camera.height()];
+        brightness::tell(&mut self.located.sightings, self.inference.most(), size, &mut self.by_cell);
+        input.tell(Stage::Bearings);
+        let watched = Watched::new(&self.camera, self.mask.as_ref());
+        self.inference.explain(&mut self.located, watched, &mut input);
+        Ok(&self.located)
+    }
+
+    /// Sights the spots of a frame.
+    fn detect(&mut self, frame: &FrameView<'_>, input: &mut Input<'_>) -> Result<(), LocateError> {
+        let size = LocateError::Size {
+            width: frame.width(),
+            height: frame.height(),
+            camera_width: self.camera.width(),
+            camera_height: self.camera.height(),
+        };
         if (frame.width(), frame.height()) != (self.camera.width(), self.camera.height()) {
             return Err(size);
         }
         let detections = self.detector.detect(frame, self.mask.as_ref()).map_err(|_| size)?;
         self.located.rejected.clone_from(&detections.rejected);
-        finished(Stage::Spots);
+        input.tell(Stage::Spots);
         let spots = detections.spots.iter().map(|spot| (spot, None));
         sight_all(&self.camera, self.curve.as_ref(), spots, &mut self.located);
-        self.tell_light();
-        finished(Stage::Bearings);
-        Ok(self.tell_neighbours(gravity, finished))
+        Ok(())
     }
 
-    /// Locates the neighbours behind spots that another detector found.
-    pub fn locate_spots(
-        &mut self,
-        spots: &[Spot],
-        gravity: Option<&Unit<Vector3<f64>>>,
-        finished: &mut dyn FnMut(Stage),
-    ) -> &Located {
-        self.sight_and_tell(spots.iter().map(|spot| (spot, None)), gravity, finished)
-    }
-
-    /// The same with the signal that each spot was seen to blink, `None` where that is not known: with them a symmetric
-    /// airframe's yaw is told as far as its signals differ. A signal that no LED of the airframe carries tells nothing, a
-    /// wrong one little.
-    pub fn locate_signalled(
-        &mut self,
-        spots: &[(Spot, Option<u32>)],
-        gravity: Option<&Unit<Vector3<f64>>>,
-        finished: &mut dyn FnMut(Stage),
-    ) -> &Located {
-        self.sight_and_tell(spots.iter().map(|(spot, signal)| (spot, *signal)), gravity, finished)
-    }
-
-    fn wrong_size(&self, frame: &FrameView<'_>) -> LocateError {
-        LocateError::Size {
-            width: frame.width(),
-            height: frame.height(),
-            camera_width: self.camera.width(),
-            camera_height: self.camera.height(),
-        }
-    }
-
-    fn sight_and_tell<'a>(
-        &mut self,
-        spots: impl Iterator<Item = (&'a Spot, Option<u32>)>,
-        gravity: Option<&Unit<Vector3<f64>>>,
-        finished: &mut dyn FnMut(Stage),
-    ) -> &Located {
+    /// Sights the spots of another detector.
+    fn sight<'a>(&mut self, spots: impl Iterator<Item = (&'a Spot, Option<u32>)>, input: &mut Input<'_>) {
         self.located.rejected.clear();
-        finished(Stage::Spots);
+        input.tell(Stage::Spots);
         sight_all(&self.camera, self.curve.as_ref(), spots, &mut self.located);
-        self.tell_light();
-        finished(Stage::Bearings);
-        self.tell_neighbours(gravity, finished)
-    }
-
-    fn tell_light(&mut self) {
-        let size = [self.camera.width(), self.camera.height()];
-        brightness::tell(&mut self.located.sightings, self.inference.most(), size, &mut self.by_cell);
-    }
-
-    fn tell_neighbours(
-        &mut self,
-        gravity: Option<&Unit<Vector3<f64>>>,
-        finished: &mut dyn FnMut(Stage),
-    ) -> &Located {
-        let watched = Watched::new(&self.camera, self.mask.as_ref());
-        self.inference.explain(&mut self.located, gravity, watched, finished);
-        &self.located
     }
 }
 

@@ -72,10 +72,10 @@ pub struct Neighbour {
     pub misfit: Misfit,
     /// What its observations may be otherwise.
     pub runner_up: RunnerUp,
-    pub(super) first_member: usize,
-    pub(super) members: usize,
-    pub(super) first_mode: usize,
-    pub(super) modes: usize,
+    /// Its spots: their places in [`Located::sightings`], ascending.
+    pub sightings: Vec<usize>,
+    /// The ways in which they can be its airframe, the likeliest first.
+    pub modes: Vec<Mode>,
 }
 
 /// What one frame told.
@@ -89,26 +89,4 @@ pub struct Located {
     pub neighbours: Vec<Neighbour>,
     /// Whether the frame was explained within the budget; if not, neighbours may be missing.
     pub is_complete: bool,
-    pub(super) members: Vec<usize>,
-    pub(super) modes: Vec<Mode>,
-}
-
-impl Located {
-    /// Nothing yet, with room for the modes of a crowded frame.
-    pub(super) fn with_room() -> Self {
-        Self { modes: Vec::with_capacity(4096), is_complete: true, ..Self::default() }
-    }
-
-    /// Which sightings are this neighbour, ascending.
-    pub fn members(&self, neighbour: &Neighbour) -> &[usize] {
-        self.members
-            .get(neighbour.first_member..)
-            .and_then(|rest| rest.get(..neighbour.members))
-            .unwrap_or(&[])
-    }
-
-    /// The ways in which this neighbour's spots can be its airframe, the likeliest first.
-    pub fn modes(&self, neighbour: &Neighbour) -> &[Mode] {
-        self.modes.get(neighbour.first_mode..).and_then(|rest| rest.get(..neighbour.modes)).unwrap_or(&[])
-    }
 }

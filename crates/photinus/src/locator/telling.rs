@@ -16,6 +16,9 @@ use crate::ranging::{Estimate, Interval};
 const SAME_SIGMAS: f64 = 5.0;
 /// What is less likely than this takes no part.
 const NEGLIGIBLE: f64 = 1e-3;
+/// Room of a neighbour: few have more spots and modes.
+const MEMBERS_EACH: usize = 32;
+const MODES_EACH: usize = 128;
 
 /// Room to tell neighbours in.
 #[derive(Debug)]
@@ -24,12 +27,19 @@ pub(super) struct Telling {
     taken: Vec<bool>,
     /// Candidates that are the neighbour, with their probabilities.
     same: Vec<(usize, f64)>,
+    /// Neighbours of earlier frames, for the room that they take.
+    spare: Vec<Neighbour>,
 }
 
 impl Telling {
     /// Room for so many candidates.
     pub(super) fn with_room(count: usize) -> Self {
-        Self { order: Vec::with_capacity(count), taken: Vec::new(), same: Vec::with_capacity(count) }
+        Self {
+            order: Vec::with_capacity(count),
+            taken: Vec::new(),
+            same: Vec::with_capacity(count),
+            spare: Vec::new(),
+        }
     }
 
     /// Puts the neighbours that are at `least` so likely, of so many observations, into `located`, in the order of their first observation.
@@ -40,9 +50,7 @@ impl Telling {
         (least, observations): (f64, usize),
         located: &mut Located,
     ) {
-        located.neighbours.clear();
-        located.members.clear();
-        located.modes.clear();
+        self.spare.append(&mut located.neighbours);
         self.taken.clear();
         self.taken.resize(observations, false);
         self.order.clear();
@@ -66,8 +74,7 @@ impl Telling {
                 self.put(candidates, index, probability, runner_up, located);
             }
         }
-        let Located { neighbours, members, .. } = located;
-        neighbours.sort_unstable_by_key(|neighbour| members[neighbour.first_member]);
+        located.neighbours.sort_unstable_by_key(|neighbour| neighbour.sightings[0]);
     }
 
     /// Gathers the candidates that are the same neighbour as `own`; the likeliest that shares an observation but is another is the runner-up,
@@ -99,7 +106,7 @@ impl Telling {
 
     /// Adds a neighbour: the mixture of the candidates that it is.
     fn put(
-        &self,
+        &mut self,
         candidates: &Candidates,
         own: usize,
         probability: f64,
@@ -107,15 +114,20 @@ impl Telling {
         located: &mut Located,
     ) {
         let candidate = candidates.get(own);
-        let first_mode = located.modes.len();
+        let (mut sightings, mut modes) = match self.spare.pop() {
+            Some(Neighbour { sightings, modes, .. }) => (sightings, modes),
+            None => (Vec::with_capacity(MEMBERS_EACH), Vec::with_capacity(MODES_EACH)),
+        };
+        sightings.clear();
+        sightings.extend_from_slice(candidates.members(own));
+        modes.clear();
         let is_kind = |&&(index, _): &&(usize, f64)| candidates.get(index).kind == candidate.kind;
         let all: f64 = self.same.iter().map(|&(_, share)| share).sum();
         let of_kind: f64 = self.same.iter().filter(is_kind).map(|&(_, share)| share).sum();
         for &(index, share) in self.same.iter().filter(is_kind) {
             let weigh = |mode: &Mode| Mode { weight: mode.weight * share, ..*mode };
-            located.modes.extend(candidates.modes(index).iter().map(weigh));
+            modes.extend(candidates.modes(index).iter().map(weigh));
         }
-        let modes = &mut located.modes[first_mode..];
         modes.sort_unstable_by(|a, b| b.weight.total_cmp(&a.weight));
         let total: f64 = modes.iter().map(|mode| mode.weight).sum();
         modes.iter_mut().for_each(|mode| mode.weight /= total);
@@ -133,12 +145,9 @@ impl Telling {
             probability,
             misfit: candidate.misfit,
             runner_up,
-            first_member: located.members.len(),
-            members: candidates.members(own).len(),
-            first_mode,
-            modes: located.modes.len() - first_mode,
+            sightings,
+            modes,
         });
-        located.members.extend_from_slice(candidates.members(own));
     }
 
     /// Mean and covariance over the candidates, and bounds that hold for each of them.

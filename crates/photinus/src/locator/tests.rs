@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use nalgebra::{Matrix2, Rotation3};
+use nalgebra::{Matrix2, Rotation3, Unit, Vector3};
 use rand_distr::{Distribution, StandardNormal, Uniform};
 use rand_pcg::Pcg64;
 
@@ -120,10 +120,10 @@ fn locate(
         all.extend(spots);
     }
     locator.forget();
-    let located = locator.locate_spots(&all, gravity, &mut |_| ());
+    let located = locator.locate(Input::spots(&all).gravity(gravity)).expect("spots have no size");
     let whole = |owner: usize| {
         let own: Vec<usize> = (0..owners.len()).filter(|&spot| owners[spot] == owner).collect();
-        let mut found = located.neighbours.iter().filter(|neighbour| located.members(neighbour) == own);
+        let mut found = located.neighbours.iter().filter(|neighbour| neighbour.sightings == own);
         found.next().cloned()
     };
     (0..placed.len()).map(whole).collect()
@@ -216,7 +216,7 @@ fn a_lone_spot_is_a_neighbour_with_a_bearing_and_the_range_of_its_size() {
     let all = Settings { min_probability: 0.0, ..Settings::default() };
     let faint = [spot(Pixel::new(300.0, 200.0), 1.0, 34.0)];
     let mut without = Locator::new(camera(), &airframe, None, all).unwrap();
-    let located = without.locate_spots(&faint, None, &mut |_| ());
+    let located = without.locate(Input::spots(&faint)).expect("spots have no size");
     assert_eq!(located.neighbours.len(), 1);
     let (neighbour, sighting) = (&located.neighbours[0], &located.sightings[0]);
     assert!(neighbour.probability > 0.5, "its other markers are too faint to show: {neighbour:?}");
@@ -228,7 +228,7 @@ fn a_lone_spot_is_a_neighbour_with_a_bearing_and_the_range_of_its_size() {
 
     let bright = [spot(Pixel::new(300.0, 200.0), 1.0, 2.0)];
     let mut with = Locator::new(camera(), &airframe, Some(SpotCurve::paper_1000_us()), all).unwrap();
-    let neighbour = &with.locate_spots(&bright, None, &mut |_| ()).neighbours[0];
+    let neighbour = &with.locate(Input::spots(&bright)).expect("spots have no size").neighbours[0];
     assert!(neighbour.probability < 0.5, "the markers beside it must show: {neighbour:?}");
     let distance = neighbour.distance;
     assert!(distance.bounds.contains(2.0) && distance.bounds.max_m() < 3.0, "{distance:?}");
@@ -262,7 +262,7 @@ fn spots_outside_the_field_are_rejected_with_that_reason() {
     let narrow = Camera::new(Model::Ideal(lens), 752, 480, Some(0.5)).unwrap();
     let mut locator = Locator::new(narrow, &airframe, None, Settings::default()).unwrap();
     let spots = [spot(Pixel::new(20.0, 20.0), 1.0, 3.0), spot(Pixel::new(380.0, 240.0), 1.0, 3.0)];
-    let located = locator.locate_spots(&spots, None, &mut |_| ());
+    let located = locator.locate(Input::spots(&spots)).expect("spots have no size");
     assert_eq!(located.sightings.len(), 1);
     assert_eq!(
         located.rejected.iter().map(|rejected| rejected.reason).collect::<Vec<_>>(),
@@ -281,9 +281,9 @@ fn any_number_of_spots_anywhere_gives_finite_answers() {
                 .map(|_| spot(Pixel::new(u.sample(&mut rng), v.sample(&mut rng)), 1.0, 4.0))
                 .collect();
             spots.extend_from_within(..count / 3);
-            let located = locator.locate_spots(&spots, None, &mut |_| ());
+            let located = locator.locate(Input::spots(&spots)).expect("spots have no size");
             let mut members: Vec<usize> =
-                located.neighbours.iter().flat_map(|neighbour| located.members(neighbour)).copied().collect();
+                located.neighbours.iter().flat_map(|neighbour| &neighbour.sightings).copied().collect();
             members.sort_unstable();
             let shared = members.windows(2).any(|pair| pair[0] == pair[1]);
             assert!(!shared && members.iter().all(|&spot| spot < spots.len()), "{members:?}");
@@ -308,13 +308,13 @@ fn of_more_spots_than_there_is_work_for_the_brightest_are_explained_and_that_is_
     for (budget, complete) in [(200, false), (1_000_000, true)] {
         let settings = Settings { budget, ..Settings::default() };
         let mut locator = Locator::new(camera(), &airframe, None, settings).unwrap();
-        let located = locator.locate_spots(&spots, Some(&level()), &mut |_| ());
+        let located = locator.locate(Input::spots(&spots).gravity(&level())).expect("spots have no size");
         assert_eq!(located.is_complete, complete, "budget {budget}");
         assert_eq!(located.sightings.len(), spots.len(), "every spot is told");
         let bright: Vec<usize> =
             (0..spots.len()).filter(|&spot| located.sightings[spot].spot.flux > 1000.0).collect();
         let found: Vec<&[usize]> =
-            located.neighbours.iter().map(|neighbour| located.members(neighbour)).collect();
+            located.neighbours.iter().map(|neighbour| neighbour.sightings.as_slice()).collect();
         assert_eq!((found, bright.len()), (vec![&bright[..]], markers), "budget {budget}");
     }
 }
@@ -339,7 +339,9 @@ fn an_airframe_of_one_led_is_told_by_the_size_of_its_spot() {
             let seen = spots.clone().map(|(spot, _)| spot);
             for gravity in [None, Some(level())] {
                 locator.forget();
-                let located = locator.locate_spots(&seen, gravity.as_ref(), &mut |_| ());
+                let located = locator
+                    .locate(Input::spots(&seen).gravity(gravity.as_ref()))
+                    .expect("spots have no size");
                 assert_eq!(located.neighbours.len(), 2, "each is a neighbour: {:?}", located.neighbours);
                 for (neighbour, (_, distance_m)) in located.neighbours.iter().zip(&spots) {
                     let Distance { estimate, bounds, .. } = neighbour.distance;

@@ -10,13 +10,13 @@
 //! ```
 //!
 //! ```no_run
-//! # use photinus::{locator::{self, Locator}, lookout::{Glance, Lookout}, tracking, airframe::Airframe, camera::Camera, frame::FrameView};
+//! # use photinus::{locator::{self, Input, Locator}, lookout::{Glance, Lookout}, tracking, airframe::Airframe, camera::Camera, frame::FrameView};
 //! # fn see(camera: Camera, airframe: Airframe, frame: FrameView<'_>) -> Result<(), Box<dyn std::error::Error>> {
 //! let settings = locator::Settings::default();
 //! let mut locator = Locator::new(camera.clone(), &airframe, None, settings)?;
 //! let mut lookout = Lookout::new(camera, &airframe, &settings, tracking::Settings::default(), None)?;
 //! // and for every frame
-//! let located = locator.locate(&frame, None, &mut |_| ())?;
+//! let located = locator.locate(Input::frame(&frame))?;
 //! let seen = lookout.look(&Glance { time_s: 0.0, exposure_s: 1e-3, turned: None, gravity: None, located })?;
 //! for track in &seen.tracks {
 //!     println!("{} at {}", track.id, track.position_m);

@@ -6,7 +6,7 @@ use rand_pcg::Pcg64;
 use super::*;
 use crate::airframe::Led;
 use crate::identity::{CodeBook, Word};
-use crate::locator::Locator;
+use crate::locator::{Input, Locator};
 use crate::tracking::tests::simulator::{self, Vehicle as Flown, camera, down, hexarotor, located_by};
 
 const RATE_HZ: f64 = 60.0;
@@ -101,7 +101,8 @@ impl World {
             }
         }
         let gravity = Some(down(&level));
-        let located = self.locator.locate_spots(&spots, gravity.as_ref(), &mut |_| ());
+        let located =
+            self.locator.locate(Input::spots(&spots).gravity(gravity.as_ref())).expect("spots have no size");
         let turned = Some(Turned { now_from_before: level, sigma_rad: 1e-5 });
         let glance = Glance { time_s, exposure_s: EXPOSURE_S, turned, gravity, located };
         self.lookout.look(&glance).unwrap().clone()
@@ -255,7 +256,7 @@ fn times_are_the_trackers() {
     for _ in 0..60 {
         world.see(&mut blinkers);
     }
-    let nothing = world.locator.locate_spots(&[], None, &mut |_| ());
+    let nothing = world.locator.locate(Input::spots(&[])).expect("spots have no size");
     let glance =
         Glance { time_s: 1.0, exposure_s: EXPOSURE_S, turned: None, gravity: None, located: nothing };
     let before = world.lookout.names().to_vec();

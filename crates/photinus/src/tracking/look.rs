@@ -168,7 +168,7 @@ impl Moment {
         self.members.clear();
         self.modes.clear();
         for neighbour in located.neighbours.iter().filter(|neighbour| neighbour.kind == kind) {
-            let (members, modes) = (located.members(neighbour), located.modes(neighbour));
+            let (members, modes) = (&neighbour.sightings, &neighbour.modes);
             let modes = &modes[..modes.len().min(MOST_MODES)];
             self.appearances.push(Appearance {
                 probability: neighbour.probability * neighbour.kind_probability,

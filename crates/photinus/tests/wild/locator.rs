@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 use nalgebra::{Matrix2, Vector3};
 use photinus::airframe::Airframe;
 use photinus::camera::{Camera, Ideal, IdealLaw, Model, Pixel};
-use photinus::locator::{Located, Locator, Settings};
+use photinus::locator::{Input, Located, Locator, Settings};
 use photinus::pose::{self, Pose};
 use photinus::ranging::SpotCurve;
 use photinus::spots::{Extent, Spot};
@@ -88,14 +88,14 @@ fn check_located(located: &Located) -> Result<(), TestCaseError> {
         prop_assert!((0.0..=PI).contains(&sighting.bound_rad), "{sighting:?}");
     }
     let mut members: Vec<usize> =
-        located.neighbours.iter().flat_map(|neighbour| located.members(neighbour)).copied().collect();
+        located.neighbours.iter().flat_map(|neighbour| &neighbour.sightings).copied().collect();
     members.sort_unstable();
     prop_assert!(members.windows(2).all(|pair| pair[0] < pair[1]), "a spot of two neighbours: {members:?}");
     for neighbour in &located.neighbours {
         let bounds = neighbour.distance.bounds;
         let Some(estimate) = neighbour.distance.estimate else {
             prop_assert!(neighbour.position.is_none() && neighbour.orientation.is_none());
-            prop_assert!(located.modes(neighbour).is_empty());
+            prop_assert!(neighbour.modes.is_empty());
             continue;
         };
         prop_assert!(
@@ -113,7 +113,7 @@ fn check_located(located: &Located) -> Result<(), TestCaseError> {
         );
         let pose = Pose { position_m: position.mean_m, camera_from_body: orientation.camera_from_body };
         check_told(&pose, &position.covariance_m2, &orientation.covariance_rad2, SHARE)?;
-        check_modes(located.modes(neighbour), SHARE)?;
+        check_modes(&neighbour.modes, SHARE)?;
     }
     Ok(())
 }
@@ -165,7 +165,9 @@ fn a_locator_tells_numbers_within_bounds_or_nothing() {
     let outcome = runner(800).run(&inputs, |(which, spots, down)| {
         let mut locators = locators.borrow_mut();
         let which = which.index(locators.len());
-        let located = locators[which].locate_signalled(&spots, down.as_ref(), &mut |_| ());
+        let located = locators[which]
+            .locate(Input::signalled(&spots).gravity(down.as_ref()))
+            .expect("spots have no size");
         for neighbour in &located.neighbours {
             told.borrow_mut()[usize::from(neighbour.distance.estimate.is_some())] += 1;
         }
@@ -202,7 +204,9 @@ fn spots_all_in_one_place_tell_numbers_or_nothing() {
     for mut locator in locators() {
         for copies in 2..=5 {
             for down in [None, Some(Vector3::y_axis())] {
-                let located = locator.locate_spots(&vec![one.clone(); copies], down.as_ref(), &mut |_| ());
+                let located = locator
+                    .locate(Input::spots(&vec![one.clone(); copies]).gravity(down.as_ref()))
+                    .expect("spots have no size");
                 check_located(located).unwrap_or_else(|error| panic!("{copies} copies: {error}"));
             }
         }

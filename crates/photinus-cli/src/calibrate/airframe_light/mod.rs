@@ -5,7 +5,7 @@ mod report;
 use std::path::{Path, PathBuf};
 
 use photinus::camera::Camera;
-use photinus::locator::{Locator, Settings};
+use photinus::locator::{self, Locator, Settings};
 use photinus::pose;
 use photinus_calibrate::airframe_light::{Flight, Light, LightError, calibrate};
 use photinus_io::airframe::{AirframeFile, Tolerances, toml_text};
@@ -159,7 +159,8 @@ impl Recording {
                 }
             };
             let Some(image) = &entry.image else { continue };
-            let located = self.locator.locate(&image.view(), entry.gravity.as_ref(), &mut |_| ());
+            let located =
+                self.locator.locate(locator::Input::frame(&image.view()).gravity(entry.gravity.as_ref()));
             let located = located.map_err(|error| {
                 let frame = entry.record.frame.unwrap_or(u64::from(number));
                 Failure::input(Error::format(&entry.record.source, error.to_string()).at(Place::Frame(frame)))

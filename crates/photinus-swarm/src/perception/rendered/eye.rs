@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use nalgebra::{Isometry3, Rotation3, Unit, Vector3};
 use photinus::camera::Bearing;
-use photinus::locator::{self, Distance, Located, Locator, Neighbour};
+use photinus::locator::{self, Distance, Input, Located, Locator, Neighbour};
 use photinus::lookout::{Fleet, Glance, Lookout};
 use photinus::ranging::{Estimate, Interval};
 use photinus::tracking::{self, Track, Turned};
@@ -110,7 +110,7 @@ impl Eye {
         let gravity = Unit::new_normalize(down);
         let turn = camera_from_body * looking.turned.inverse() * self.body_from_camera.rotation;
         // the renderer makes frames of the camera's size
-        let Ok(located) = self.locator.locate(&frame.view(), Some(&gravity), &mut |_| ()) else { return };
+        let Ok(located) = self.locator.locate(Input::frame(&frame.view()).gravity(&gravity)) else { return };
         let glance = Glance {
             time_s: moment.time_s,
             exposure_s: moment.exposure_us * 1e-6,
@@ -241,9 +241,8 @@ fn leds(
 
 /// The located neighbour that shares most sightings with a track.
 fn best_match<'a>(located: &'a Located, members: &[usize]) -> Option<&'a Neighbour> {
-    let shared = |neighbour: &Neighbour| {
-        located.members(neighbour).iter().filter(|member| members.contains(member)).count()
-    };
+    let shared =
+        |neighbour: &Neighbour| neighbour.sightings.iter().filter(|member| members.contains(member)).count();
     let best = located.neighbours.iter().max_by_key(|neighbour| shared(neighbour))?;
     (shared(best) > 0).then_some(best)
 }
@@ -253,7 +252,7 @@ fn best_match<'a>(located: &'a Located, members: &[usize]) -> Option<&'a Neighbo
 fn bearing_bound_rad(neighbour: &Neighbour, located: &Located, reach_m: f64) -> f64 {
     let least_m = neighbour.distance.bounds.min_m().max(reach_m);
     let spans_rad = libm::asin((reach_m / least_m).min(1.0));
-    let members = located.members(neighbour).iter().map(|&member| &located.sightings[member]);
+    let members = neighbour.sightings.iter().map(|&member| &located.sightings[member]);
     let by_marker = members
         .map(|sighting| neighbour.bearing.angle_to(&sighting.bearing) + sighting.bound_rad + spans_rad);
     by_marker.fold(core::f64::consts::PI, f64::min)

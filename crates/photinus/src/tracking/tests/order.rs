@@ -4,7 +4,7 @@ use nalgebra::Rotation3;
 use rand_pcg::Pcg64;
 
 use super::simulator::*;
-use crate::locator::Located;
+use crate::locator::{Input, Located};
 use crate::tracking::{Lit, Look, Placed, Settings, TrackError, Tracked, Tracker, Turned};
 
 /// Frames of two vehicles before a camera that turns; each comes with its turn since the one before it.
@@ -23,7 +23,10 @@ fn frames() -> Vec<(f64, Turned, Located)> {
         ];
         let seen = look(&observer.airframe, &vehicles, &camera_from_world, &mut rng);
         let spots: Vec<_> = seen.into_iter().map(|seen| seen.spot).collect();
-        let located = observer.locator.locate_spots(&spots, Some(&down(&camera_from_world)), &mut |_| ());
+        let located = observer
+            .locator
+            .locate(Input::spots(&spots).gravity(&down(&camera_from_world)))
+            .expect("spots have no size");
         (time_s, Turned { now_from_before, sigma_rad: 1e-4 }, located.clone())
     };
     (0..40).map(frame).collect()
@@ -162,7 +165,10 @@ fn one_lit_marker_keeps_a_track() {
             time_s,
             turned: Some(Turned { now_from_before: still, sigma_rad: 0.0 }),
             gravity: Some(down(&still)),
-            located: observer.locator.locate_spots(&spots, Some(&down(&still)), &mut |_| ()),
+            located: observer
+                .locator
+                .locate(Input::spots(&spots).gravity(&down(&still)))
+                .expect("spots have no size"),
             signals: &[],
             lit: if frame < 30 { &[] } else { &told },
             blinking: None,

@@ -8,7 +8,7 @@ use rand_pcg::Pcg64;
 
 use crate::airframe::{Airframe, Ring};
 use crate::camera::{Bearing, Camera, Ideal, IdealLaw, Model, Pixel};
-use crate::locator::{self, Locator};
+use crate::locator::{self, Input, Locator};
 use crate::pose;
 use crate::spots::{Extent, Spot};
 use crate::tracking::{Look, Settings, Track, TrackError, Tracked, Tracker, Turned};
@@ -93,7 +93,7 @@ impl Observer {
             time_s,
             turned: Some(Turned { now_from_before, sigma_rad: self.gyro_sigma_rad }),
             gravity: Some(gravity),
-            located: self.locator.locate_spots(&spots, Some(&gravity), &mut |_| ()),
+            located: self.locator.locate(Input::spots(&spots).gravity(&gravity)).expect("spots have no size"),
             signals: &[],
             lit: &[],
             blinking: None,

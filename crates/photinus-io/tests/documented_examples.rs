@@ -39,7 +39,7 @@ fn rigs() {
 
 #[test]
 fn cameras() {
-    let camera = parse_camera_toml(&example("model ="), "example".as_ref()).unwrap().camera;
+    let camera = parse_camera_toml(&example("model ="), "example").unwrap().camera;
     assert!((camera.field_limit_rad().to_degrees() - 100.0).abs() < 1e-9);
 }
 

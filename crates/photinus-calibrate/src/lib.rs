@@ -13,6 +13,7 @@
 //! spot_size        areas of one LED over distance -> how large a spot can be
 //! mounting         places in the image of what is known in the body frame -> how the camera sits
 //! airframe_layout  photos taken around an airframe -> where its LEDs sit
+//! standing         frames of a camera that moves -> the mask of what stays with it
 //! airframe_light   a flight of one neighbour -> lobes, the power of each LED, how well positions are known
 //! ```
 //!
@@ -35,4 +36,5 @@ mod scatter;
 pub mod sighted;
 pub mod solve;
 pub mod spot_size;
+pub mod standing;
 mod start;

@@ -27,6 +27,8 @@ pub(crate) enum Content {
     Y4m,
     /// An MCAP recording.
     Recording,
+    /// A mask.
+    Png,
     /// A folder of files.
     Folder,
 }
@@ -62,6 +64,7 @@ impl Content {
             Self::OcamText | Self::Layout | Self::Codes => &["txt"],
             Self::Y4m => &["y4m"],
             Self::Recording => &["mcap"],
+            Self::Png => &["png"],
             Self::Folder => &[],
         }
     }
@@ -78,6 +81,7 @@ impl Content {
             Self::Codes => "a book of blink words",
             Self::Y4m => "a Y4M video",
             Self::Recording => "an MCAP recording",
+            Self::Png => "a PNG image",
             Self::Folder => "a folder",
         }
     }

@@ -5,6 +5,7 @@ mod airframe;
 mod airframe_light;
 mod camera;
 mod coverage;
+mod mask;
 mod mounting;
 mod optics;
 mod page;
@@ -33,6 +34,7 @@ enum What {
     Camera(camera::Args),
     Coverage(coverage::Args),
     Optics(optics::Args),
+    Mask(mask::Args),
     SpotSize(spot_size::Args),
     Mounting(mounting::Args),
     Airframe(airframe::Args),
@@ -46,6 +48,7 @@ impl Args {
             What::Camera(args) => args.quiet(),
             What::Coverage(_) => false,
             What::Optics(args) => args.quiet(),
+            What::Mask(args) => args.quiet(),
             What::SpotSize(args) => args.quiet(),
             What::Mounting(args) => args.quiet(),
             What::Airframe(args) => args.quiet(),
@@ -60,6 +63,7 @@ pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> Result<(), Failure> {
         What::Camera(args) => camera::run(args, terminal),
         What::Coverage(args) => coverage::run(args, terminal),
         What::Optics(args) => optics::run(args, terminal),
+        What::Mask(args) => mask::run(args, terminal),
         What::SpotSize(args) => spot_size::run(args, terminal),
         What::Mounting(args) => mounting::run(args, terminal),
         What::Airframe(args) => airframe::run(args, terminal),

@@ -10,6 +10,7 @@ mod bad_input;
 mod calibrate;
 mod calibrate_airframe;
 mod calibrate_airframe_light;
+mod calibrate_mask;
 mod calibrate_mounting;
 mod calibrate_report;
 mod calibrate_spot_size;

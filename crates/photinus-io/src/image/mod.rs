@@ -89,6 +89,14 @@ pub fn read_image(path: impl AsRef<Path>) -> Result<ImageFile> {
 /// [`Error`] when the file cannot be written.
 pub fn write_png(path: impl AsRef<Path>, frame: &FrameView<'_>) -> Result<()> {
     let path = path.as_ref();
+    whole::write_whole(path, &png_bytes(path, frame)?, whole::Existing::Replace)
+}
+
+/// The bytes of a grey PNG; `path` is for the messages.
+///
+/// # Errors
+/// [`Error`] for a frame that is too large for PNG.
+pub fn png_bytes(path: impl AsRef<Path>, frame: &FrameView<'_>) -> Result<Vec<u8>> {
     let image = GreyImage::from_view(frame);
     let mut bytes = Vec::new();
     let side = |px: usize| u32::try_from(px).unwrap_or(u32::MAX);
@@ -100,7 +108,7 @@ pub fn write_png(path: impl AsRef<Path>, frame: &FrameView<'_>) -> Result<()> {
         ::image::ExtendedColorType::L8,
     )
     .map_err(|error| Error::format(path, error.to_string()))?;
-    whole::write_whole(path, &bytes, whole::Existing::Replace)
+    Ok(bytes)
 }
 
 #[cfg(test)]

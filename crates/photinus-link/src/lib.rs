@@ -4,16 +4,21 @@
 //! photinus-io's FrameRecord -> messages -> ros -> cdr -> recording   MCAP files, feature `recording`
 //!                                                     -> dds         ROS 2 topics without ROS, feature `ros2`
 //!                           -> mavlink                               autopilots, feature `mavlink`
+//! recording, bag (of ROS 1) -> poses -> photinus-io's TimedPose      where vehicles were, feature `recording`
 //! ```
 //! [`messages`] says what a located frame is in ROS's words, once for all that carry them. Each link is a [`Sink`](photinus_run::sink::Sink)
 //! of a run; below the sinks nothing reads a clock.
 
+#[cfg(feature = "recording")]
+pub mod bag;
 pub mod cdr;
 #[cfg(any(feature = "recording", feature = "ros2", feature = "mavlink"))]
 pub mod config;
 #[cfg(feature = "mavlink")]
 pub mod mavlink;
 pub mod messages;
+#[cfg(feature = "recording")]
+pub mod poses;
 #[cfg(feature = "recording")]
 pub mod recording;
 pub mod ros;

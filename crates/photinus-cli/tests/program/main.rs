@@ -18,6 +18,7 @@ mod commands;
 mod demo;
 mod doctor;
 mod evaluate;
+mod evaluate_recordings;
 mod files_survive;
 mod inject;
 mod live;

@@ -7,7 +7,7 @@ use photinus_io::image::{GreyImage, read_image, write_png};
 use photinus_io::video::Y4mWriter;
 
 use crate::stage::Stage;
-use crate::{calibrate_airframe, calibrate_mounting, calibrate_spot_size, evaluate};
+use crate::{calibrate_airframe, calibrate_mounting, calibrate_spot_size, evaluate, evaluate_recordings};
 
 /// Commands whose examples are walked; the others calibrate from photos that cannot be part of the repository, or simulate for minutes,
 /// and have tests of their own.
@@ -120,7 +120,7 @@ fn provide(stage: &Stage, example: &str, written: &BTreeSet<String>) {
 
 /// What somebody measured, in files whose content depends on the example.
 fn provide_measurements(stage: &Stage, example: &str) {
-    if example.contains("flight.mcap") {
+    if example.contains("flight.mcap") && !example.contains("flight.mcap:") {
         assert_eq!(stage.run("convert flight flight.mcap").code, 0);
     }
     if example.contains("calibrate mounting") {
@@ -133,8 +133,11 @@ fn provide_measurements(stage: &Stage, example: &str) {
         stage.file("areas.csv", calibrate_spot_size::areas(&[1000.0]));
         assert_eq!(stage.run("calibrate spot-size areas.csv --out spots.toml").code, 0);
     }
-    if example.contains("--target") {
+    if example.contains("observer.csv") {
         evaluate::two_logs(stage);
+    }
+    if example.contains("flight.mcap:") {
+        evaluate_recordings::recorded(stage);
     }
 }
 

@@ -36,7 +36,9 @@ pub use frames_csv::{FrameRow, parse_frames_csv};
 pub use gravity::GravityLog;
 pub use imu::{ImuRow, parse_imu, read_imu};
 pub use info::{DatasetInfo, DatasetToml, RigCamera, RigInfo};
-pub use odometry::{OdometryRow, TimedPose, parse_odometry, parse_poses, read_odometry, read_poses};
+pub use odometry::{
+    OdometryRow, PoseError, TimedPose, parse_odometry, parse_poses, read_odometry, read_poses,
+};
 pub use truth::{TruthFrame, TruthLed, TruthNeighbour, parse_truth, read_truth};
 pub use vehicles::{Vehicle, VehicleBlink, VehicleInfo, parse_vehicles, vehicles_text};
 pub use writer::DatasetWriter;
@@ -170,6 +172,7 @@ fn in_folder(folder: &Path, name: &Path) -> Result<(String, PathBuf)> {
     match path.metadata() {
         Ok(found) if found.is_file() => whole::read_text(&path).map(|text| (text, path)),
         Err(error) if error.kind() == ErrorKind::PermissionDenied => Err(Error::io(&path, error)),
+        Err(error) if !folder.exists() => Err(Error::io(folder, error)),
         _ => Err(Error::format(folder, format!("the folder holds no {}", name.display()))
             .advise("name the folder of a dataset, or list the image files themselves")),
     }

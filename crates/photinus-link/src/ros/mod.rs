@@ -8,6 +8,7 @@ mod definitions;
 mod detection;
 mod diagnostic;
 mod marker;
+mod odometry;
 mod photinus;
 mod sensor;
 
@@ -21,6 +22,7 @@ pub use detection::{
 };
 pub use diagnostic::{DiagnosticArray, DiagnosticStatus, KeyValue, Level};
 pub use marker::{ColorRGBA, Marker, MarkerArray, MeshFile, Shape, UVCoordinate};
+pub use odometry::{Odometry, PoseStamped, PoseWithCovarianceStamped, Twist, TwistWithCovariance};
 pub use photinus::{Frame, Neighbour, NeighbourArray, PoseMode};
 pub use sensor::{CameraInfo, CompressedImage, Image, Imu, RegionOfInterest};
 
@@ -48,6 +50,10 @@ messages! {
     "sensor_msgs/CompressedImage": CompressedImage<'_>,
     "sensor_msgs/CameraInfo": CameraInfo,
     "sensor_msgs/Imu": Imu,
+    "geometry_msgs/PoseStamped": PoseStamped,
+    "geometry_msgs/PoseWithCovarianceStamped": PoseWithCovarianceStamped,
+    "geometry_msgs/TransformStamped": TransformStamped,
+    "nav_msgs/Odometry": Odometry,
     "photinus_msgs/NeighbourArray": NeighbourArray,
     "photinus_msgs/Frame": Frame,
 }

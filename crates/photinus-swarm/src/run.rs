@@ -70,7 +70,7 @@ impl Run {
         Self { scenario: Arc::new(scenario), ..self.clone() }
     }
 
-    /// Flies under `seeds` seeds from the scenario's own on, on so many threads; the numbers of each flight, in the order of seeds. `tell` hears of every
+    /// Flies under `seeds` seeds from the scenario's own on, on this many threads; the numbers of each flight, in the order of seeds. `tell` hears of every
     /// frame and flight, and stops everything by answering no.
     ///
     /// # Errors

@@ -47,7 +47,7 @@ Examples:
 
 Frames of truth that the results do not hold count as missed.";
 
-/// After so many bad lines the others are only counted.
+/// After this many bad lines the others are only counted.
 const REPORTED_LINES: usize = 5;
 
 /// Compare results with ground truth: recall, errors, bounds, covariances

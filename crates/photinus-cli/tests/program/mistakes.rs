@@ -171,7 +171,9 @@ const OPTIONS: [Mistake; 28] = [
     (
         "evaluate poses.csv results.jsonl",
         2,
-        &["poses.csv: this is a table of poses; give that of the other vehicle, too, as --target FILE"],
+        &[
+            "poses.csv: this is a table of poses; to get truth from poses, give the log of the other vehicle, too: --target FILE",
+        ],
     ),
     (
         "convert camera.toml camera",

@@ -69,7 +69,7 @@ impl Dataset {
     ///
     /// # Errors
     /// [`Error`] when dataset.toml or a frames.csv is missing or not in order, or a mounting, the book of words, the list of
-    /// vehicles or an airframe that it lists is named and not in order.
+    /// vehicles or an airframe that it lists is named there and is missing or not in order.
     pub fn read(folder: impl AsRef<Path>) -> Result<Self> {
         let folder = folder.as_ref().to_owned();
         let (text, path) = in_folder(&folder, Path::new(DATASET_FILE))?;

@@ -58,7 +58,7 @@ pub enum Kind {
     Mounting,
     /// The scene of a simulation.
     Scene,
-    /// A scene's table of a lens, or of what it makes of a point of light.
+    /// A scene's table of a lens, or of a point spread.
     PointSpread,
     /// A scene's table of a sensor.
     Sensor,

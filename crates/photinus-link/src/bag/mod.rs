@@ -186,7 +186,7 @@ impl Bag {
         self.bytes(at, header + data)
     }
 
-    /// So many bytes of the file; no room is made for more than it has.
+    /// This many bytes of the file; no room is made for more than it has.
     fn bytes(&self, at: u64, count: u64) -> Result<Vec<u8>> {
         if count > MOST_BYTES as u64 || at.checked_add(count).is_none_or(|end| end > self.length) {
             return Err(self.damaged());

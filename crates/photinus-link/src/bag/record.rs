@@ -46,7 +46,7 @@ impl<'a> Record<'a> {
     }
 }
 
-/// All records of these bytes, or `None` in the place of what is none.
+/// All records of these bytes, with `None` in the place of what is not a record.
 pub(super) fn records(mut bytes: &[u8]) -> impl Iterator<Item = Option<Record<'_>>> {
     std::iter::from_fn(move || {
         if bytes.is_empty() {

@@ -39,7 +39,7 @@ struct DetectionTable {
 pub struct SafetyPlan {
     /// What every vehicle of the group keeps to; radius and period are the scenario's.
     pub limits: Limits,
-    /// Who answers for it that nobody unseen is near.
+    /// What vouches that nobody unseen is near.
     pub unseen: Unseen,
 }
 
@@ -130,7 +130,7 @@ pub(crate) struct OnMap {
 }
 
 impl Guard {
-    /// The layer of a vehicle; `None` where the limits are none.
+    /// The layer of a vehicle; `None` where the limits have no meaning.
     pub(crate) fn new(
         plan: &SafetyPlan,
         (radius_m, period_s): (f64, f64),

@@ -27,12 +27,12 @@ pub(super) struct Telling {
 }
 
 impl Telling {
-    /// Room for so many candidates.
+    /// Room for this many candidates.
     pub(super) fn with_room(count: usize) -> Self {
         Self { order: Vec::with_capacity(count), taken: Vec::new(), same: Vec::with_capacity(count) }
     }
 
-    /// Puts the neighbours that are at least so likely into `located`, in the order of their first observation.
+    /// Puts the neighbours that are at least this likely into `located`, in the order of their first observation.
     pub(super) fn tell(
         &mut self,
         candidates: &Candidates,
@@ -84,7 +84,7 @@ impl Telling {
             let probability = explanation.probability(index);
             all += probability;
             if index == own && probability == 0.0 {
-                // Nobody would say so, but it is what is asked for.
+                // Unlikely to be chosen, but it is what the setting asks for.
                 self.same.push((index, f64::MIN_POSITIVE));
             } else if is_same(candidates, own, index) {
                 self.same.push((index, probability));

@@ -150,7 +150,7 @@ impl StandInTable {
         Err(photinus_io::Error::format(path, reason).advise("fit it anew"))
     }
 
-    /// Errors at a distance with so many markers.
+    /// Errors at a distance with this many markers.
     pub fn errors(&self, distance_m: f64, markers: usize) -> &Cell {
         &self.error[class(markers)][bin(distance_m)]
     }

@@ -105,14 +105,14 @@ const world = (canvas, place, shot, index) => {
 };
 
 // A text beside a ring: at the first side on which it covers nothing and is not cut.
-const beside = (pen, text, [u, v, radius], taken) => {
-  const width = pen.measureText(text).width, height = 15, gap = radius + 6;
+const beside = (pen, text, [u, v, radius], height, taken) => {
+  const width = pen.measureText(text).width, gap = radius + 0.4 * height;
   const sides = [[u + gap, v - height / 2], [u - gap - width, v - height / 2], [u - width / 2, v - gap - height], [u - width / 2, v + gap]];
   const isFree = ([x, y]) => x >= 0 && x + width <= view.width && y >= 0 && y + height <= view.height
     && taken.every(([left, top, right, bottom]) => x > right || x + width < left || y > bottom || y + height < top);
   const [x, y] = sides.find(isFree) ?? [Math.min(u + gap, view.width - width), v - height / 2];
   taken.push([x, y, x + width, y + height]);
-  pen.fillText(text, x, y + 12);
+  pen.fillText(text, x, y + 0.8 * height);
 };
 
 const around = (shot) => {
@@ -127,7 +127,9 @@ const around = (shot) => {
     return [view.width / 2 - azimuth / Math.PI * view.width / 2, view.height / 2 - elevation / Math.PI * view.width / 2, far];
   };
   pen.lineWidth = 1.5;
-  pen.font = "15px system-ui, sans-serif";
+  // As large on a narrow screen, where the picture shrinks, as on a wide one.
+  const size = Math.max(15, 12 * view.width / (view.clientWidth || view.width));
+  pen.font = size + "px system-ui, sans-serif";
   const ring = (vehicle, far) => Math.min(60, Math.max(3, film.radii[vehicle] / far / Math.PI * view.width / 2));
   const taken = [];
   shot.p.forEach(([x, y, z], vehicle) => {
@@ -143,7 +145,7 @@ const around = (shot) => {
     const [u, v, far] = at([x, y, z]);
     pen.strokeStyle = pen.fillStyle = is < 0 ? colour("--warning") : colour("--estimate");
     is < 0 ? cross(pen, [u, v], 6) : disc(pen, [u, v], 4, true);
-    beside(pen, far.toFixed(1) + " m", [u, v, is < 0 ? 6 : ring(is, far)], taken);
+    beside(pen, far.toFixed(1) + " m", [u, v, is < 0 ? 6 : ring(is, far)], size, taken);
   }
   if (!shot.s[chosen]) {
     pen.fillStyle = colour("--faint");

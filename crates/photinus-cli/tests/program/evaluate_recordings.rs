@@ -20,13 +20,14 @@ pub(crate) fn recorded(stage: &Stage) {
     two_logs(stage);
     let [observer, target] = ["observer.csv", "target.csv"].map(|name| read_poses(stage.path(name)).unwrap());
     let mut recorder = Recorder::create(stage.path("flight.mcap"), Settings::default(), None).unwrap();
-    for (number, (observer, target)) in observer.iter().zip(&target).enumerate() {
+    for (observer, target) in observer.iter().zip(&target) {
+        let arrived_ns = Time::from_seconds(observer.time_s).nanoseconds();
         let (header, pose) = message(observer);
         let pose = PoseWithCovariance { pose, ..PoseWithCovariance::default() };
         let odometry = Odometry { header, pose, ..Odometry::default() };
-        recorder.message("/observer/odom", &odometry, 0, number as u64).unwrap();
+        recorder.message("/observer/odom", &odometry, 0, arrived_ns).unwrap();
         let (header, pose) = message(target);
-        recorder.message("/target/odom", &PoseStamped { header, pose }, 0, number as u64).unwrap();
+        recorder.message("/target/odom", &PoseStamped { header, pose }, 0, arrived_ns).unwrap();
     }
     recorder.finish().unwrap();
 }
@@ -73,7 +74,7 @@ fn recordings_of_poses_score_as_the_same_poses_in_tables() {
         "observer.bag: a bag of ROS 1",
         "poses     /pose",
         "duration  70.0 s",
-        "nav_msgs/Odometry          3500",
+        "nav_msgs/Odometry           3500",
         "geometry_msgs/PoseStamped   3500",
     ] {
         assert!(told.contains(words), "{words}\n{told}");

@@ -75,7 +75,7 @@ impl Store {
         }
         if example.contains("calibrate airframe-light") {
             ["flight", "morning", "evening"].iter().for_each(|name| put("alone", name));
-            std::fs::copy(stage.path("flight/quadrotor-0.245.toml"), stage.path("quad.toml")).unwrap();
+            std::fs::copy(stage.path("flight/airframe.toml"), stage.path("quad.toml")).unwrap();
         }
         if example.contains("calibrate optics") {
             put("alone", "flight");

@@ -10,6 +10,7 @@ mod diagnostic;
 mod marker;
 mod odometry;
 mod photinus;
+mod pose;
 mod sensor;
 
 pub use basic::{
@@ -22,8 +23,9 @@ pub use detection::{
 };
 pub use diagnostic::{DiagnosticArray, DiagnosticStatus, KeyValue, Level};
 pub use marker::{ColorRGBA, Marker, MarkerArray, MeshFile, Shape, UVCoordinate};
-pub use odometry::{Odometry, PoseStamped, PoseWithCovarianceStamped, Twist, TwistWithCovariance};
+pub use odometry::{Odometry, Twist, TwistWithCovariance};
 pub use photinus::{Frame, Neighbour, NeighbourArray, PoseMode};
+pub use pose::{PoseStamped, PoseWithCovarianceStamped};
 pub use sensor::{CameraInfo, CompressedImage, Image, Imu, RegionOfInterest};
 
 /// A message that a topic can carry.
@@ -43,6 +45,9 @@ macro_rules! messages {
 messages! {
     "std_msgs/String": Text,
     "tf2_msgs/TFMessage": TFMessage,
+    "geometry_msgs/PoseStamped": PoseStamped,
+    "geometry_msgs/PoseWithCovarianceStamped": PoseWithCovarianceStamped,
+    "geometry_msgs/TransformStamped": TransformStamped,
     "vision_msgs/Detection3DArray": Detection3DArray,
     "visualization_msgs/MarkerArray": MarkerArray,
     "diagnostic_msgs/DiagnosticArray": DiagnosticArray,
@@ -50,9 +55,6 @@ messages! {
     "sensor_msgs/CompressedImage": CompressedImage<'_>,
     "sensor_msgs/CameraInfo": CameraInfo,
     "sensor_msgs/Imu": Imu,
-    "geometry_msgs/PoseStamped": PoseStamped,
-    "geometry_msgs/PoseWithCovarianceStamped": PoseWithCovarianceStamped,
-    "geometry_msgs/TransformStamped": TransformStamped,
     "nav_msgs/Odometry": Odometry,
     "photinus_msgs/NeighbourArray": NeighbourArray,
     "photinus_msgs/Frame": Frame,

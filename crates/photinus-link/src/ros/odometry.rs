@@ -1,24 +1,8 @@
-//! nav_msgs/Odometry, and what else of geometry_msgs tells where a vehicle is.
+//! nav_msgs/Odometry, and what of geometry_msgs it alone needs.
 
 use serde::{Deserialize, Serialize};
 
-use super::{Header, Matrix6, Pose, PoseWithCovariance, Vector3};
-
-/// geometry_msgs/PoseStamped.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[expect(missing_docs, reason = "the fields are those of the ROS definition")]
-pub struct PoseStamped {
-    pub header: Header,
-    pub pose: Pose,
-}
-
-/// geometry_msgs/PoseWithCovarianceStamped.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[expect(missing_docs, reason = "the fields are those of the ROS definition")]
-pub struct PoseWithCovarianceStamped {
-    pub header: Header,
-    pub pose: PoseWithCovariance,
-}
+use super::{Header, Matrix6, PoseWithCovariance, Vector3};
 
 /// geometry_msgs/Twist.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -28,7 +12,7 @@ pub struct Twist {
     pub angular: Vector3,
 }
 
-/// geometry_msgs/TwistWithCovariance: in the child frame of the odometry.
+/// geometry_msgs/TwistWithCovariance.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[expect(missing_docs, reason = "the fields are those of the ROS definition")]
 pub struct TwistWithCovariance {
@@ -36,7 +20,7 @@ pub struct TwistWithCovariance {
     pub covariance: Matrix6,
 }
 
-/// nav_msgs/Odometry.
+/// nav_msgs/Odometry: the pose in the header's frame, the twist in the child's.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[expect(missing_docs, reason = "the fields are those of the ROS definition")]
 pub struct Odometry {

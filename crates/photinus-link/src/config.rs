@@ -53,7 +53,7 @@ impl Record {
     /// Begins the recording.
     ///
     /// # Errors
-    /// As [`Recorder::create`](crate::recording::Recorder::create), and when a split has no meaning.
+    /// As [`Recorder::create`](crate::recording::Recorder::create), and when a split is none.
     pub fn open(&self, cameras: &[Camera]) -> Result<Box<dyn Sink>> {
         use crate::recording::{RecordSink, Recorder, Settings, Split};
         let wrong = |split: Option<f64>| split.is_some_and(|split| !(split > 0.0 && split.is_finite()));
@@ -91,7 +91,7 @@ impl Ros2 {
     /// Joins the domain.
     ///
     /// # Errors
-    /// When the network refuses, or a name is not valid.
+    /// When the network refuses, or a name is none.
     pub fn open(&self, cameras: &[Camera]) -> Result<Box<dyn Sink>> {
         use crate::ros2::{Ros2Sink, Settings};
         let remaps = self.remaps.clone().into_iter().collect();
@@ -128,7 +128,7 @@ pub struct Mavlink {
     pub tells_free: bool,
     /// Most OBSTACLE_DISTANCE a second.
     pub most_hz: Option<f64>,
-    /// An answer that is older than this, ms, no longer counts.
+    /// An answer that is older, ms, is none.
     pub stale_ms: Option<f64>,
 }
 
@@ -137,7 +137,7 @@ impl Mavlink {
     /// Opens the link; what the autopilot says of its motion goes into `motion`.
     ///
     /// # Errors
-    /// When an address is not valid, a port is taken, a number is not above 0, or a camera has no mounting.
+    /// When an address is none, a port is taken, a number is not above 0, or a camera has no mounting.
     pub fn open(&self, cameras: &[Camera], motion: photinus_run::motion::Motion) -> Result<Box<dyn Sink>> {
         use crate::mavlink::{Autopilot, AutopilotSink, Obstacles, Outlook, Settings};
         let known = Settings::default();

@@ -4,10 +4,10 @@
 //! photinus-io's FrameRecord -> messages -> ros -> cdr -> recording   MCAP files, feature `recording`
 //!                                                     -> dds         ROS 2 topics without ROS, feature `ros2`
 //!                           -> mavlink                               autopilots, feature `mavlink`
-//! recording, bag (of ROS 1) -> poses -> photinus-io's TimedPose      where vehicles were, feature `recording`
 //! ```
 //! [`messages`] says what a located frame is in ROS's words, once for all that carry them. Each link is a [`Sink`](photinus_run::sink::Sink)
-//! of a run; below the sinks nothing reads a clock.
+//! of a run; below the sinks nothing reads a clock. The other way round, [`recording`] reads MCAP, [`mod@bag`] bags of ROS 1, and [`poses`] where
+//! vehicles were from either.
 
 #[cfg(feature = "recording")]
 pub mod bag;

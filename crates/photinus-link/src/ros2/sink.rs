@@ -23,7 +23,7 @@ impl Ros2Sink {
     /// Joins the domain and announces the topics; `views` are those of the run's cameras, in their order.
     ///
     /// # Errors
-    /// [`Ros2Error`] when the network refuses, or a name is not valid.
+    /// [`Ros2Error`] when the network refuses, or a name is none.
     pub fn new(settings: Settings, views: Vec<Viewpoint>) -> std::result::Result<Self, Ros2Error> {
         let mut node = Node::new(settings)?;
         let topics = Topics::new(&mut node)?;

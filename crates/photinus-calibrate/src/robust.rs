@@ -1,6 +1,6 @@
 //! What deviates too far: weights that let it count little, and the line past which it is left out.
 
-/// A residual so many times the typical one is left out.
+/// A residual this many times the typical one is left out.
 const OUTLIER: f64 = 5.0;
 /// Median length of a two-dimensional normal residual, in sigmas of one axis: the root of 2 log 2.
 const MEDIAN_OF_TWO_AXES: f64 = 1.177_410_022_515_474_6;

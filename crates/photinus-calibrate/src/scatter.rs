@@ -3,7 +3,7 @@
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::Rng;
 
-/// Neighbours in time are alike: they are drawn together, so many at a time.
+/// Neighbours in time are alike: they are drawn together, this many at a time.
 const BLOCK: usize = 8;
 
 /// Standard deviations of the estimates from `count` resamples, drawn with replacement in blocks; those that give no estimate

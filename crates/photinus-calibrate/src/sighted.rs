@@ -19,8 +19,8 @@ pub struct Sighted {
 const SMALL: f64 = 1e-6;
 
 impl Sighted {
-    /// What `camera` sees at `pixel`, either coordinate known to `sigma_px`; `None` outside the field, and for a sigma that is
-    /// none.
+    /// What `camera` sees at `pixel`, either coordinate known to `sigma_px`; `None` outside the field, and for a sigma that is not
+    /// above 0.
     pub fn new(camera: &Camera, pixel: Pixel, sigma_px: f64) -> Option<Self> {
         let (bearing, jacobian) = camera.bearing_with_jacobian(pixel)?;
         let squares: Matrix2<f64> = jacobian.transpose() * jacobian;

@@ -10,7 +10,7 @@ pub(crate) fn read<P: Parser>() -> P {
     P::try_parse().unwrap_or_else(|error| in_plain_words::<P>(error).exit())
 }
 
-/// What a parser of numbers says is said of the number that is expected.
+/// What a parser of numbers complains of becomes what number is expected.
 fn in_plain_words<P: CommandFactory>(error: clap::Error) -> clap::Error {
     let wanted = match std::error::Error::source(&error) {
         Some(source) if source.is::<ParseIntError>() => "give a whole number, without a point or a unit",

@@ -23,7 +23,7 @@ pub(crate) fn camera(path: &Path, terminal: &Terminal) -> Result<CameraFile> {
     Ok(file)
 }
 
-/// Reads an airframe of either format and tells what was read otherwise than it stands in the file.
+/// Reads an airframe of either format and tells where reading departed from what the file says.
 ///
 /// # Errors
 /// As [`read_airframe`].

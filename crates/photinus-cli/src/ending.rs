@@ -47,6 +47,9 @@ impl Content {
             return None;
         }
         let advice = match self.endings() {
+            [] if ["mp4", "mov", "mkv", "avi", "webm"].contains(&ending.as_str()) => {
+                "name a folder, without that ending; where a video can be written, it ends in .y4m".to_owned()
+            }
             [] => "name a folder, without that ending".to_owned(),
             [ending, ..] => format!("end it in .{ending}"),
         };
@@ -108,6 +111,6 @@ mod tests {
         assert_eq!(advice, "end it in .toml");
         let (reason, advice) = told(Content::Folder, "rec.mp4").unwrap();
         assert_eq!(reason, "its name ends in .mp4, but a folder is written there");
-        assert_eq!(advice, "name a folder, without that ending");
+        assert!(advice.starts_with("name a folder, without that ending; where a video"), "{advice}");
     }
 }

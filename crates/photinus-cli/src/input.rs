@@ -202,7 +202,7 @@ impl InputArgs {
         }
         match self.inputs.as_slice() {
             [] => Err(Failure::Input(
-                "no input: name a dataset folder, image files or a folder of them, a Y4M video, or - for Y4M on standard input"
+                "no input: name a dataset folder, image files or a folder of them, a Y4M video, an MCAP recording, or - for Y4M on standard input"
                     .to_owned(),
             )),
             _ if self.raw.is_some() => Err(Failure::Input(

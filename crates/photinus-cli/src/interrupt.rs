@@ -17,7 +17,7 @@ static LOOKED_AT: AtomicBool = AtomicBool::new(false);
 /// Folders in the making, gone when nothing keeps them.
 static UNFINISHED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
-/// Whether the run is to end. Who asks promises to end it soon.
+/// Whether the run is to end. Whoever asks promises to end it soon.
 pub(crate) fn is_asked() -> bool {
     LOOKED_AT.store(true, Ordering::Relaxed);
     ASKED.load(Ordering::Relaxed)

@@ -19,7 +19,7 @@ pub(crate) fn whole<T: TryFrom<u64>>(
     number.and_then(|number| T::try_from(number).ok()).ok_or_else(told)
 }
 
-/// Grey levels, 1 to 255. Who gives a share of full scale is told which level that is.
+/// Grey levels, 1 to 255. Whoever gives a share of full scale is told which level that is.
 pub(crate) fn level(text: &str) -> Result<u8, String> {
     whole(text, 1..=255, "grey levels").map_err(|told| match text.parse::<f64>() {
         Ok(share) if share > 0.0 && share < 1.0 => {

@@ -1,4 +1,4 @@
-//! `photinus recover`: a recording that was cut off becomes a whole one.
+//! `photinus recover`: makes a recording that was cut off whole again.
 
 use std::path::PathBuf;
 

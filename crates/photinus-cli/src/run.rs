@@ -14,7 +14,7 @@ use crate::resume::Done;
 use crate::summary::Summary;
 use crate::terminal::Terminal;
 
-/// After so many failed frames the others are only counted: the first ones say what is wrong.
+/// After this many failed frames the others are only counted: the first ones say what is wrong.
 const REPORTED_FAILURES: u64 = 10;
 
 /// Takes every frame of `input` through `work`, which completes its record, and writes it. What is `done` is skipped, once nothing is left to
@@ -63,7 +63,7 @@ pub(crate) fn run(
     }
 }
 
-/// Who stands at the end of the loop: frames are written and counted, and what went wrong is told.
+/// The end of the loop: writes and counts frames, and tells what went wrong.
 struct Desk<'a> {
     outputs: Outputs,
     summary: Summary,

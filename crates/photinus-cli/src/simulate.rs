@@ -140,7 +140,7 @@ pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> Result<(), Failure> {
             return Err(Failure::Interrupted(format!("interrupted; {held}")));
         }
         Some(Stopped::Failed(error)) => {
-            // The frames before it are a dataset of their own; half a video is none.
+            // The frames before it are a dataset of their own; half a video is not a video.
             if let (Sink::Dataset { .. }, 1..) = (&sink, written) {
                 sink.keep(&args.out).map_err(Failure::running)?;
                 terminal.note(held);

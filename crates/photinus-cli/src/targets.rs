@@ -101,7 +101,7 @@ impl Targets {
     }
 
     fn claim(&mut self, place: PathBuf, named: &Path) -> std::result::Result<(), Failure> {
-        // Two outputs may well go to one pipe or to /dev/null, but not to standard output: nobody could tell them apart.
+        // Two outputs may both go to one pipe or to /dev/null, but not to standard output: nobody could tell them apart.
         let is_shared = place.exists() && !place.is_file() && !place.is_dir();
         if self.claimed.contains(&place) && is_standard(named) {
             let reason = "two outputs both write to standard output: name a file for one of them";

@@ -1,7 +1,7 @@
 //! The only place that prints: results to standard output, everything else to standard error.
 //!
 //! `error:` means that something is missing from the result, `warning:` that there is something to do, `note:` that
-//! something was taken otherwise than it stands in a file.
+//! something was taken differently from what a file says.
 
 use std::borrow::Cow;
 use std::fmt::Display;
@@ -39,7 +39,7 @@ impl Terminal {
         Self { quiet, started: Instant::now(), bar: ProgressBar::hidden() }
     }
 
-    /// Begins work on so many frames, where that is known.
+    /// Begins work on this many frames, where that is known.
     pub(crate) fn start(&mut self, frames: Option<u64>) {
         let template = match frames {
             Some(_) => "{wide_bar} {pos}/{len} frames, {eta} left",
@@ -77,7 +77,7 @@ impl Terminal {
         }
     }
 
-    /// Something is otherwise than it stands in a file.
+    /// Something was taken differently from what a file says.
     pub(crate) fn note(&self, message: impl Display) {
         if !self.quiet {
             self.say(format_args!("note: {message}"));

@@ -23,7 +23,7 @@ pub enum Side {
     Results,
 }
 
-/// Why results cannot be held against truth.
+/// Why results cannot be compared with truth.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum EvaluateError {

@@ -84,7 +84,7 @@ pub(crate) fn track(track: u64, position_m: [f64; 3]) -> TrackRecord {
     }
 }
 
-/// A spot that covers so many pixels.
+/// A spot that covers this many pixels.
 pub(crate) fn spot(u_px: f64, v_px: f64, area_px: u32) -> SpotRecord {
     let variance_px2 = DEFAULT_SIGMA_PX * DEFAULT_SIGMA_PX;
     SpotRecord {

@@ -1,4 +1,4 @@
-//! Results held against truth: how often, how far off, and whether bounds and covariances keep their word.
+//! Results compared with ground truth: how often, how far off, and whether bounds and covariances keep their word.
 //!
 //! ```text
 //! truth, results -> frames   every frame of truth with its result, or without one      frames
@@ -52,7 +52,7 @@ pub struct Settings {
     pub time_tolerance_s: f64,
     /// A vehicle farther than this from where truth has it is another one, to GOSPA, m. Default 2.
     pub gospa_cutoff_m: f64,
-    /// Who shows again after no more than this is expected to be followed meanwhile, s. Default 2.
+    /// A vehicle that shows again within this time is expected to be followed meanwhile, s. Default 2.
     pub occlusion_s: f64,
     /// How distances are binned: the edges between bins, m.
     #[serde(rename = "bins_m")]
@@ -82,7 +82,7 @@ pub struct Evaluation<'a> {
     pub pairs: Vec<Pair<'a>>,
 }
 
-/// Holds `results` against `truth`, both in any order.
+/// Compares `results` with `truth`, both in any order.
 ///
 /// # Errors
 /// [`EvaluateError`] when there is nothing to compare, when the two are not of the same dataset, or when truth

@@ -12,7 +12,7 @@ use crate::{Cause, ContentError, Error, Place, Result};
 /// Longest line: thousands of spots.
 const MAX_LINE_BYTES: usize = 16 << 20;
 
-/// The records of a stream. A line that is none gives an error, and the next line comes after it; blank lines are
+/// The records of a stream. A line that is not a record gives an error, and the next line comes after it; blank lines are
 /// skipped.
 #[derive(Debug)]
 pub(crate) struct JsonLines<R, T> {

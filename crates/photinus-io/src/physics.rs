@@ -1,4 +1,4 @@
-//! What numbers of a recording or a scene can be in this world: one place for all ranges.
+//! What numbers of a recording or a scene can be: one place for all ranges.
 //!
 //! They are wide: what is outside is a slip of the pen or of a unit, never a camera or a vehicle.
 

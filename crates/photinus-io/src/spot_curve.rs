@@ -78,7 +78,7 @@ pub fn read_spot_curve(path: impl AsRef<Path>) -> Result<SpotCurveFile> {
 /// Reads the text of a spot curve; `path` is for the messages.
 ///
 /// # Errors
-/// [`Error`] with the line or the key for unknown and missing keys, for numbers that are none, for envelopes that no
+/// [`Error`] with the line or the key for unknown and missing keys, for what is not a number, for envelopes that no
 /// spots have, and for a lower one above the upper one.
 pub fn parse_spot_curve(text: &str, path: impl AsRef<Path>) -> Result<SpotCurveFile> {
     let path = path.as_ref();

@@ -6,14 +6,19 @@
 //!                           -> mavlink                               autopilots, feature `mavlink`
 //! ```
 //! [`messages`] says what a located frame is in ROS's words, once for all that carry them. Each link is a [`Sink`](photinus_run::sink::Sink)
-//! of a run; below the sinks nothing reads a clock.
+//! of a run; below the sinks nothing reads a clock. The other way round, [`recording`] reads MCAP, [`mod@bag`] bags of ROS 1, and [`poses`] where
+//! vehicles were from either.
 
+#[cfg(feature = "recording")]
+pub mod bag;
 pub mod cdr;
 #[cfg(any(feature = "recording", feature = "ros2", feature = "mavlink"))]
 pub mod config;
 #[cfg(feature = "mavlink")]
 pub mod mavlink;
 pub mod messages;
+#[cfg(feature = "recording")]
+pub mod poses;
 #[cfg(feature = "recording")]
 pub mod recording;
 pub mod ros;

@@ -7,9 +7,9 @@ use crate::statistics::{mean, rms, share};
 use crate::view::{OUTDOOR_DN, Observer, Seen, SeenPair};
 use crate::{Effort, Figure, Kind, Panel, Report, ReproduceError, Rig, Role, Row, Tolerance, heading};
 
-/// A quick run looks at the time around the first spin, before and after it by so much, s, and at every so many frames.
+/// A quick run looks at the time around the first spin, before and after it by this much, s, and at one of this many frames.
 const QUICK: (f64, usize) = (2.0, 8);
-/// The closer estimate has swapped when truth passes this share of the way between the two, in the mean over so much time, s;
+/// The closer estimate has swapped when truth passes this share of the way between the two, in the mean over this much time, s;
 /// noise in the middle is no swap.
 const SWAPPED: (f64, f64) = (0.65, 0.1);
 /// A hexagon swaps twice per sixth of a turn.

@@ -12,7 +12,7 @@ pub enum Tolerance {
     AtLeast(f64),
     /// The number is this or less.
     AtMost(f64),
-    /// The paper has no number to hold it against.
+    /// The paper has no number to compare it with.
     None,
 }
 

@@ -9,7 +9,7 @@ use crate::render::Rendered;
 use crate::scene::Scene;
 use crate::sensor::hash;
 
-/// How often what goes wrong.
+/// How often each thing goes wrong.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Recording {
     /// Share of the frames that are lost.

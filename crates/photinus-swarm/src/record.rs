@@ -1,6 +1,6 @@
 //! What a flight leaves behind: lines of truth, and lines of what each vehicle saw and decided.
 //!
-//! Every format here is described in docs/swarm.md. Numbers are rounded to a tenth of a millimetre: what is finer is no result.
+//! Every format here is described in docs/swarm.md. Numbers are rounded to a tenth of a millimetre: finer digits mean nothing.
 
 use photinus_control::{Motion, Seen};
 use serde::Serialize;

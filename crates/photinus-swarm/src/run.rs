@@ -45,7 +45,7 @@ impl Run {
     /// decided, and stops the flight by its error.
     ///
     /// # Errors
-    /// That of `watch`; [`Error`] where vehicles do not fit, a locator refuses its settings, or a vehicle's state is no number any more.
+    /// That of `watch`; [`Error`] where vehicles do not fit, a locator refuses its settings, or a vehicle's state is no longer finite.
     pub fn fly(&self, threads: usize, mut watch: impl FnMut(&World) -> Result<()>) -> Result<Metrics> {
         let scenario = Arc::clone(&self.scenario);
         let mut world = World::new(scenario, self.grade, &self.table, threads, &self.path)?;
@@ -70,7 +70,7 @@ impl Run {
         Self { scenario: Arc::new(scenario), ..self.clone() }
     }
 
-    /// Flies under `seeds` seeds from the scenario's own on, on so many threads; the numbers of each flight, in the order of seeds. `tell` hears of every
+    /// Flies under `seeds` seeds from the scenario's own on, on this many threads; the numbers of each flight, in the order of seeds. `tell` hears of every
     /// frame and flight, and stops everything by answering no.
     ///
     /// # Errors

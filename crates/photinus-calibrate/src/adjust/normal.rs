@@ -25,7 +25,7 @@ pub(crate) struct Normal {
 
 impl PhotoShare {
     /// The share of one view; `None` where a point has no image. `shared` is how many unknowns all photos share, those
-    /// behind the lens's being the board's.
+    /// after the lens's being the board's.
     pub(crate) fn of(
         scene: &Scene,
         view: &View,

@@ -1,5 +1,5 @@
-//! What bearings cannot tell: origin, axes and scale. The layout is laid over the nominal one; its covariance is that of a layout
-//! laid over so.
+//! What bearings cannot tell: origin, axes and scale. The layout is laid over the nominal one; its covariance is that of a layout laid
+//! over in this way.
 
 use nalgebra::{DMatrix, Matrix3, UnitQuaternion, Vector3};
 

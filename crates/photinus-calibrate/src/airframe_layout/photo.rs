@@ -9,7 +9,7 @@ use super::adjust::Adjustment;
 use crate::resection::{Free, Known, Observation, Pose, Refined, refine};
 use crate::robust::Loss;
 
-/// A photo fits badly whose cost per LED is so many squared sigmas; 2 are to be expected.
+/// A photo fits badly whose cost per LED is this many squared sigmas; 2 are to be expected.
 const BAD_FIT: f64 = 5.0;
 
 /// What a photo shows, with the LEDs at `leds_m`.

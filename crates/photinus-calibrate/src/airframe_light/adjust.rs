@@ -12,7 +12,7 @@ const PASSES: usize = 40;
 const POSE_PASSES: usize = 8;
 /// A step that gains less ends the search, nats.
 const ENOUGH_NATS: f64 = 1e-3;
-/// Beyond so many sigma the pull of a residual no longer grows.
+/// Beyond this many sigma the pull of a residual no longer grows.
 const HUBER: f64 = 3.5;
 /// A frame with a residual beyond this is no frame of this airframe, or not so turned.
 const STRANGE_SIGMAS: f64 = 8.0;
@@ -69,7 +69,7 @@ impl<'a> Adjustment<'a> {
         Self { frames, ..self }
     }
 
-    /// The airframe as it is known so far; `None` where it is none.
+    /// The airframe as it is known so far; `None` where the numbers make none.
     pub(super) fn model(&self) -> Option<Model<'_>> {
         Model::new(self.nominal, &self.parameters)
     }
@@ -106,7 +106,7 @@ impl<'a> Adjustment<'a> {
         self.approach(PASSES)
     }
 
-    /// The same in so many passes at most.
+    /// The same in this many passes at most.
     pub(super) fn approach(&mut self, passes: usize) -> Option<()> {
         let mut equations = self.equations()?;
         let mut damping = 1e-3;

@@ -17,7 +17,7 @@ const LOBE_SIGMA: f64 = 0.004;
 const LIGHT_SIGMA: f64 = 100.0;
 /// Step of a finite difference in the cosine of an angle.
 const COS_STEP: f64 = 1e-5;
-/// A marker that is seen shines at least so much towards the camera.
+/// A marker that is seen shines at least this much towards the camera.
 const DARK: f64 = 0.02;
 /// A neighbour's tilt against the vertical, rad per axis.
 const TILT_SIGMA_RAD: f64 = 5.0 * core::f64::consts::PI / 180.0;

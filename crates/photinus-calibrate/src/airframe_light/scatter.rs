@@ -16,7 +16,7 @@ const TOLD_SHARE: f64 = 0.5;
 /// ... but for a shift, a turn and a scale, which look like another pose or another light.
 const UNTOLD: f64 = 7.0;
 const LEAST_SCATTER: f64 = 0.2;
-/// Residuals that are taken up but for so many say nothing of their scatter.
+/// Where the unknowns leave fewer residuals than this, the residuals say nothing of their scatter.
 const LEAST_REDUNDANCY: f64 = 20.0;
 /// The light of an LED is no steadier from frame to frame, as a logarithm.
 const LEAST_LIGHT_SIGMA: f64 = 0.005;

@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 
 use super::flight::Sighting;
 
-/// Markers of the last frame lead nowhere after so many seconds.
+/// Markers of the last frame lead nowhere after this many seconds.
 const LOST_S: f64 = 0.5;
 /// Markers have gone where they were expected but for this share of the least gap between two of them.
 const GATE_SHARE: f64 = 0.4;

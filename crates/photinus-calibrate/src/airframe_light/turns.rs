@@ -6,7 +6,7 @@ use super::flight::{Flight, Frame};
 
 /// What it costs that a track slips from one turn to another between two frames, nats.
 const SLIP_NATS: f64 = 12.0;
-/// A track whose sequence fits so much better than the same a turn on, nats, is surely so turned.
+/// A track whose sequence fits this much better than the same sequence one turn on, nats, is surely turned so.
 const SURE_NATS: f64 = 6.0;
 /// What a frame costs at most, nats: one that fits in no turn decides nothing.
 const MOST_NATS: f64 = 20.0;

@@ -54,7 +54,7 @@ pub enum CalibrateError {
     NoModel,
     /// The lens found does not make a camera.
     #[error(
-        "the lens that fits best is none: {0}; take more photos with the grid near the edges, or give a simpler --model"
+        "the lens that fits best is not a camera: {0}; take more photos with the grid near the edges, or give a simpler --model"
     )]
     Camera(#[from] CameraError),
 }

@@ -9,7 +9,7 @@ use crate::adjust::Observation;
 const STRANGER: f64 = 0.22;
 /// A spot nearer than this is an LED ...
 const SURE: f64 = 0.06;
-/// ... and one this many times farther off than the middle one is none.
+/// ... and one this many times farther off than the middle one is not.
 const TIMES_MEDIAN: f64 = 7.0;
 /// A grid that is rougher than this after the worst spots went is no grid.
 const ROUGH: f64 = 0.12;

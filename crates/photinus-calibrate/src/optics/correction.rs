@@ -45,7 +45,7 @@ pub(super) struct Correction<'a, const N: usize> {
 }
 
 impl<'a, const N: usize> Correction<'a, N> {
-    /// No equations yet, for so many tables.
+    /// No equations yet, for this many tables.
     pub(super) fn new(scale: &'a [f64], belief: &Belief, tables: usize) -> Self {
         Self {
             scale,

@@ -2,7 +2,7 @@
 //!
 //! In each round the tables change so that they explain what fits leave of the pixels (weighted least squares for the coefficients
 //! of their splines, `correction.rs`), held back by what is believed beforehand: that of the whole image is nearly round and
-//! smooth, those of the nodes differ from it as much as the pixels make likely. Where the lens is even they so fall back on it.
+//! smooth, those of the nodes differ from it as much as the pixels make likely. Where the lens is even they therefore fall back on it.
 
 use photinus::optics::{OpticsError, PointSpread, SpreadField};
 
@@ -42,7 +42,7 @@ pub(super) struct Field {
 }
 
 impl Field {
-    /// The same table all over the image; it may change between so many nodes along columns and rows.
+    /// The same table all over the image; it may change between this many nodes along columns and rows.
     pub(super) fn new(start: Table, size_px: [usize; 2], nodes: [usize; 2]) -> Self {
         Self {
             size_px: size_px.map(|px| px as f64),

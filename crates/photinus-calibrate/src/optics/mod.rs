@@ -80,7 +80,7 @@ impl Unseen {
     }
 }
 
-/// Why frames make no optics.
+/// Why optics cannot be learned from frames.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum LearnError {
@@ -92,7 +92,7 @@ pub enum LearnError {
         /// Spots needed.
         needed: usize,
     },
-    /// Numbers that no optics have: the spots are none of one point spread.
+    /// Numbers that no optics have: the spots do not share one point spread.
     #[error("the spots have no point spread in common: {0}")]
     NoOptics(#[from] OpticsError),
 }
@@ -213,7 +213,7 @@ fn first_noise(darkness: &Darkness) -> Noise {
     Noise { dark: read * read + ROUNDING, shot: light::SHOT_BELIEVED.value, shape: 0.02 }
 }
 
-/// Nodes along columns and rows that so many spots allow.
+/// Nodes along columns and rows that this many spots allow.
 fn nodes(spots: usize, [width_px, height_px]: [usize; 2]) -> [usize; 2] {
     let most = (spots / SPOTS_PER_NODE).min(24);
     let shape = width_px as f64 / height_px as f64;

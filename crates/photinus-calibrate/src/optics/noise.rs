@@ -22,7 +22,7 @@ pub(super) struct Noise {
 }
 
 impl Noise {
-    /// Variance of a pixel with so much light, grey levels^2.
+    /// Variance of a pixel with this much light, grey levels^2.
     pub(super) fn variance(&self, light: f64) -> f64 {
         let light = light.max(0.0);
         self.dark + self.shot * light + self.shape * self.shape * light * light

@@ -18,7 +18,7 @@ pub(super) struct Pile {
     pub(super) count: usize,
 }
 
-/// A pile holds at least so many summits.
+/// A pile holds at least this many summits.
 const LEAST: f64 = 12.0;
 /// Darker than this, no sensor is full.
 const LOWEST: usize = 100;

@@ -32,7 +32,7 @@ const WELLS: [f64; 5] = [1.0, 1.6, 2.5, 4.0, 6.3];
 /// Spills tried first.
 const SHARES: [f64; 4] = [0.0, 0.33, 0.67, 1.0];
 const PARTS: usize = 10;
-/// One spot counts at most so much against a spill: it may be two LEDs.
+/// One spot counts at most this much against a spill: it may be two LEDs.
 const MOST_COST: f64 = 60.0;
 
 /// Overflow as it is tried.

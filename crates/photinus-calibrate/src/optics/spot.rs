@@ -71,7 +71,7 @@ impl<'a> Spot<'a> {
         [self.window.column as f64 + self.u, self.window.row as f64 + self.v]
     }
 
-    /// Fits place, light and level in so many steps; a fit that leads nowhere makes the spot one that is not used.
+    /// Fits place, light and level in this many steps; a fit that leads nowhere makes the spot one that is not used.
     pub(super) fn fit(
         &mut self,
         table: &Table,

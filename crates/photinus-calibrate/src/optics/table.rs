@@ -33,7 +33,7 @@ pub(super) struct Share {
     pub(super) by_v: f64,
 }
 
-/// Shares of a window, row by row, so many pixels to every side.
+/// Shares of a window, row by row, this many pixels to every side.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Shares {
     pub(super) reach: usize,
@@ -42,7 +42,7 @@ pub(super) struct Shares {
 }
 
 impl Shares {
-    /// That of a pixel so many columns and rows from the middle.
+    /// That of a pixel this many columns and rows from the middle.
     pub(super) fn at(&self, column: isize, row: isize) -> &Share {
         let index = |offset: isize| (self.reach as isize + offset) as usize;
         &self.of_pixels[index(row) * (2 * self.reach + 1) + index(column)]

@@ -21,7 +21,7 @@ pub(super) struct Window {
 }
 
 impl Window {
-    /// The pixel so many columns and rows from the middle.
+    /// The pixel this many columns and rows from the middle.
     pub(super) fn at(&self, column: isize, row: isize) -> u8 {
         let index = |offset: isize| (REACH as isize + offset) as usize;
         self.pixels[index(row) * SIDE + index(column)]

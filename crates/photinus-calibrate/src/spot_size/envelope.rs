@@ -9,7 +9,7 @@ use super::Sample;
 use super::median::MOST_SHIFT;
 
 const SHIFTS: usize = 24;
-/// Where a point falls in its pixel changes an area by about so much: height below it hardly matters to a range.
+/// Where a point falls in its pixel changes an area by about this much: height below it hardly matters to a range.
 const GRAIN_PX: f64 = 2.0;
 
 /// The least that the curve must reach for a spot: a curve is rounded before it is compared.

@@ -6,7 +6,7 @@ use super::{FEWEST_SPOTS, LEAST_SPAN, Sample};
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SpotSizeError {
-    /// A distance that is none.
+    /// A distance that is not above 0, or not finite.
     #[error("sample {sample} has a distance of {distance_m} m: it must be above 0 and finite")]
     Distance {
         /// Which sample.
@@ -14,7 +14,7 @@ pub enum SpotSizeError {
         /// Its distance, m.
         distance_m: f64,
     },
-    /// A share that is none.
+    /// A share that is negative, or not finite.
     #[error("LEDs that are brighter by a share of {0}: it must be 0 to 10")]
     Brighter(f64),
     /// Too few spots.

@@ -8,7 +8,7 @@ use super::Sample;
 /// What the shift of a curve may be, as a share of the nearest distance: more would bend the curve where nothing was measured.
 pub(super) const MOST_SHIFT: f64 = 0.3;
 const PASSES: usize = 60;
-/// An area so many robust sigmas above the median curve is no spot of this LED, but of two, or of the sun.
+/// An area this many robust sigmas above the median curve is no spot of this LED, but of two, or of the sun.
 const OUTLIER_SIGMAS: f64 = 8.0;
 /// The least robust sigma, in roots of pixels: where a point falls in its pixel makes 1 px or 4 of it.
 const LEAST_SIGMA: f64 = 0.5;

@@ -87,7 +87,7 @@ const FOLDS: usize = 5;
 /// scale is raised.
 ///
 /// # Errors
-/// [`SpotSizeError`] for distances that are none, for too few spots or too small a span of distances, and for areas that do
+/// [`SpotSizeError`] for distances that cannot be, for too few spots or too small a span of distances, and for areas that do
 /// not fall with distance.
 pub fn calibrate(samples: &[Sample], brighter: f64) -> Result<SpotSize, SpotSizeError> {
     error::check(samples, brighter)?;

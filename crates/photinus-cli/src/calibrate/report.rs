@@ -34,7 +34,7 @@ pub(crate) struct CameraReport {
     /// Standard deviation along one axis, from the median.
     pub(crate) sigma_px: f64,
     pub(crate) held_out: Option<HeldOut>,
-    /// Where the outermost LED was, and where the camera file stops to answer, deg off the axis.
+    /// Where the outermost LED was, and where the camera file stops answering, deg off the axis.
     pub(crate) reach_deg: f64,
     pub(crate) field_limit_deg: f64,
     pub(crate) parameters: Vec<Parameter>,
@@ -53,7 +53,7 @@ pub(crate) struct CameraReport {
     pub(crate) outliers: Vec<ResidualReport>,
     pub(crate) models: Vec<ModelReport>,
     pub(crate) coverage: Vec<CoverageReport>,
-    /// Sigma of bearings over the image, a lattice of pixels; where there is no answer nothing stands.
+    /// Sigma of bearings over the image, a lattice of pixels; places without an answer are left out.
     pub(crate) sigma_map: Vec<SigmaReport>,
     /// The difference between the calibrations from two halves of the photos, without the turn that they have in common.
     pub(crate) half_difference: Vec<MoveReport>,

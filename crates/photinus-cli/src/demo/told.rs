@@ -44,7 +44,7 @@ fn percent(share: Option<f64>) -> Option<f64> {
     share.map(|share| 100.0 * share)
 }
 
-/// A number with so many decimals, `-` where there is none.
+/// A number with this many decimals, `-` where there is none.
 fn number(value: Option<f64>, decimals: usize) -> String {
     value.map_or("-".to_owned(), |value| format!("{value:.decimals$}"))
 }

@@ -12,7 +12,7 @@ use photinus_io::{Error, Result};
 
 use super::Findings;
 
-/// So many frames tell enough, spread over the recording where it can be done.
+/// This many frames tell enough, spread over the recording where it can be done.
 const MOST: usize = 200;
 /// A background whose level changes by more than this, as a share, was exposed automatically.
 const STEADY: f64 = 0.25;

@@ -1,14 +1,13 @@
 //! Truth from two logs of poses, and what was estimated for it as a table and as JSON.
 
 use std::collections::BTreeSet;
-use std::path::Path;
 
 use photinus_evaluate::alignment::{AlignError, Alignment, Logs, TargetClock};
 use photinus_io::Error;
-use photinus_io::dataset::read_poses;
 use photinus_io::results::FrameRecord;
 use serde::Serialize;
 
+use super::pose_log::PoseLog;
 use super::truth::{GroundTruth, tolerance};
 use crate::aligned::{Aligned, Side};
 use crate::failure::Failure;
@@ -18,8 +17,8 @@ use crate::failure::Failure;
 /// # Errors
 /// [`Failure`] when a log cannot be read, when results come from several cameras, or when the logs do not fit the results.
 pub(super) fn truth(
-    observer_path: &Path,
-    target_path: &Path,
+    observer: &PoseLog,
+    target: &PoseLog,
     results: &[FrameRecord],
     near_s: f64,
     target_clock: TargetClock,
@@ -30,10 +29,8 @@ pub(super) fn truth(
             "results of several cameras: with logs, give those of one, as `locate --only NAME` writes them";
         return Err(Failure::Input(told.to_owned()));
     }
-    let [observer, target] =
-        [observer_path, target_path].map(|path| read_poses(path).map_err(Failure::input));
-    let (observer, target) = (observer?, target?);
-    let logs = Logs { observer: &observer, target: &target, target_clock };
+    let [observed, followed] = [observer, target].map(|log| log.read().map_err(Failure::input));
+    let logs = Logs { observer: &observed?, target: &followed?, target_clock };
     let refuse = |error: AlignError| {
         let advice = match error {
             AlignError::Times { .. } => {
@@ -49,18 +46,18 @@ pub(super) fn truth(
             AlignError::Few(_) => "give results of a longer flight, with positions",
             _ => "check that the logs share one world frame and which vehicle is which",
         };
-        Failure::input(Error::format(observer_path, error.to_string()).advise(advice))
+        Failure::input(Error::format(observer.to_string(), error.to_string()).advise(advice))
     };
     let alignment = logs.align(results, near_s).map_err(refuse)?;
     let frames = logs.truth(&alignment, results);
     let listed = frames.iter().map(|frame| frame.frame).collect();
     Ok(GroundTruth {
-        time_tolerance_s: tolerance(&frames, observer_path).map_err(Failure::input)?,
+        time_tolerance_s: tolerance(&frames, &observer.file).map_err(Failure::input)?,
         frames,
         camera: cameras.first().and_then(|camera| (*camera).clone()),
-        files: vec![observer_path.to_owned(), target_path.to_owned()],
-        path: observer_path.to_owned(),
-        listed: (observer_path.to_owned(), listed),
+        files: vec![observer.file.clone(), target.file.clone()],
+        path: observer.file.clone(),
+        listed: (observer.file.clone(), listed),
         alignment: Some(alignment),
     })
 }

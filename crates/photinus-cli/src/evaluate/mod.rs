@@ -5,6 +5,7 @@
 mod bins;
 mod logs;
 pub(crate) mod plots;
+mod pose_log;
 mod tables;
 mod truth;
 
@@ -23,6 +24,7 @@ use crate::targets::{FileTarget, Targets, WriteArgs};
 use crate::terminal::Terminal;
 use logs::AlignmentReport;
 use plots::plot;
+use pose_log::PoseLog;
 use truth::GroundTruth;
 
 const EXAMPLES: &str = "\
@@ -39,25 +41,29 @@ Examples:
   # each on a clock of its own, at most 2 s apart
   photinus evaluate observer.csv results.jsonl --target target.csv \\
       --target-clock-offset 0
+  # the same of what ROS recorded
+  photinus evaluate flight.mcap:/observer/odom results.jsonl \\
+      --target flight.mcap:/target/odom
 
 Frames of truth that the results do not hold count as missed.";
 
-/// After so many bad lines the others are only counted.
+/// After this many bad lines the others are only counted.
 const REPORTED_LINES: usize = 5;
 
 /// Compare results with ground truth: recall, errors, bounds, covariances
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Args {
-    /// The folder of a dataset with truth.jsonl, or such a file alone; with --target, the log of the vehicle that carries the camera
+    /// The folder of a dataset with truth.jsonl, or such a file alone; with --target, the log of the vehicle that carries the camera, in
+    /// any form that --target takes
     #[arg(value_name = "TRUTH")]
     dataset: PathBuf,
     /// What `photinus locate --out` wrote for it
     #[arg(value_name = "RESULTS")]
     results: PathBuf,
-    /// The log of the vehicle that is seen: a CSV of poses, in the world frame of the log given as TRUTH. Clock offsets and lever arms
-    /// are estimated and told
-    #[arg(long, value_name = "FILE.csv")]
+    /// The log of the vehicle that is seen, in the world frame of the log given as TRUTH: a CSV of poses, an MCAP recording, or a bag of
+    /// ROS 1; FILE:TOPIC names one of several topics with poses. Clock offsets and lever arms are estimated and told
+    #[arg(long, value_name = "FILE")]
     target: Option<PathBuf>,
     /// With --target: about how much to add to the times of frames to get those of the log given as TRUTH; looked for within 2 s of it
     #[arg(long, value_name = "S", default_value_t = 0.0, allow_hyphen_values = true, requires = "target")]
@@ -142,7 +148,7 @@ impl Args {
 /// Runs the command.
 pub(crate) fn run(args: &Args, terminal: &Terminal) -> Result<(), Failure> {
     let source = Source::of(args)?;
-    let read = source.files(args).into_iter().chain([args.results.clone()]);
+    let read = source.files().into_iter().chain([args.results.clone()]);
     let mut targets = Targets::new(args.write, read);
     let json = args.json.as_deref().map(|path| targets.file(path, Content::Json)).transpose()?;
     let plots = args.plots.as_deref().map(|path| targets.folder(path)).transpose()?;
@@ -175,17 +181,20 @@ pub(crate) fn run(args: &Args, terminal: &Terminal) -> Result<(), Failure> {
 }
 
 /// Where truth comes from.
-enum Source<'a> {
+enum Source {
     /// It is there.
     Known(Box<GroundTruth>),
     /// The observer's log, that of the target, and the results make it.
-    Logs { target: &'a Path },
+    Logs { observer: PoseLog, target: PoseLog },
 }
 
-impl<'a> Source<'a> {
-    fn of(args: &'a Args) -> Result<Self, Failure> {
+impl Source {
+    fn of(args: &Args) -> Result<Self, Failure> {
         match &args.target {
-            Some(target) => Ok(Self::Logs { target }),
+            Some(target) => {
+                let [observer, target] = [&args.dataset, target].map(|name| PoseLog::named(name));
+                Ok(Self::Logs { observer, target })
+            }
             None => {
                 GroundTruth::read(&args.dataset, args.only.as_ref()).map(|truth| Self::Known(truth.into()))
             }
@@ -193,22 +202,22 @@ impl<'a> Source<'a> {
     }
 
     /// The files that are read for it.
-    fn files(&self, args: &Args) -> Vec<PathBuf> {
+    fn files(&self) -> Vec<PathBuf> {
         match self {
             Self::Known(truth) => truth.files.clone(),
-            Self::Logs { target } => vec![args.dataset.clone(), target.to_path_buf()],
+            Self::Logs { observer, target } => vec![observer.file.clone(), target.file.clone()],
         }
     }
 
     fn truth(self, args: &Args, results: &[FrameRecord]) -> Result<GroundTruth, Failure> {
         match self {
             Self::Known(truth) => check_frames(args, &truth, results).map(|()| *truth),
-            Self::Logs { target } => {
+            Self::Logs { observer, target } => {
                 let target_clock = match args.target_clock_offset {
                     Some(near_s) => TargetClock::Own { near_s },
                     None => TargetClock::Shared,
                 };
-                logs::truth(&args.dataset, target, results, args.clock_offset, target_clock)
+                logs::truth(&observer, &target, results, args.clock_offset, target_clock)
             }
         }
     }

@@ -9,7 +9,7 @@ use photinus_evaluate::{
 
 use crate::aligned::{Aligned, Side};
 
-/// After so many violations the others are only counted.
+/// After this many violations the others are only counted.
 const LISTED_VIOLATIONS: usize = 10;
 
 /// All tables.
@@ -63,7 +63,7 @@ fn block<S>(
     write!(f, "\n{title}\n{table}\n")
 }
 
-/// A number with so many decimals, `-` where there is none.
+/// A number with this many decimals, `-` where there is none.
 fn number(value: Option<f64>, decimals: usize) -> String {
     value.map_or("-".to_owned(), |value| format!("{value:.decimals$}"))
 }

@@ -8,6 +8,7 @@ use photinus_io::dataset::{Dataset, TRUTH_FILE, TruthFrame, read_truth};
 use photinus_io::kind::{Kind, Table};
 use photinus_io::{Error, Result};
 
+use super::pose_log::PoseLog;
 use crate::failure::Failure;
 use crate::input::names;
 
@@ -38,12 +39,12 @@ impl GroundTruth {
         if path.is_dir() {
             return Self::of_dataset(path, only);
         }
-        match Kind::of(path).map_err(Failure::input)? {
+        let log = PoseLog::named(path);
+        match Kind::of(&log.file).map_err(Failure::input)? {
             Kind::Truth => Self::of_file(path, only),
-            Kind::Table(table @ (Table::Poses | Table::Odometry)) => {
-                let reason = format!("this is {}", Kind::Table(table));
-                let advice = "give that of the other vehicle, too, as --target FILE";
-                Err(Failure::input(Error::format(path, reason).advise(advice)))
+            kind @ (Kind::Table(Table::Poses | Table::Odometry) | Kind::Recording | Kind::Bag) => {
+                let advice = "to get truth from poses, give the log of the other vehicle, too: --target FILE, or FILE:TOPIC";
+                Err(Failure::input(Error::format(log.file, format!("this is {kind}")).advise(advice)))
             }
             other => {
                 let known = "name the folder of a dataset with truth.jsonl, or such a file";

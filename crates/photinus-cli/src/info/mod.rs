@@ -30,8 +30,8 @@ Examples:
   photinus info recording results.jsonl mask.png
 
 Knows cameras (OCamCalib text, Photinus TOML, UVDAR YAML, Kalibr, ROS
-CameraInfo, pyocamcalib), airframes, datasets, images, masks, Y4M videos, and
-every file that Photinus writes. Exits with 2 when a file is not in order.";
+CameraInfo, pyocamcalib), airframes, datasets, images, masks, Y4M videos, MCAP
+recordings, bags of ROS 1, and every file that Photinus writes. Exits with 2 when a file is not in order.";
 
 /// Tell what files hold and whether they are in order
 #[derive(Debug, clap::Args)]
@@ -109,7 +109,8 @@ fn report(path: &Path) -> Result<Report> {
         Kind::Image => frames::image(path),
         Kind::ImageFolder => frames::folder(path),
         Kind::Video => frames::video(path),
-        Kind::Recording => recording::report(path),
+        Kind::Recording => recording::mcap(path),
+        Kind::Bag => recording::bag(path),
         Kind::Results => records::results(path),
         Kind::SpotCurve => records::spot_curve(path),
         Kind::Truth => records::truth(path),

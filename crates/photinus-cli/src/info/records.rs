@@ -11,7 +11,7 @@ use super::Report;
 use crate::aligned::{Aligned, Side};
 use crate::summary::Summary;
 
-/// After so many bad lines the others are only counted.
+/// After this many bad lines the others are only counted.
 const REPORTED_LINES: u64 = 5;
 
 pub(super) fn results(path: &Path) -> Result<Report> {

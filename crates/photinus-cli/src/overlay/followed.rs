@@ -1,4 +1,4 @@
-//! Who is followed from picture to picture: enters a record, leaves for each track where it was, is and goes.
+//! Tracks from picture to picture: a record enters, and where each track was, is and goes leaves.
 
 use std::collections::VecDeque;
 

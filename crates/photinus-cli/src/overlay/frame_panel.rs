@@ -234,7 +234,7 @@ impl FramePanel {
         self.radius(spot.area_px).min(room).max(self.radius(spot.area_px) - 3.0 * self.unit)
     }
 
-    /// A circle a little larger than so many pixels.
+    /// A circle a little larger than this many pixels.
     fn radius(&self, area_px: u32) -> f32 {
         (f64::from(area_px) / std::f64::consts::PI).sqrt() as f32 * self.zoom.factor() as f32
             + 5.0 * self.unit

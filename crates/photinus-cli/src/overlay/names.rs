@@ -11,10 +11,10 @@ use super::colours;
 
 /// A neighbour that moved farther between two pictures is another one, rad.
 const FARTHEST_RAD: f64 = 0.12;
-/// After so many pictures without it a name is free again.
+/// After this many pictures without it a name is free again.
 const REMEMBERED: u32 = 30;
 
-/// What somebody goes by.
+/// The name of a neighbour or a track.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Name {
     number: usize,
@@ -23,7 +23,7 @@ pub(super) struct Name {
 }
 
 impl Name {
-    /// Of nobody that is known: A to Z, then A2 to Z2, and so on.
+    /// For a neighbour that is not known: A to Z, then A2 to Z2, and so on.
     pub(super) fn letter(number: usize) -> Self {
         let (round, letter) = (number / 26, (b'A'..=b'Z').map(char::from).nth(number % 26).unwrap_or('?'));
         let word = if round == 0 { letter.to_string() } else { format!("{letter}{}", round + 1) };
@@ -68,7 +68,7 @@ struct Sight {
 }
 
 impl Names {
-    /// What everybody in a record goes by: as who was nearest to it in the picture before, or by the first letter that is free. Where
+    /// The names of all in a record: that of who was nearest to it in the picture before, or by the first letter that is free. Where
     /// results tell neighbours apart themselves, they decide.
     pub(super) fn follow(&mut self, record: &FrameRecord) -> Called {
         let is_neighbour =

@@ -7,7 +7,7 @@ use skrifa::outline::{DrawSettings, OutlinePen};
 use skrifa::{FontRef, GlyphId, MetadataProvider};
 use tiny_skia::{FillRule, LineJoin, Paint, Path, PathBuilder, Pixmap, Stroke, Transform};
 
-/// A letter stands at a whole row and at one of so many places within a column.
+/// A letter stands at a whole row and at one of this many places within a column.
 const PHASES: f32 = 4.0;
 /// How wide the halo of a letter is, of an em.
 const HALO: f32 = 0.26;
@@ -28,7 +28,7 @@ pub(super) struct Stamp {
     pub(super) left: i32,
     pub(super) top: i32,
     pub(super) width: usize,
-    /// Rows of so many columns, 0 to 255.
+    /// Rows of this many columns, 0 to 255.
     pub(super) cover: Vec<u8>,
 }
 

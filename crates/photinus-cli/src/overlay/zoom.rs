@@ -9,14 +9,14 @@ pub(super) const LONGEST_PX: u32 = 4096;
 /// Pixels of the picture for one of the frame, or the other way round; never zero.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Zoom {
-    /// A pixel of the frame is so many pixels of the picture wide and high.
+    /// A pixel of the frame is this many pixels of the picture wide and high.
     In(u32),
-    /// A pixel of the picture shows the brightest of so many columns and rows of the frame.
+    /// A pixel of the picture shows the brightest of this many columns and rows of the frame.
     Out(u32),
 }
 
 impl Zoom {
-    /// For a frame of so many columns and rows.
+    /// For a frame of this many columns and rows.
     pub(super) fn of(columns: u32, rows: u32) -> Self {
         let longer = columns.max(rows).max(1);
         match longer.div_ceil(LONGEST_PX) {
@@ -25,7 +25,7 @@ impl Zoom {
         }
     }
 
-    /// How long so many pixels of the frame are in the picture, px.
+    /// How long this many pixels of the frame are in the picture, px.
     pub(super) fn drawn_px(self, px: u32) -> u32 {
         match self {
             Self::In(times) => px * times,

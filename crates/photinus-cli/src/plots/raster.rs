@@ -11,7 +11,7 @@ const LONGEST_PX: f32 = 8192.0;
 /// The bytes of a PNG of the figure in `svg`, `scale` pixels for one of the SVG, on white.
 ///
 /// # Errors
-/// What is wrong with the text, or that there is no memory for so many pixels.
+/// What is wrong with the text, or that there is no memory for this many pixels.
 pub(super) fn png(svg: &str, scale: f32) -> Result<Vec<u8>, String> {
     let tree = Tree::from_str(svg, &options()).map_err(|error| error.to_string())?;
     let size = tree.size();
@@ -24,7 +24,7 @@ pub(super) fn png(svg: &str, scale: f32) -> Result<Vec<u8>, String> {
     picture.encode_png().map_err(|error| error.to_string())
 }
 
-/// DejaVu Sans for every word, and nothing of the machine.
+/// DejaVu Sans for every word, and no font of the machine.
 fn options() -> Options<'static> {
     const FAMILY: &str = "DejaVu Sans";
     let mut fonts = Database::new();

@@ -22,7 +22,7 @@ const WORDS: &str = "DejaVu Sans, Verdana, Liberation Sans, Arial, sans-serif";
 /// Members of a family, in order.
 pub(crate) const FAMILY: [&str; 7] = [TRUTH, BOUNDS, WRONG, ESTIMATE, INLINE, PERPENDICULAR, "#CC79A7"];
 
-/// So many points of a kind are drawn at most: more only make the file large.
+/// This many points of a kind are drawn at most: more only make the file large.
 const MOST_POINTS: usize = 4000;
 
 /// Axes of a figure, with room for the legend below.

@@ -65,7 +65,7 @@ pub(crate) struct Args {
     /// Where random numbers start, in place of the scenario's seed
     #[arg(long, value_name = "SEED")]
     seed: Option<u64>,
-    /// Fly under so many seeds, one after the other from the first
+    /// Fly under this many seeds, one after the other from the first
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = number::count)]
     seeds: u64,
     /// Seconds of the flight, in place of the scenario's duration

@@ -12,7 +12,7 @@ use crate::page::{Page, escaped};
 
 /// Pictures per second of the film.
 const FILM_HZ: f64 = 10.0;
-/// What the first so many vehicles saw is in the film.
+/// The film shows what this many vehicles saw, the first ones.
 const VIEWERS: usize = 12;
 
 /// What the page plays.
@@ -67,7 +67,7 @@ fn short(value: f64) -> f64 {
 /// The page of a flight.
 ///
 /// # Errors
-/// [`Error`] where a number is none.
+/// [`Error`] where a number is not finite.
 pub(super) fn flight(scenario: &Scenario, metrics: &Metrics, film: &Film) -> Result<Page> {
     let data = json!({
         "radii": scenario.vehicles.iter().map(|v| v.kind.build.radius_m).collect::<Vec<_>>(),

@@ -104,6 +104,17 @@ const world = (canvas, place, shot, index) => {
   }
 };
 
+// A text beside a ring: at the first side on which it covers nothing and is not cut.
+const beside = (pen, text, [u, v, radius], height, taken) => {
+  const width = pen.measureText(text).width, gap = radius + 0.4 * height;
+  const sides = [[u + gap, v - height / 2], [u - gap - width, v - height / 2], [u - width / 2, v - gap - height], [u - width / 2, v + gap]];
+  const isFree = ([x, y]) => x >= 0 && x + width <= view.width && y >= 0 && y + height <= view.height
+    && taken.every(([left, top, right, bottom]) => x > right || x + width < left || y > bottom || y + height < top);
+  const [x, y] = sides.find(isFree) ?? [Math.min(u + gap, view.width - width), v - height / 2];
+  taken.push([x, y, x + width, y + height]);
+  pen.fillText(text, x, y + 0.8 * height);
+};
+
 const around = (shot) => {
   const pen = view.getContext("2d"), chosen = Number(choice.value), own = shot.p[chosen];
   pen.fillStyle = colour("--paper");
@@ -116,19 +127,25 @@ const around = (shot) => {
     return [view.width / 2 - azimuth / Math.PI * view.width / 2, view.height / 2 - elevation / Math.PI * view.width / 2, far];
   };
   pen.lineWidth = 1.5;
-  pen.font = "15px system-ui, sans-serif";
+  // As large on a narrow screen, where the picture shrinks, as on a wide one.
+  const size = Math.max(15, 12 * view.width / (view.clientWidth || view.width));
+  pen.font = size + "px system-ui, sans-serif";
+  const ring = (vehicle, far) => Math.min(60, Math.max(3, film.radii[vehicle] / far / Math.PI * view.width / 2));
+  const taken = [];
   shot.p.forEach(([x, y, z], vehicle) => {
     if (vehicle === chosen) return;
     const [dx, dy, dz] = [x - own[0], y - own[1], z - own[2]], c = Math.cos(own[3]), s = Math.sin(own[3]);
     const [u, v, far] = at([c * dx + s * dy, c * dy - s * dx, dz]);
+    const radius = ring(vehicle, far);
     pen.strokeStyle = colour("--truth");
-    disc(pen, [u, v], Math.min(60, Math.max(3, film.radii[vehicle] / far / Math.PI * view.width / 2)));
+    disc(pen, [u, v], radius);
+    taken.push([u - radius, v - radius, u + radius, v + radius]);
   });
   for (const [x, y, z, , , is] of shot.s[chosen] ?? []) {
     const [u, v, far] = at([x, y, z]);
     pen.strokeStyle = pen.fillStyle = is < 0 ? colour("--warning") : colour("--estimate");
     is < 0 ? cross(pen, [u, v], 6) : disc(pen, [u, v], 4, true);
-    pen.fillText(far.toFixed(1) + " m", u + 8, v - 8);
+    beside(pen, far.toFixed(1) + " m", [u, v, is < 0 ? 6 : ring(is, far)], size, taken);
   }
   if (!shot.s[chosen]) {
     pen.fillStyle = colour("--faint");

@@ -6,7 +6,7 @@ use photinus_io::airframe::read_airframe;
 use crate::stage::Stage;
 
 /// A robot with LEDs as narrow as cos^3, told as cosines, that flies away and turns.
-fn scene(duration_s: f64) -> String {
+pub(crate) fn scene(duration_s: f64) -> String {
     let scenes = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes");
     format!(
         "name = \"narrow\"\nseed = 77\npreset = \"bluefox-dsl215-bp365\"\nrate_hz = 10.0\nduration_s = {duration_s:?}\n\

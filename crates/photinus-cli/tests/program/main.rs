@@ -19,6 +19,7 @@ mod commands;
 mod demo;
 mod doctor;
 mod evaluate;
+mod evaluate_recordings;
 mod files_survive;
 mod inject;
 mod kinds;

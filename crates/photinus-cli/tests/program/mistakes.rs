@@ -17,6 +17,8 @@ fn stage(test: &str) -> Stage {
     stage.file("v.mkv", b"\x1a\x45\xdf\xa3\x01");
     stage.file("v.y4m", video(2));
     stage.file("bag.mcap", b"\x89MCAP0\r\n");
+    stage.file("old.bag", b"#ROSBAG V1.2\n");
+    stage.file("run.toml", "[[camera]]\nname = \"a\"\nsource = { dataset = \"gone\" }\n");
     stage.file("photos.zip", b"PK\x03\x04");
     stage.file("layout-cm.txt", "17 17 0 0 0.0 0.0 0\n-17 17 0 0 0.0 1.5 1\n");
     stage.file("layout-deg.txt", "0.17 0.17 0 0 0.0 0.0 0\n-0.17 0.17 0 0 0.0 135.0 1\n");
@@ -43,13 +45,19 @@ type Mistake = (&'static str, i32, &'static [&'static str]);
 
 const LOCATE: &str = "locate frame.png --camera camera.toml --airframe hexa.toml";
 
-const FILES: [Mistake; 29] = [
+const FILES: [Mistake; 31] = [
     ("info readme.md", 2, &["this is text in no format that Photinus knows; name a camera"]),
     ("info notes.txt", 2, &["this is text in no format"]),
     ("info empty.txt", 2, &["a file that holds nothing"]),
     ("info comment.toml", 2, &["nothing but comments"]),
     ("info v.mp4", 2, &["this is an MP4 video; decode it into a pipe: `ffmpeg -i v.mp4 -pix_fmt gray"]),
     ("info bag.mcap", 2, &["ended in the middle", "`photinus recover` mends a recording that was cut off"]),
+    ("info old.bag", 2, &["does not begin as a bag of format 2.0 does; `rosbag reindex`"]),
+    (
+        "run --check run.toml",
+        2,
+        &["run.toml, `camera[0].source.dataset`: gone: ", "taken from the folder of the configuration"],
+    ),
     ("info photos.zip", 2, &["this is a ZIP archive; unpack it first"]),
     ("info nothing", 2, &["this is a folder without frames"]),
     ("info page.html", 0, &["page.html: a page for a browser", "open it in a browser"]),
@@ -133,7 +141,13 @@ const OPTIONS: [Mistake; 28] = [
     ("detect frame.png --overlay seen --overlay-every 0", 2, &["give a whole number, 1 or more"]),
     ("detect frame.png --overlay-every 5", 2, &["--overlay"]),
     ("detect v.y4m --raw 752", 2, &["give the size as 752x480"]),
-    ("locate", 2, &["no input: name a dataset folder, image files or a folder of them, a Y4M video, or -"]),
+    (
+        "locate",
+        2,
+        &[
+            "no input: name a dataset folder, image files or a folder of them, a Y4M video, an MCAP recording, or -",
+        ],
+    ),
     ("locate frame.png --airframe hexa.toml", 2, &["no camera: give --camera FILE, or a dataset folder"]),
     ("locate frame.png --camera camera.toml", 2, &["no airframe: give --airframe FILE"]),
     ("locate rec --only left", 2, &["--only left: the dataset has one camera, without a name"]),
@@ -144,7 +158,11 @@ const OPTIONS: [Mistake; 28] = [
         2,
         &["r.csv: its name ends in .csv, but a file of JSON lines is written there; end it in .jsonl"],
     ),
-    ("detect frame.png --overlay seen.mp4", 2, &["its name ends in .mp4, but a folder is written there"]),
+    (
+        "detect frame.png --overlay seen.mp4",
+        2,
+        &["its name ends in .mp4, but a folder is written there", "it ends in .y4m"],
+    ),
     ("detect frame.png --out no/r.jsonl", 2, &["make its folder first"]),
     ("detect frame.png --out nothing", 2, &["it is a folder; name a file"]),
     ("detect frame.png --out frame.png", 2, &["this file is an input, it would be replaced"]),
@@ -171,7 +189,9 @@ const OPTIONS: [Mistake; 28] = [
     (
         "evaluate poses.csv results.jsonl",
         2,
-        &["poses.csv: this is a table of poses; give that of the other vehicle, too, as --target FILE"],
+        &[
+            "poses.csv: this is a table of poses; to get truth from poses, give the log of the other vehicle, too: --target FILE",
+        ],
     ),
     (
         "convert camera.toml camera",

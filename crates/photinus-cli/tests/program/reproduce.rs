@@ -24,18 +24,18 @@ const ROWS: [(&str, usize); 13] = [
 #[test]
 fn a_quick_run_has_every_row_and_every_figure() {
     let stage = Stage::new("reproduce");
-    let done = stage.run("reproduce --quick --out paper");
+    let done = stage.run("reproduce --quick --out glance");
     assert_eq!(done.code, 0);
-    let summary = stage.read("paper/summary.csv");
+    let summary = stage.read("glance/summary.csv");
     let mut lines = summary.lines();
     assert_eq!(lines.next().unwrap(), "quantity,paper,reproduced,ratio,tolerance,within,note");
     let lines: Vec<&str> = lines.collect();
     for (figure, count) in ROWS {
         let is_of = |line: &&&str| line.trim_start_matches('"').starts_with(&format!("{figure}: "));
         assert_eq!(lines.iter().filter(is_of).count(), count, "rows of {figure}");
-        assert!(read_image(stage.path(&format!("paper/figure-{figure}.png"))).is_ok(), "{figure}");
-        assert!(stage.read(&format!("paper/figure-{figure}.svg")).contains("<svg"), "{figure}");
-        assert!(stage.read(&format!("paper/figure-{figure}.csv")).lines().count() > 20, "{figure}");
+        assert!(read_image(stage.path(&format!("glance/figure-{figure}.png"))).is_ok(), "{figure}");
+        assert!(stage.read(&format!("glance/figure-{figure}.svg")).contains("<svg"), "{figure}");
+        assert!(stage.read(&format!("glance/figure-{figure}.csv")).lines().count() > 20, "{figure}");
     }
     assert_eq!(lines.len(), ROWS.iter().map(|row| row.1).sum::<usize>());
     assert!(!lines.iter().any(|line| line.contains(",none,")), "every number comes out:\n{summary}");
@@ -52,9 +52,9 @@ fn a_quick_run_has_every_row_and_every_figure() {
         assert!(line.contains(",yes,"), "{line}");
     }
     assert!(done.out.contains("| 10 | last spot of 2 px at 1000 us (m) | 6.62 | "));
-    let page = stage.read("paper/index.html");
+    let page = stage.read("glance/index.html");
     assert!(page.contains("figure-17/overlay-000000.png"));
-    assert!(read_image(stage.path("paper/figure-17/overlay-000000.png")).is_ok());
+    assert!(read_image(stage.path("glance/figure-17/overlay-000000.png")).is_ok());
 }
 
 #[test]

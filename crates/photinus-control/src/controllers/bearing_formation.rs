@@ -25,7 +25,7 @@ pub struct WantedBearing {
 /// One vehicle's part of a shape.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BearingFormation {
-    /// The bearings it is answerable for; none for the one that leads.
+    /// The bearings that it keeps; none for the one that leads.
     pub wanted: Vec<WantedBearing>,
     /// Where the formation goes, m/s, in the shared axes.
     pub cruise_m_s: Vector3<f64>,

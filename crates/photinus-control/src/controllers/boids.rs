@@ -10,7 +10,7 @@ use nalgebra::Vector3;
 use super::{likely, limited};
 use crate::{Controller, OwnState, Seen, Setpoint};
 
-/// Which distance of a neighbour is held against a margin.
+/// Which distance of a neighbour is compared with a margin.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RangeTest {
     /// The paper's l_B; the strict near bound where the markers form no ring.
@@ -42,9 +42,9 @@ pub struct Boids {
     pub near_m: f64,
     /// Neighbours further than that are flown towards, m.
     pub far_m: f64,
-    /// What is held against the near margin.
+    /// What is compared with the near margin.
     pub near_by: RangeTest,
-    /// What is held against the far margin.
+    /// What is compared with the far margin.
     pub far_by: RangeTest,
     /// Speed away from a neighbour at no distance, m/s.
     pub separation_m_s: f64,

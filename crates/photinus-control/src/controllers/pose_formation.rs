@@ -29,7 +29,7 @@ pub struct WantedOffset {
 pub enum Restraint {
     /// Nothing: the plain gradient, the mean of the errors times the gain.
     None,
-    /// Filtered, weighed, and shortened by so many sigmas: 0 by none, 0.84 where an overshoot shall have a probability of 0.2.
+    /// Filtered, weighed, and shortened by this many sigmas: 0 by none, 0.84 where an overshoot shall have a probability of 0.2.
     Sigmas(f64),
 }
 

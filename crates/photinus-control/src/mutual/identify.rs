@@ -9,7 +9,7 @@ use super::{Group, Report, Unclear};
 const SURE: f64 = 30.0;
 /// Screening takes shared errors for independent ones: what it may be off by.
 const SCREENING: f64 = 60.0;
-/// So many ways are fitted.
+/// This many ways are fitted.
 const MOST_WAYS: usize = 24;
 
 /// The group in the level frame of the first report.
@@ -72,7 +72,7 @@ impl Ways<'_> {
     }
 }
 
-/// Who sees whom, if each who reports is what a way takes it for.
+/// Who sees whom, if each reporter is what a way takes it for.
 fn network(reports: &[&Report], options: &[Vec<Hypothesis>], way: &[usize]) -> Network {
     let ids = reports.iter().map(|report| report.from).collect();
     let chosen: Vec<&Hypothesis> = way.iter().zip(options).map(|(k, own)| &own[*k]).collect();

@@ -17,14 +17,14 @@ const STEPS_PER_OCTAVE: f64 = 16.0;
 const NOBODY: u32 = u32::MAX;
 
 impl Report {
-    /// The message. Sights further than 327 m, or that are no numbers, are left out.
+    /// The message. Sights further than 327 m, or that are not finite, are left out.
     pub fn to_bytes(&self) -> Vec<u8> {
         let mut bytes = self.from.to_le_bytes().to_vec();
         self.sights.iter().filter_map(written).for_each(|sight| bytes.extend_from_slice(&sight));
         bytes
     }
 
-    /// The report of a message; `None` where its length is that of none.
+    /// The report of a message; `None` where no message has its length.
     pub fn from_bytes(bytes: &[u8]) -> Option<Self> {
         let (head, sights) = bytes.split_first_chunk::<HEAD>()?;
         let (sights, rest) = sights.as_chunks::<SIGHT>();

@@ -23,7 +23,7 @@ mod report;
 pub use heading::heading_from_bearing;
 pub use report::{Group, Placed, Report, Sight, Unclear};
 
-/// Where everybody who reports is, and how turned, in the level frame of `own`. All sights are of one time.
+/// The place and heading of every reporter, in the level frame of `own`. All sights are of one time.
 pub fn locate(own: &Report, others: &[Report]) -> Result<Group, Unclear> {
     let mut ids: Vec<u32> = core::iter::once(own).chain(others).map(|report| report.from).collect();
     ids.sort_unstable();

@@ -95,7 +95,7 @@ impl Safety {
     /// Collects what a commitment has to keep clear of.
     fn gather(&mut self, velocity: Vector3<f64>, watch: &Watch, obstacles: &[Obstacle]) {
         let limits = self.limits;
-        // Both may have moved since a sight that is so old.
+        // Both may have moved since a sight that is this old.
         let own_speed = |age_s: f64| {
             (velocity.norm() + limits.velocity_error_m_s + limits.acceleration_m_s2 * age_s)
                 .min(limits.speed_m_s)

@@ -3,7 +3,7 @@
 use super::commitment::Commitment;
 use super::{Limits, Obstacle, Sector};
 
-/// What a commitment is held against.
+/// What a commitment must keep clear of.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Place {
     /// A neighbour that was seen is in the sector grown by `grown_m`; the vehicle may part from it slowly where `parts`.

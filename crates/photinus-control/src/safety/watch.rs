@@ -1,4 +1,4 @@
-//! What the cameras watch -> per direction, the range within which nobody is who was not seen.
+//! What the cameras watch -> per direction, the range within which there is nobody who was not seen.
 //!
 //! What is not seen is not free: a direction is known to be empty out to a range only after so many looks that somebody there would
 //! have been missed in all of them with a probability below a stated one; that knowledge then grows old, and a vehicle may come in

@@ -12,9 +12,9 @@ type Square = SMatrix<f64, COUNT, COUNT>;
 const LEVER_SIGMA_M: f64 = 0.5;
 /// No position of a result is believed better than this, m and rad.
 const FLOOR: (f64, f64) = (0.02, 0.002);
-/// Residuals beyond so many sigmas pull no harder (Huber 1964).
+/// Residuals beyond this many sigmas pull no harder (Huber 1964).
 const HUBER: f64 = 2.0;
-/// Errors of results within a block of time are taken as one: as long as leaves so many blocks, but not shorter than this, s.
+/// Errors of results within a block of time are taken as one: as long as leaves this many blocks, but not shorter than this, s.
 const BLOCKS: f64 = 30.0;
 const SHORTEST_BLOCK_S: f64 = 1.0;
 const MOST_STEPS: usize = 30;

@@ -1,5 +1,5 @@
-//! Truth of a flight from two logs of poses: enter where the observer and its target were, and results; leave truth in the camera
-//! frame, and what had to be estimated for it, with standard errors.
+//! Truth of a flight from two logs of poses: poses of the observer and its target, and results, enter; truth in the camera frame
+//! leaves, with what had to be estimated for it and its standard errors.
 //!
 //! The logs share one world frame, and one clock, as those of GNSS receivers or of a motion capture do; those of two flight
 //! controllers have clocks of their own. What nobody measures to the centimetre is estimated from the results themselves: how far the
@@ -56,7 +56,7 @@ pub struct AlignmentSigma {
     pub airframe_m: Vector3<f64>,
 }
 
-/// Why two logs are no truth of results.
+/// Why two logs give no truth for results.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum AlignError {

@@ -53,7 +53,7 @@ pub(crate) struct LedPairing<'a> {
     pub(crate) spot_fates: Vec<SpotFate>,
 }
 
-/// How far an LED may be from a spot that covers so many pixels, px.
+/// How far an LED may be from a spot that covers this many pixels, px.
 fn gate_px(area_px: u32, spot_gate_px: f64) -> f64 {
     spot_gate_px.max((f64::from(area_px) / PI).sqrt())
 }

@@ -14,7 +14,7 @@ use crate::Settings;
 /// A distance wrong by this factor or more counts as wholly wrong.
 const FACTOR: f64 = 4.0;
 
-/// Where somebody is said to be.
+/// Where a neighbour is reported.
 pub(crate) trait Placed {
     /// Towards it, of any length.
     fn towards(&self) -> Vector3<f64>;

@@ -25,7 +25,7 @@ pub enum SpotClass {
 impl SpotClass {
     /// All of them, in their order.
     pub const ALL: [Self; 5] = [Self::SinglePixel, Self::Small, Self::Large, Self::Saturated, Self::Beside];
-    /// A spot of so many pixels is large.
+    /// A spot of this many pixels is large.
     pub const LARGE_PX: u32 = 10;
     /// Spots no further apart stand beside each other, px.
     pub const BESIDE_PX: f64 = 15.0;

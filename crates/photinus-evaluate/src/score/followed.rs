@@ -1,4 +1,4 @@
-//! Who is followed, seen or not, against truth: places, velocities, existence, and what becomes of who is hidden.
+//! Tracks against truth, seen or not: places, velocities, existence, and what becomes of vehicles that are hidden.
 
 use std::collections::BTreeMap;
 

@@ -29,7 +29,7 @@ pub struct GospaScore {
     pub false_m2: Option<f64>,
 }
 
-/// Somebody reported.
+/// A vehicle that was reported.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Reported {
     pub(crate) probability: f64,

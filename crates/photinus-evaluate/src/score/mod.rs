@@ -46,7 +46,7 @@ pub struct Scores {
     pub identity: Option<IdentityScore>,
     /// Tracks; `None` where no neighbour is on one.
     pub tracks: Option<TrackScore>,
-    /// Who is followed, seen or not; `None` where nobody is.
+    /// Tracks, seen or not; `None` where nothing is followed.
     pub followed: Option<FollowedScore>,
     /// From the end of the exposure until the result stood, s; `None` where no record tells.
     pub latency_s: Option<Spread>,

@@ -67,7 +67,7 @@ fn parse_row(row: &str) -> std::result::Result<(Led, bool), Wrong> {
         "1" | "2" => Lobe::Omni,
         _ => {
             return Err((
-                format!("Type `{kind}` is none"),
+                format!("there is no type `{kind}`"),
                 "give 0 directional, 1 ring or 2 omnidirectional",
             ));
         }

@@ -7,7 +7,7 @@ use serde::de::value::{MapAccessDeserializer, StrDeserializer};
 use serde::de::{Deserializer, IntoDeserializer, MapAccess, Visitor};
 use serde::{Deserialize, Serialize};
 
-/// Angles are written to so many parts of a degree: what was written in degrees comes back as it was.
+/// Angles are written to this many parts of a degree: what was written in degrees comes back as it was.
 const PARTS_OF_A_DEGREE: f64 = 1e9;
 
 /// The lobe as it stands in the file.

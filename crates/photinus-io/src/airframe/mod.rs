@@ -24,7 +24,7 @@ pub struct AirframeFile {
     pub airframe: Airframe,
     /// How well it is known.
     pub tolerances: Tolerances,
-    /// What was read otherwise than it stands in the file, a sentence each.
+    /// Where reading departed from what the file says, a sentence each.
     pub notes: Vec<String>,
 }
 
@@ -40,8 +40,8 @@ pub fn read_airframe(path: impl AsRef<Path>) -> Result<AirframeFile> {
 /// Reads the text of an airframe file; `path` is for the messages, and its stem names an airframe that has no name.
 ///
 /// # Errors
-/// [`Error`] with the line or the key for unknown keys, for numbers that are none, for a zero axis, for the same LED
-/// twice, and where there is none.
+/// [`Error`] with the line or the key for unknown keys, for what is not a number, for a zero axis, for the same LED
+/// twice, and for a file without an LED.
 pub fn parse_airframe(text: &str, path: impl AsRef<Path>) -> Result<AirframeFile> {
     let path = path.as_ref();
     let first = text.lines().map(str::trim).find(|line| !line.is_empty() && !line.starts_with('#'));

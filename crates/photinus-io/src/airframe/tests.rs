@@ -212,7 +212,7 @@ fn errors_of_a_layout_name_the_line() {
     for (row, reason) in [
         ("0 0 0 0 0 0", "6 values where 7 must stand; give X Y Z Type Pitch Yaw signal_id"),
         ("0 0 nan 0 0 0 0", "Z `nan` is not a number; give metres"),
-        ("0 0 0 3 0 0 0", "Type `3` is none; give 0 directional"),
+        ("0 0 0 3 0 0 0", "there is no type `3`; give 0 directional"),
         ("0 0 0 0 inf 0 0", "Pitch `inf` is not a number; give radians"),
         ("0 0 0 0 0 0 -1", "signal_id `-1` is not a number; give a whole number"),
         ("0.2 0 0 0 0 0 0", "LEDs 0 and 2 have the same position and axis: remove one"),

@@ -14,7 +14,7 @@ pub struct Tolerances {
 }
 
 impl Tolerances {
-    /// Refuses what is no standard deviation.
+    /// Refuses what is not a standard deviation.
     pub(super) fn check(&self, path: &Path) -> Result<()> {
         let refuse = |key: &str, value: f64, advice: &str| {
             let error = Error::format(path, format!("{value} is no standard deviation that can be"));

@@ -45,7 +45,7 @@ pub fn read_known_sightings(path: impl AsRef<Path>) -> Result<Vec<KnownSighting>
 /// positions; with all of them, each row fills in one of the two. `path` is for the messages.
 ///
 /// # Errors
-/// [`crate::Error`] with the line for other columns, for numbers that are none, for a direction of length 0, and for a row with
+/// [`crate::Error`] with the line for other columns, for what is not a number, for a direction of length 0, and for a row with
 /// both or neither.
 pub fn parse_known_sightings(text: &str, path: impl AsRef<Path>) -> Result<Vec<KnownSighting>> {
     let rows = columns::rows(text, path.as_ref(), &COLUMNS, &COLUMNS[..2])?;

@@ -35,7 +35,7 @@ pub fn read_led_sightings(path: impl AsRef<Path>) -> Result<Vec<LedSighting>> {
 /// Reads the text of a table with the columns `photo,led,u_px,v_px[,sigma_px]`; `path` is for the messages.
 ///
 /// # Errors
-/// [`crate::Error`] with the line for other columns, for numbers that are none, for an empty name, and for an LED that a photo
+/// [`crate::Error`] with the line for other columns, for what is not a number, for an empty name, and for an LED that a photo
 /// shows twice.
 pub fn parse_led_sightings(text: &str, path: impl AsRef<Path>) -> Result<Vec<LedSighting>> {
     let rows = columns::rows(text, path.as_ref(), &COLUMNS, &COLUMNS[..4])?;

@@ -1,7 +1,7 @@
 //! What calibrations are made from and what they give: tables of measurements (CSV) in, a mounting (TOML) in and out.
 //!
 //! The tables have a line that names the columns, in any order, then a row per measurement; `#` begins a comment. A column
-//! that is not known is refused, as is a number that is none.
+//! that is not known is refused, as is what should be a number and is not.
 
 mod columns;
 mod known;

@@ -44,7 +44,7 @@ pub fn read_mounting(path: impl AsRef<Path>) -> Result<MountingFile> {
 ///
 /// # Errors
 /// [`Error`] with the line or the key for unknown and missing keys, for numbers that are not finite, for a quaternion whose
-/// length is more than 1 % from 1, and for a covariance that is none.
+/// length is more than 1 % from 1, and for a matrix that is not a covariance.
 pub fn parse_mounting(text: &str, path: impl AsRef<Path>) -> Result<MountingFile> {
     let path = path.as_ref();
     let known = "`photinus calibrate mounting` writes one; docs/file-formats.md has an example";

@@ -29,7 +29,7 @@ pub fn read_spot_sizes(path: impl AsRef<Path>) -> Result<Vec<SpotSizeRow>> {
 /// Reads the text of a table with the columns `distance_m,area_px[,exposure_us]`; `path` is for the messages.
 ///
 /// # Errors
-/// [`crate::Error`] with the line for other columns, and for numbers that are none.
+/// [`crate::Error`] with the line for other columns, and for what is not a number.
 pub fn parse_spot_sizes(text: &str, path: impl AsRef<Path>) -> Result<Vec<SpotSizeRow>> {
     let rows = columns::rows(text, path.as_ref(), &COLUMNS, &COLUMNS[..2])?;
     rows.iter()

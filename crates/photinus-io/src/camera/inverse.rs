@@ -18,7 +18,7 @@ pub struct InverseReport {
     pub worst_rad: f64,
 }
 
-/// Farther off than any image is wide, px: the polynomial is none of this lens, or overflows.
+/// Farther off than any image is wide, px: the polynomial does not belong to this lens, or overflows.
 const NOWHERE_PX: f64 = 1e4;
 
 impl std::fmt::Display for InverseReport {

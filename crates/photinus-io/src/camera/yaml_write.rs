@@ -41,7 +41,7 @@ impl CameraYaml {
 /// polynomial, which UVDAR's `ocamcalib` has.
 ///
 /// # Errors
-/// An [`Error`] for a model that [`CameraYaml::holds`] not, for a stretch matrix that c, d, e cannot hold, and when writing fails.
+/// An [`Error`] for a model that the format does not have ([`CameraYaml::holds`]), for a stretch matrix that c, d, e cannot hold, and when writing fails.
 pub fn write_camera_yaml(
     camera: &Camera,
     format: CameraYaml,
@@ -58,7 +58,7 @@ pub fn write_camera_yaml(
         (CameraYaml::Kalibr, _, Some(lens)) => (kalibr(camera, lens), None),
         (CameraYaml::CameraInfo, _, Some(lens)) => (camera_info(camera, lens), None),
         (_, _, None) => {
-            let reason = "the model of this camera is none that the format has";
+            let reason = "the format does not have the model of this camera";
             let advice = "write it as Photinus TOML: end the output in .toml";
             return Err(Error::format(path, reason).advise(advice));
         }

@@ -153,7 +153,7 @@ impl fmt::Display for Wanted {
         match self {
             Self::Flag => write!(f, "true or false"),
             Self::Number => write!(f, "a number"),
-            // What 32 bits hold is a limit of ours, of which nobody thinks who writes a file.
+            // What 32 bits hold is our limit; nobody who writes a file thinks of it.
             Self::Whole { least: 0, most } if *most >= i128::from(u32::MAX) => {
                 write!(f, "a whole number, 0 or more,")
             }

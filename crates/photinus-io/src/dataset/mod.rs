@@ -38,7 +38,9 @@ pub use frames_csv::{FrameRow, parse_frames_csv};
 pub use gravity::GravityLog;
 pub use imu::{ImuRow, parse_imu, read_imu};
 pub use info::{DatasetInfo, DatasetToml, RigCamera, RigInfo};
-pub use odometry::{OdometryRow, TimedPose, parse_odometry, parse_poses, read_odometry, read_poses};
+pub use odometry::{
+    OdometryRow, PoseError, TimedPose, parse_odometry, parse_poses, read_odometry, read_poses,
+};
 pub use truth::{TruthFrame, TruthLed, TruthNeighbour, parse_truth, read_truth};
 pub use vehicles::{Vehicle, VehicleBlink, VehicleInfo, parse_vehicles, vehicles_text};
 pub use writer::DatasetWriter;
@@ -69,7 +71,7 @@ impl Dataset {
     ///
     /// # Errors
     /// [`Error`] when dataset.toml or a frames.csv is missing or not in order, or a mounting, the book of words, the list of
-    /// vehicles or an airframe that it lists is named and not in order.
+    /// vehicles or an airframe that it lists is named there and is missing or not in order.
     pub fn read(folder: impl AsRef<Path>) -> Result<Self> {
         let folder = folder.as_ref().to_owned();
         let (text, path) = in_folder(&folder, Path::new(DATASET_FILE))?;
@@ -185,6 +187,7 @@ fn in_folder(folder: &Path, name: &Path) -> Result<(String, PathBuf)> {
     match path.metadata() {
         Ok(found) if found.is_file() => whole::read_text(&path).map(|text| (text, path)),
         Err(error) if error.kind() == ErrorKind::PermissionDenied => Err(Error::io(&path, error)),
+        Err(error) if !folder.exists() => Err(Error::io(folder, error)),
         _ => Err(Error::format(folder, format!("the folder holds no {}", name.display()))
             .advise("name the folder of a dataset, or list the image files themselves")),
     }

@@ -50,7 +50,7 @@ pub fn parse_odometry(text: &str, path: impl AsRef<Path>) -> Result<Vec<Odometry
     let path = path.as_ref();
     let row = |(line, row): (usize, [f64; 11])| {
         let [time_s, x, y, z, qx, qy, qz, qw, vx, vy, vz] = row;
-        let pose = pose_of([x, y, z, qx, qy, qz, qw], path, line)?;
+        let TimedPose { pose, .. } = pose_of([time_s, x, y, z, qx, qy, qz, qw], path, line)?;
         Ok(OdometryRow { time_s, pose, velocity_m_s: Vector3::new(vx, vy, vz) })
     };
     timed::rows(text, path, &COLUMNS)?.into_iter().map(row).collect()
@@ -63,6 +63,49 @@ pub struct TimedPose {
     pub time_s: f64,
     /// The pose world_from_body.
     pub pose: Isometry3<f64>,
+}
+
+/// Why numbers are no pose at a time.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum PoseError {
+    /// No clock tells this time.
+    #[error("the time {0:?} s is out of range")]
+    Time(f64),
+    /// No vehicle is there.
+    #[error("the coordinate {0:?} m is out of range")]
+    Place(f64),
+    /// The quaternion does not turn.
+    #[error("the quaternion has length {0}, not 1")]
+    Length(f64),
+}
+
+impl TimedPose {
+    /// A pose at a time: s, m, and the quaternion x, y, z, w of world_from_body.
+    ///
+    /// # Errors
+    /// [`PoseError`] for times and places that nothing has, and for a quaternion whose length is more than 1 % from 1.
+    pub fn new(
+        time_s: f64,
+        [x, y, z]: [f64; 3],
+        [qx, qy, qz, qw]: [f64; 4],
+    ) -> std::result::Result<Self, PoseError> {
+        if !physics::TIME_S.contains(&time_s) {
+            return Err(PoseError::Time(time_s));
+        }
+        if let Some(&place) = [x, y, z].iter().find(|place| !physics::PLACE_M.contains(place)) {
+            return Err(PoseError::Place(place));
+        }
+        let quaternion = Quaternion::new(qw, qx, qy, qz);
+        if !physics::is_unit(quaternion.norm()) {
+            return Err(PoseError::Length(quaternion.norm()));
+        }
+        // What is a unit quaternion to the last digits stays as it is written.
+        let rotation = match (quaternion.norm() - 1.0).abs() < 1e-12 {
+            true => UnitQuaternion::new_unchecked(quaternion),
+            false => UnitQuaternion::new_normalize(quaternion),
+        };
+        Ok(Self { time_s, pose: Isometry3::from_parts(Translation3::new(x, y, z), rotation) })
+    }
 }
 
 /// Reads a log of poses: an odometry.csv, or the same without velocities.
@@ -86,25 +129,15 @@ pub fn parse_poses(text: &str, path: impl AsRef<Path>) -> Result<Vec<TimedPose>>
         return Ok(rows.into_iter().map(|row| TimedPose { time_s: row.time_s, pose: row.pose }).collect());
     }
     let columns: &[Column; 8] = COLUMNS.first_chunk().expect("a pose has 8 of the 11 columns");
-    let row = |(line, [time_s, pose @ ..]): (usize, [f64; 8])| {
-        Ok(TimedPose { time_s, pose: pose_of(pose, path, line)? })
-    };
-    timed::rows(text, path, columns)?.into_iter().map(row).collect()
+    timed::rows(text, path, columns)?.into_iter().map(|(line, row)| pose_of(row, path, line)).collect()
 }
 
-/// A place and a quaternion as a pose.
-fn pose_of([x, y, z, qx, qy, qz, qw]: [f64; 7], path: &Path, line: usize) -> Result<Isometry3<f64>> {
-    let quaternion = Quaternion::new(qw, qx, qy, qz);
-    if !physics::is_unit(quaternion.norm()) {
-        let reason = format!("the quaternion has length {}, not 1", quaternion.norm());
-        return Err(Error::format(path, reason).at(Place::Line(line)).advise("give qx, qy, qz, qw"));
-    }
-    // What is a unit quaternion to the last digits stays as it is written.
-    let rotation = match (quaternion.norm() - 1.0).abs() < 1e-12 {
-        true => UnitQuaternion::new_unchecked(quaternion),
-        false => UnitQuaternion::new_normalize(quaternion),
-    };
-    Ok(Isometry3::from_parts(Translation3::new(x, y, z), rotation))
+/// The pose of a line.
+fn pose_of([time_s, x, y, z, qx, qy, qz, qw]: [f64; 8], path: &Path, line: usize) -> Result<TimedPose> {
+    let pose = TimedPose::new(time_s, [x, y, z], [qx, qy, qz, qw]);
+    pose.map_err(|error| {
+        Error::format(path, error.to_string()).at(Place::Line(line)).advise("give qx, qy, qz, qw")
+    })
 }
 
 /// The first line of an odometry.csv.

@@ -91,6 +91,8 @@ fn a_folder_that_is_no_dataset_says_what_it_lacks() {
     assert!(message.contains("the folder holds no dataset.toml; name the folder of a dataset"), "{message}");
     scratch.file("dataset.toml", INFO.as_bytes());
     assert!(Dataset::read(scratch.path()).unwrap_err().to_string().contains("no frames.csv"));
+    let gone = Dataset::read(scratch.path().join("gone")).unwrap_err().to_string();
+    assert!(gone.ends_with("; check the path, which is taken from the current folder"), "{gone}");
 }
 
 #[test]

@@ -56,7 +56,7 @@ pub struct TruthLed {
 }
 
 impl TruthFrame {
-    /// Whether every number of it is one: JSON has no others.
+    /// Whether every number of it is finite: JSON has no others.
     pub(super) fn is_finite(&self) -> bool {
         let numbers = |n: &TruthNeighbour| {
             let leds = n.leds.iter().all(|led| led.u_px.is_finite() && led.v_px.is_finite());
@@ -74,7 +74,7 @@ impl TruthFrame {
     }
 }
 
-/// Numbers of this world, or an error at their place in the line.
+/// Numbers that a flight can have, or an error at their place in the line.
 mod limits {
     use std::ops::RangeInclusive;
 

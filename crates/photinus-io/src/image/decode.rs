@@ -27,7 +27,7 @@ pub(super) struct Samples<S> {
 /// As [`super::read_image`].
 pub fn decode_image(bytes: &[u8], path: impl AsRef<Path>) -> Result<ImageFile> {
     let path = path.as_ref();
-    // Decoders are other people's code, bytes anybody's: a panic of one is a bad file like another.
+    // Decoders are other people's code, and bytes come from anybody: a panic of a decoder is treated as a bad file.
     std::panic::catch_unwind(|| decode(bytes, path)).unwrap_or_else(|payload| {
         let reason = format!("its decoder failed: {}", panic_reason(payload.as_ref()));
         Err(Error::format(path, reason).advise(RENEW))
@@ -61,7 +61,7 @@ fn decode(bytes: &[u8], path: &Path) -> Result<ImageFile> {
     }
 }
 
-/// What a panic says.
+/// The message of a panic.
 fn panic_reason(payload: &(dyn std::any::Any + Send)) -> &str {
     let text = payload.downcast_ref::<&str>().copied();
     text.or_else(|| payload.downcast_ref::<String>().map(String::as_str)).unwrap_or("it does not say why")

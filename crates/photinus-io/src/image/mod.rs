@@ -76,7 +76,7 @@ impl fmt::Display for Conversion {
 /// Reads a still image; `-` is standard input.
 ///
 /// # Errors
-/// [`Error`] when the file cannot be read, is none of the formats, is cut or corrupt, or is larger than
+/// [`Error`] when the file cannot be read, is in none of the formats, is cut or corrupt, or is larger than
 /// [`FrameView::MAX_SIDE_PX`] on a side or [`MAX_PIXELS`] in all.
 pub fn read_image(path: impl AsRef<Path>) -> Result<ImageFile> {
     let path = path.as_ref();

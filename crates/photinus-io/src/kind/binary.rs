@@ -5,9 +5,8 @@ use super::{Foreign, Kind};
 /// What begins with these bytes, unless it is text.
 pub(super) fn kind(head: &[u8]) -> Option<Kind> {
     const IMAGES: [&[u8]; 5] = [b"\x89PNG", b"\xff\xd8\xff", b"BM", b"II*\0", b"MM\0*"];
-    const FOREIGN: [(&[u8], Foreign); 6] = [
+    const FOREIGN: [(&[u8], Foreign); 5] = [
         (b"\x1a\x45\xdf\xa3", Foreign::Matroska),
-        (b"#ROSBAG", Foreign::RosBag),
         (b"SQLite format 3", Foreign::Sqlite),
         (b"\x1f\x8b", Foreign::Gzip),
         (b"PK\x03\x04", Foreign::Zip),
@@ -18,6 +17,9 @@ pub(super) fn kind(head: &[u8]) -> Option<Kind> {
     }
     if head.starts_with(b"\x89MCAP") {
         return Some(Kind::Recording);
+    }
+    if head.starts_with(b"#ROSBAG") {
+        return Some(Kind::Bag);
     }
     if let Some((_, foreign)) = FOREIGN.iter().find(|(magic, _)| head.starts_with(magic)) {
         return Some(Kind::Foreign(*foreign));

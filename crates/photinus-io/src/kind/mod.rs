@@ -42,6 +42,8 @@ pub enum Kind {
     Video,
     /// An MCAP recording, such as a bag of ROS 2.
     Recording,
+    /// A bag of ROS 1.
+    Bag,
     /// A file of other programs that Photinus does not read.
     Foreign(Foreign),
     /// A camera.
@@ -56,7 +58,7 @@ pub enum Kind {
     Mounting,
     /// The scene of a simulation.
     Scene,
-    /// A scene's table of a lens, or of what it makes of a point of light.
+    /// A scene's table of a lens, or of a point spread.
     PointSpread,
     /// A scene's table of a sensor.
     Sensor,
@@ -99,8 +101,6 @@ pub enum Foreign {
     Matroska,
     /// AVI.
     Avi,
-    /// A ROS 1 bag.
-    RosBag,
     /// A database, as older bags of ROS 2 are.
     Sqlite,
     /// gzip.
@@ -214,12 +214,9 @@ impl Kind {
     pub fn remedy(self, path: &Path) -> Option<String> {
         match self {
             Self::Foreign(Foreign::Mp4 | Foreign::Matroska | Foreign::Avi) => Some(decoding(path)),
-            Self::Foreign(Foreign::RosBag | Foreign::Sqlite) => Some(
+            Self::Bag | Self::Foreign(Foreign::Sqlite) => Some(
                 "make it an MCAP recording with `rosbags-convert` of the Python package rosbags".to_owned(),
             ),
-            Self::Recording => {
-                Some("its odometry goes into the odometry.csv of docs/file-formats.md".to_owned())
-            }
             Self::Foreign(Foreign::Gzip | Foreign::Zip) => Some("unpack it first".to_owned()),
             Self::Page | Self::Drawing => Some("open it in a browser".to_owned()),
             Self::Folder => {
@@ -269,6 +266,7 @@ impl fmt::Display for Kind {
             Self::Folder => "a folder without frames",
             Self::Image => "an image",
             Self::Recording => "an MCAP recording",
+            Self::Bag => "a bag of ROS 1",
             Self::Video => "a Y4M video",
             Self::Foreign(foreign) => foreign.what(),
             Self::Camera(CameraFormat::OcamText) => "a camera in OCamCalib text",
@@ -310,7 +308,6 @@ impl Foreign {
             Self::Mp4 => "an MP4 video",
             Self::Matroska => "a Matroska video",
             Self::Avi => "an AVI video",
-            Self::RosBag => "a ROS bag",
             Self::Sqlite => "an SQLite database, such as a bag of ROS 2",
             Self::Gzip => "a gzip archive",
             Self::Zip => "a ZIP archive",

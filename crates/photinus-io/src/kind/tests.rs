@@ -12,7 +12,7 @@ fn each_kind_is_told_by_its_content() {
         (b"\0\0\0\x20ftypisom", Kind::Foreign(Foreign::Mp4)),
         (b"\x1a\x45\xdf\xa3", Kind::Foreign(Foreign::Matroska)),
         (b"RIFF\0\0\0\0AVI LIST", Kind::Foreign(Foreign::Avi)),
-        (b"#ROSBAG V2.0\n", Kind::Foreign(Foreign::RosBag)),
+        (b"#ROSBAG V2.0\n", Kind::Bag),
         (b"\x89MCAP0\r\n", Kind::Recording),
         (b"\x1f\x8b\x08", Kind::Foreign(Foreign::Gzip)),
         (b"a\0b", Kind::Binary),

@@ -4,7 +4,7 @@ use super::keys;
 use super::{Kind, Syntax, Table};
 use crate::CameraFormat;
 
-/// The first element of a page or a drawing stands within so many bytes.
+/// The first element of a page or a drawing stands within this many bytes.
 const MARKUP_BYTES: usize = 1000;
 
 /// What a text is, from its beginning.

@@ -9,7 +9,7 @@ use crate::calibration::MountingFile;
 impl FrameRecord {
     /// Says where neighbours and tracks are in the body frame, as far as the mounting knows: p_body = R p + t. Its covariance is
     /// R S R^T + [R p]x S_R [R p]x^T + S_t, with the mounting's covariances S_R of a small turn about the body's axes and S_t of the
-    /// camera's place. A mounting that does not know the place says nothing.
+    /// camera's place. Where the mounting does not know the place, the body frame stays unknown.
     pub fn put_mounting(&mut self, mounting: &MountingFile) {
         let Some(centre_m) = mounting.position_m else { return };
         let turn = mounting.body_from_camera.to_rotation_matrix();

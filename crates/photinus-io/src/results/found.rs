@@ -224,8 +224,8 @@ impl From<&SpotRecord> for Spot {
     }
 }
 
-/// The pixels within half of `area_px` of the centre, along either axis. S pixels that touch, also by a corner, and
-/// whose mean is the centre reach no further: the farthest is the end of a straight line.
+/// The pixels within half of `area_px` of the centre, along either axis. S pixels that touch, if only at a corner, and
+/// whose mean is the centre reach no farther: the longest such chain is a straight line.
 fn widest_extent(centre: Pixel, area_px: u32) -> Extent {
     let reach_px = f64::from(area_px.max(1)) / 2.0;
     // Saturates: no pixel is left of 0.

@@ -27,15 +27,15 @@ pub struct FrameRecord {
     /// Whether the frame held more than there was work for: the likeliest was weighed, not all.
     #[serde(default, skip_serializing_if = "core::ops::Not::not")]
     pub incomplete: bool,
-    /// What is bright and may be a marker.
+    /// Bright regions that may be markers.
     pub spots: Vec<SpotRecord>,
-    /// What is bright and is none.
+    /// Bright regions that are not markers.
     #[serde(default)]
     pub rejected: Vec<RejectedRecord>,
-    /// Who is there.
+    /// The neighbours.
     #[serde(default)]
     pub neighbours: Vec<NeighbourRecord>,
-    /// Who is followed, where frames are followed: also those that are not seen in this one.
+    /// The vehicles that are followed, where frames are: also those that are not seen in this one.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub tracks: Vec<TrackRecord>,
 }

@@ -1,4 +1,4 @@
-//! Video as a stream: enters any `Read` (a file, standard input), leave grey frames one after the other.
+//! Video as a stream: any `Read` (a file, standard input) enters, grey frames leave one after the other.
 //!
 //! Two forms that every tool can produce through a pipe: Y4M, which says its size and rate itself, and raw grey
 //! frames, of which both must be told. A stream cut in the middle of a frame gives all the frames before, then one

@@ -32,7 +32,7 @@ impl<R: Read> RawFrames<R> {
     /// Frames of `source`; `name` is for the messages.
     ///
     /// # Errors
-    /// [`Error`] when the size is none of a frame or the rate is not a positive number.
+    /// [`Error`] when no frame has this size or the rate is not a positive number.
     pub fn new(source: R, name: impl AsRef<Path>, format: RawFormat) -> Result<Self> {
         let name = name.as_ref().to_owned();
         let RawFormat { width, height, rate_hz } = format;

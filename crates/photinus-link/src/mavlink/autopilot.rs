@@ -23,7 +23,7 @@ pub struct Settings {
     pub obstacles: Obstacles,
     /// Most OBSTACLE_DISTANCE a second, and FOLLOW_TARGET.
     pub most_hz: f64,
-    /// An answer that is older, s, is none: it is told within 100 ms that there is none.
+    /// An answer that is older than this, s, no longer counts: it is told within 100 ms that there is none.
     pub stale_s: f64,
 }
 
@@ -82,14 +82,15 @@ impl Autopilot {
     /// A link from `local` (`0.0.0.0:0` for any port) to the autopilot at `peer`; nothing is sent before the first [`Autopilot::tick`].
     ///
     /// # Errors
-    /// When an address is none, or the port is taken.
+    /// When an address is not valid, or the port is taken.
     pub fn new(
         local: impl ToSocketAddrs,
         peer: impl ToSocketAddrs,
         settings: Settings,
         now_s: f64,
     ) -> io::Result<Self> {
-        let none = || io::Error::new(ErrorKind::InvalidInput, "the autopilot's address is none");
+        let none =
+            || io::Error::new(ErrorKind::InvalidInput, "the autopilot's address is not a host and a port");
         let peer = peer.to_socket_addrs()?.next().ok_or_else(none)?;
         let socket = UdpSocket::bind(local)?;
         socket.set_nonblocking(true)?;

@@ -88,7 +88,7 @@ pub(super) fn attitude(
     })
 }
 
-/// What a message of an IMU says; `None` where it has no gyro, or its numbers are none.
+/// What a message of an IMU says; `None` where it has no gyro, or its numbers are not finite.
 pub(super) fn turn(data: &HIGHRES_IMU_DATA, clock: &mut ClockOffset, arrived_s: f64) -> Option<Turn> {
     use mavlink::dialects::common::HighresImuUpdatedFlags as Updated;
     let gyro = Updated::HIGHRES_IMU_UPDATED_XGYRO

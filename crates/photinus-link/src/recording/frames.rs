@@ -154,6 +154,6 @@ fn image(bytes: &[u8], path: &Path) -> Result<(ros::Header, GreyImage)> {
 fn down(gravity: &[f64]) -> Option<Unit<Vector3<f64>>> {
     let [x, y, z] = *gravity else { return None };
     let down = Vector3::new(x, y, z);
-    // As it was told, to the bit: what is no direction is none.
+    // As it was told, to the bit; what is not a unit vector is left out.
     ((down.norm() - 1.0).abs() < 0.01).then(|| Unit::new_unchecked(down))
 }

@@ -23,6 +23,7 @@ mod write;
 
 pub use frames::{Frames, ImageTopic, image_topics};
 pub use pixels::Pixels;
+pub(crate) use read::MOST_BYTES;
 pub use read::{Recording, Topic};
 pub use recover::{Recovered, recover};
 pub use sink::RecordSink;

@@ -12,7 +12,7 @@ use photinus_io::{Error, Result};
 use super::{MEND, MESSAGE_ENCODING, guarded, short_name};
 
 /// Records above this are no frames of a camera: a file that claims such a one is damaged.
-pub(super) const MOST_BYTES: usize = 256 << 20;
+pub(crate) const MOST_BYTES: usize = 256 << 20;
 
 /// What a topic carries.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -89,11 +89,18 @@ impl Recording {
         topics
     }
 
+    /// When the first and the last message arrived, ns, where the file says.
+    #[must_use]
+    pub fn span_ns(&self) -> Option<(u64, u64)> {
+        let stats = self.summary.stats.as_ref().filter(|stats| stats.message_count > 0)?;
+        Some((stats.message_start_time, stats.message_end_time))
+    }
+
     /// The messages of these topics in the order of their arrival, from `after_ns` on.
     ///
     /// # Errors
     /// [`Error`] when the index contradicts itself.
-    pub(super) fn messages<'a>(
+    pub(crate) fn messages<'a>(
         self,
         topics: impl IntoIterator<Item = &'a str>,
         after_ns: u64,
@@ -109,7 +116,7 @@ impl Recording {
 }
 
 /// Messages of a file.
-pub(super) struct Messages {
+pub(crate) struct Messages {
     recording: Recording,
     reader: IndexedReader,
     chunk: Vec<u8>,
@@ -124,7 +131,7 @@ impl Messages {
     }
 
     /// Hands the next message, of this topic and with these bytes, to `take`; `None` at the end.
-    pub(super) fn next<T>(&mut self, take: impl FnOnce(&str, &[u8]) -> T) -> Option<Result<T>> {
+    pub(crate) fn next<T>(&mut self, take: impl FnOnce(&str, &[u8]) -> T) -> Option<Result<T>> {
         if self.is_lost {
             return None;
         }

@@ -8,7 +8,9 @@ mod definitions;
 mod detection;
 mod diagnostic;
 mod marker;
+mod odometry;
 mod photinus;
+mod pose;
 mod sensor;
 
 pub use basic::{
@@ -21,7 +23,9 @@ pub use detection::{
 };
 pub use diagnostic::{DiagnosticArray, DiagnosticStatus, KeyValue, Level};
 pub use marker::{ColorRGBA, Marker, MarkerArray, MeshFile, Shape, UVCoordinate};
+pub use odometry::{Odometry, Twist, TwistWithCovariance};
 pub use photinus::{Frame, Neighbour, NeighbourArray, PoseMode};
+pub use pose::{PoseStamped, PoseWithCovarianceStamped};
 pub use sensor::{CameraInfo, CompressedImage, Image, Imu, RegionOfInterest};
 
 /// A message that a topic can carry.
@@ -41,6 +45,9 @@ macro_rules! messages {
 messages! {
     "std_msgs/String": Text,
     "tf2_msgs/TFMessage": TFMessage,
+    "geometry_msgs/PoseStamped": PoseStamped,
+    "geometry_msgs/PoseWithCovarianceStamped": PoseWithCovarianceStamped,
+    "geometry_msgs/TransformStamped": TransformStamped,
     "vision_msgs/Detection3DArray": Detection3DArray,
     "visualization_msgs/MarkerArray": MarkerArray,
     "diagnostic_msgs/DiagnosticArray": DiagnosticArray,
@@ -48,6 +55,7 @@ messages! {
     "sensor_msgs/CompressedImage": CompressedImage<'_>,
     "sensor_msgs/CameraInfo": CameraInfo,
     "sensor_msgs/Imu": Imu,
+    "nav_msgs/Odometry": Odometry,
     "photinus_msgs/NeighbourArray": NeighbourArray,
     "photinus_msgs/Frame": Frame,
 }

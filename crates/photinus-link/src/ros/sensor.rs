@@ -34,7 +34,7 @@ impl Image<'_> {
             other => return Err(format!("images are encoded as {other}, not mono8 or mono16")),
         };
         if width.checked_mul(height).is_none_or(|pixels| pixels == 0 || pixels > MAX_PIXELS) {
-            return Err(format!("an image of {width} x {height} pixels is none"));
+            return Err(format!("no image has {width} x {height} pixels"));
         }
         if step < width * bytes_per_pixel || self.data.len() < step * height {
             return Err(format!("{} bytes are no {width} x {height} pixels", self.data.len()));

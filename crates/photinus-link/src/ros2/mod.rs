@@ -81,7 +81,7 @@ impl Topics {
     /// Announces them.
     ///
     /// # Errors
-    /// [`Ros2Error`] when a name is none.
+    /// [`Ros2Error`] when a name is not valid.
     pub fn new(node: &mut Node) -> Result<Self, Ros2Error> {
         Ok(Self {
             detections: Box::new(node.publisher(topics::DETECTIONS, Quality::Results)?),

@@ -34,7 +34,7 @@ impl Node {
     /// Joins the domain as `photinus`.
     ///
     /// # Errors
-    /// [`Ros2Error`] when the network refuses, or the namespace is none.
+    /// [`Ros2Error`] when the network refuses, or the namespace is not valid.
     pub fn new(settings: Settings) -> Result<Self, Ros2Error> {
         let refuse = |error: &dyn std::fmt::Display| Ros2Error::Network(error.to_string());
         let context = Context::with_options(ContextOptions::new().domain_id(settings.domain))
@@ -49,7 +49,7 @@ impl Node {
     /// Announces a topic.
     ///
     /// # Errors
-    /// [`Ros2Error`] when its name is none, or the network refuses.
+    /// [`Ros2Error`] when its name is not valid, or the network refuses.
     pub fn publisher<M: Message + 'static>(
         &mut self,
         topic: &str,

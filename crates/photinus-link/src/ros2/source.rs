@@ -28,7 +28,7 @@ impl ImageSource {
     /// Subscribes to `topic`, by its full name.
     ///
     /// # Errors
-    /// [`Ros2Error`] when the network refuses, or the name is none.
+    /// [`Ros2Error`] when the network refuses, or the name is not valid.
     pub fn new(settings: Settings, topic: &str) -> std::result::Result<Self, Ros2Error> {
         let mut node = Node::new(settings)?;
         let images = node.images(topic)?;

@@ -61,7 +61,7 @@ fn fit(points: &[(f64, f64)]) -> Option<Envelope> {
     best.filter(|_| points.len() >= 4)
 }
 
-/// Least squares for a given shift: a straight line over 1 / (l + c)^2; `None` where that is none.
+/// Least squares for a given shift: a straight line over 1 / (l + c)^2; `None` where that is not a curve.
 fn with_shift(points: &[(f64, f64)], shift_m: f64) -> Option<Envelope> {
     let line: Vec<(f64, f64)> =
         points.iter().map(|(l, s)| (1.0 / ((l + shift_m) * (l + shift_m)), *s)).collect();

@@ -76,7 +76,8 @@ impl Config {
 
     fn named<'a>(&self, number: usize, keys: &'a CameraKeys) -> Result<Named<'a>> {
         let Some(folder) = &keys.source.dataset else { return Ok(Named { keys, recording: None }) };
-        let dataset = Dataset::read(self.located(folder))?;
+        let dataset = Dataset::read(self.located(folder))
+            .map_err(|error| self.of_key(&format!("camera[{number}].source.dataset"), error))?;
         dataset.check_inside()?;
         let all = dataset.cameras();
         let wanted = keys.source.camera.as_ref();
@@ -103,8 +104,13 @@ impl Config {
                 "add [airframe] with file = \"...\"",
             ));
         };
+        let named = |error: Error| match &self.keys.airframe {
+            Some(_) => self.of_key("airframe.file", error),
+            None => error,
+        };
         let read = |path: PathBuf| read_airframe(&path).map(|file| (path, file));
-        let files = watch::told_apart(paths.into_iter().map(read).collect::<Result<_>>()?)?;
+        let files = paths.into_iter().map(read).collect::<Result<_>>();
+        let files = files.and_then(watch::told_apart).map_err(named)?;
         let settings = &self.keys.locate;
         files.iter().flat_map(|file| &file.notes).for_each(|text| note(text.clone()));
         Ok(files.into_iter().map(|file| settings.kind(file)).collect())
@@ -144,19 +150,28 @@ impl Config {
             named.file(self, keys.camera.as_ref(), |camera| Some(&camera.camera)).ok_or_else(|| {
                 self.refuse(&format!("camera {}", keys.name), "it has no calibration", "add camera = \"...\"")
             })?;
-        let calibration = read_camera(&path)?;
+        let number = self.keys.camera.iter().position(|other| other.name == keys.name).unwrap_or_default();
+        let of_key = |key: &str, is_named: bool, error: Error| match is_named {
+            true => self.of_key(&format!("camera[{number}].{key}"), error),
+            false => error,
+        };
+        let calibration =
+            read_camera(&path).map_err(|error| of_key("camera", keys.camera.is_some(), error))?;
         calibration.oddities.iter().for_each(|oddity| note(format!("{}: {oddity}", path.display())));
         let camera = calibration.camera;
         let mask = match named.file(self, keys.mask.as_ref(), |camera| camera.mask.as_ref()) {
             Some(path) => {
-                let file = read_mask(&path)?;
+                let file = read_mask(&path).map_err(|error| of_key("mask", keys.mask.is_some(), error))?;
                 file.check_size(camera.width(), camera.height())?;
                 Some(file.mask)
             }
             None => None,
         };
         let mounting = match &keys.mounting {
-            Some(path) => Some(read_mounting(self.located(path))?),
+            Some(path) => {
+                let read = read_mounting(self.located(path));
+                Some(read.map_err(|error| of_key("mounting", true, error))?)
+            }
             None => named.of_dataset().and_then(|(_, camera)| camera.mounting),
         };
         let curve = match named.file(self, keys.spot_curve.as_ref(), |camera| camera.spot_curve.as_ref()) {

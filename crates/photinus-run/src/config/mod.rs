@@ -10,12 +10,13 @@ mod cameras;
 #[cfg(test)]
 mod tests;
 
+use std::io::ErrorKind;
 use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
 
 use photinus_io::dataset::AirframeFiles;
 use photinus_io::video::RawFormat;
-use photinus_io::{Error, Place, Result, table, whole};
+use photinus_io::{Cause, Error, Place, Result, table, whole};
 use serde::Deserialize;
 
 use crate::exposure::Wanted;
@@ -352,6 +353,17 @@ impl Config {
             ));
         }
         Ok(())
+    }
+
+    /// What is wrong with a file that this key names.
+    fn of_key(&self, key: &str, error: Error) -> Error {
+        let advice = match &error.cause {
+            Cause::Io(cause) if cause.kind() == ErrorKind::NotFound => {
+                "check the path, which is taken from the folder of the configuration".to_owned()
+            }
+            _ => error.advice.clone(),
+        };
+        self.refuse(key, &error.advise("").to_string(), &advice)
     }
 
     fn refuse(&self, key: &str, reason: &str, advice: &str) -> Error {

@@ -1,4 +1,5 @@
 use super::*;
+use crate::motion::Motion;
 
 fn told(text: &str) -> String {
     Config::parse(text, "run.toml").unwrap_err().to_string()
@@ -43,6 +44,31 @@ fn unknown_keys_are_refused_with_their_line() {
     assert!(message.contains("line 4: unknown key `jsn`"), "{message}");
     let message = told("[[camera]]\nname = \"a\"\nsource = { dataste = \"rec\" }\n");
     assert!(message.contains("line 3: unknown key `dataste`"), "{message}");
+}
+
+#[test]
+fn a_file_that_cannot_be_read_is_told_with_the_key_that_names_it() {
+    let folder = std::env::temp_dir().join(format!("photinus-config-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let path = folder.join("run.toml");
+    let told = |text: &str| {
+        let config = Config::parse(text, &path).unwrap();
+        config.cameras(&Motion::default(), &mut |_| {}).err().unwrap().to_string()
+    };
+    let missing = told(CAMERA);
+    let [config, dataset] = [path.clone(), folder.join("rec")].map(|path| path.display().to_string());
+    let begins = format!("{config}, `camera[0].source.dataset`: {dataset}: ");
+    let ends = "check the path, which is taken from the folder of the configuration";
+    assert!(missing.starts_with(&begins) && missing.ends_with(ends), "{missing}");
+    let file = told("[[camera]]\nname = \"a\"\nsource = { tcp = \"b:1\" }\n[airframe]\nfile = \"a.toml\"\n");
+    assert!(file.contains("`airframe.file`") && file.ends_with(ends), "{file}");
+    std::fs::create_dir_all(folder.join("rec")).unwrap();
+    let empty = told(CAMERA);
+    assert!(
+        empty.starts_with(&begins) && empty.contains("holds no dataset.toml; name the folder of"),
+        "{empty}"
+    );
+    std::fs::remove_dir_all(&folder).unwrap();
 }
 
 #[test]

@@ -16,7 +16,7 @@ pub struct Place {
 }
 
 /// Direction of the sun (x east, y north, z up) at a place, for year, month, day, hour, minute and second in UTC; `None`
-/// for a place or a time that is none.
+/// for a place or a time that does not exist.
 pub fn sun_direction(
     place: &Place,
     date: [u32; 3],

@@ -15,7 +15,7 @@ pub(super) fn apply(mut shot: Shot, quality: u8) -> Result<Shot> {
     Ok(shot)
 }
 
-/// The bytes of a grey JPEG, or why there are none: a side of more than 65 535 px.
+/// The bytes of a grey JPEG, or why it cannot be made: a side of more than 65 535 px.
 fn encode(image: &GreyImage, quality: u8) -> std::result::Result<Vec<u8>, String> {
     let side = |px: usize| u32::try_from(px).unwrap_or(u32::MAX);
     let mut bytes = Vec::new();

@@ -1,4 +1,4 @@
-//! A lamp that is no marker: a steady spot of light, fixed in the image or beside a neighbour.
+//! A lamp that is not a marker: a steady spot of light, fixed in the image or beside a neighbour.
 
 use photinus_io::dataset::TruthFrame;
 use photinus_io::image::GreyImage;

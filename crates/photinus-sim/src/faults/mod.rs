@@ -69,9 +69,9 @@ pub enum Fault {
         /// Its direction in the image, from right towards down, rad.
         direction_rad: f64,
     },
-    /// So many pixels of the sensor are hot: the same ones in every frame, each 60 to 255 grey levels up (`hot=30`).
+    /// This many pixels of the sensor are hot: the same ones in every frame, each 60 to 255 grey levels up (`hot=30`).
     Hot(usize),
-    /// A lamp that is no marker (`lamp=fixed`, `lamp=400,200`, `lamp=25px-beside`).
+    /// A lamp that is not a marker (`lamp=fixed`, `lamp=400,200`, `lamp=25px-beside`).
     Lamp(Lamp),
     /// The LED of this number of every neighbour is painted out, by the truth (`dead-led=2`).
     DeadLed(u32),

@@ -16,7 +16,7 @@ pub use odometry::Odometry;
 
 use crate::draw::{self, Use};
 
-/// The instruments of the observer; those it has not got write nothing, gravity is then told exactly.
+/// The instruments of the observer; those that it lacks write nothing, and gravity is then told exactly.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Instruments {
     /// Its gyro.

@@ -1,4 +1,4 @@
-//! What the wind does to a robot that holds its place: it wanders about, slowly.
+//! What the wind does to a robot that holds its place: the robot wanders slowly about it.
 
 use core::f64::consts::TAU;
 

@@ -18,7 +18,7 @@ pub struct SmallFisheyeFit {
     pub skirt_px: f64,
     /// Where bright levels end, grey levels above the dark offset.
     pub ceiling_dn: f64,
-    /// Share of the light that passes, for an exposure of 1000 us of an LED of 200 mW, neither of which is known.
+    /// Share of the light that passes, for an exposure of 1000 us and an LED of 200 mW; neither is known.
     pub transmission: f64,
 }
 

@@ -89,7 +89,7 @@ impl Readout {
         }
     }
 
-    /// Adds to every pixel of a column, from column `first` on, what it picks up of so many electrons of light.
+    /// Adds to every pixel of a column, from column `first` on, what it picks up of this many electrons of light.
     pub fn smear_columns(&self, charge: &mut Charge, first: usize, light_e: &[f32]) {
         self.smear.of_columns(charge, first, light_e);
     }

@@ -35,7 +35,7 @@ impl ColumnSmear {
         self.of_columns(charge, first, &columns[first..=last]);
     }
 
-    /// Adds it for columns that hold so much light, from column `first` on.
+    /// Adds it for columns that hold this much light, from column `first` on.
     pub(super) fn of_columns(&self, charge: &mut Charge, first: usize, light_e: &[f32]) {
         if self.share > 0.0 {
             (0..charge.height()).for_each(|v| charge.add_row(v, first, light_e, self.share as f32));

@@ -65,7 +65,7 @@ pub struct Looks {
     pub mirrors: Vec<Mirror>,
 }
 
-/// A lamp that is no marker: it shines all the time, the same in every direction.
+/// A lamp that is not a marker: it shines all the time, the same in every direction.
 #[derive(Clone, Copy, Debug)]
 pub struct Lamp {
     /// Where it is: the origin of this pose.

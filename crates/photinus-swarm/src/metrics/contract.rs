@@ -1,4 +1,4 @@
-//! Whether the proof of the safety layer applied: every assumption of `docs/safety.md` held against the truth, frame by frame.
+//! Whether the proof of the safety layer applied: every assumption of `docs/safety.md` checked against the truth, frame by frame.
 
 use nalgebra::{UnitQuaternion, UnitVector3, Vector3};
 use photinus_control::Motion;

@@ -1,4 +1,4 @@
-//! What a flight was worth, as the field reports it: enters the world, frame by frame, leave numbers.
+//! What a flight was worth, as the field reports it: the world enters, frame by frame, and numbers leave.
 //!
 //! ```text
 //! every step    who is how near to whom              nearness
@@ -28,7 +28,7 @@ use nearness::Nearness;
 use shape::Shape;
 use sight::Sight;
 
-/// Numbers of one flight. What there was nothing to measure of is `null` in JSON.
+/// Numbers of one flight. What could not be measured is `null` in JSON.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Metrics {
     /// The scenario's name.
@@ -89,17 +89,17 @@ pub struct Metrics {
     pub nees_median: Option<f64>,
     /// Share within the 95 % ellipsoid.
     pub nees_within_95: Option<f64>,
-    /// Tells whose bounds of the distance are of their frame.
+    /// Reported neighbours whose bounds of the distance are of their frame.
     pub bounds: usize,
     /// Those that the truth was outside of.
     pub bounds_broken: usize,
     /// How often one who is seen got another number.
     pub identity_switches: usize,
-    /// Tells with a name.
+    /// Reported neighbours with an id.
     pub named: usize,
-    /// Those whose name was another's.
+    /// Those whose id was another's.
     pub named_wrong: usize,
-    /// Share of tells that nobody was.
+    /// Share of reported neighbours that are phantoms.
     pub phantoms: Option<f64>,
     /// What the safety layer's proof assumes and how often it was not so; `null` where no vehicle has the layer.
     pub contract: Option<Contract>,

@@ -1,11 +1,11 @@
-//! Which told neighbour is whom: by direction and distance, each vehicle once.
+//! Which reported neighbour is which vehicle: by direction and distance, each vehicle once.
 
 use nalgebra::{UnitQuaternion, Vector3};
 use photinus_control::Seen;
 
 use crate::world::{Robot, World};
 
-/// A told neighbour and whom it is.
+/// A reported neighbour and the vehicle that it is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Paired {
     /// Which of those who were told.
@@ -58,7 +58,7 @@ pub(super) fn level_from_world(robot: &Robot) -> UnitQuaternion<f64> {
     UnitQuaternion::from_scaled_axis(Vector3::z() * -robot.state.heading_rad())
 }
 
-/// How badly a tell goes with a truth; `None` where it does not at all.
+/// How badly a reported neighbour fits a true one; `None` where it does not fit at all.
 fn cost(seen: &Seen, truth_m: &Vector3<f64>) -> Option<f64> {
     let distance_m = truth_m.norm();
     let angle_rad = libm::acos((seen.bearing.dot(truth_m) / distance_m).clamp(-1.0, 1.0));

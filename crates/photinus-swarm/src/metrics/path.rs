@@ -1,6 +1,6 @@
 //! Where a vehicle said that it would be: set-points told and limits -> a path with how far it may be from each place of it.
 //!
-//! This walks the path of `docs/safety.md` in steps of its own, so that it shares nothing with the layer that it is held against.
+//! This walks the path of `docs/safety.md` in steps of its own, so that it shares nothing with the layer that it checks.
 
 use std::collections::VecDeque;
 

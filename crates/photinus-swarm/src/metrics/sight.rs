@@ -101,7 +101,7 @@ impl Sight {
         self.largest += largest as f64 / count as f64;
     }
 
-    /// Whom a vehicle was told of, each held against the truth.
+    /// The vehicles that a vehicle was told of, each compared with the truth.
     fn take_tells(&mut self, world: &World, observer: usize) -> Vec<usize> {
         let seen = &world.robots()[observer].seen;
         let paired = pair(world, observer);
@@ -113,7 +113,7 @@ impl Sight {
             if let Some(place) = &told.position_m {
                 self.square_error_m2.push((place.mean - pair.truth_m).norm_squared());
                 self.range_error.push((place.mean.norm() / distance_m - 1.0).abs());
-                // what claims to be exact has no covariance to hold it against
+                // what claims to be exact has no covariance to compare it with
                 if world.grade() != Grade::Perfect {
                     self.nees.extend(nees(place, &pair.truth_m));
                 }

@@ -39,16 +39,16 @@ struct DetectionTable {
 pub struct SafetyPlan {
     /// What every vehicle of the group keeps to; radius and period are the scenario's.
     pub limits: Limits,
-    /// Who answers for it that nobody unseen is near.
+    /// What vouches that nobody unseen is near.
     pub unseen: Unseen,
 }
 
 /// Where nobody is who is not seen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Unseen {
-    /// The scenario answers for it that nobody unseen is nearer, m.
+    /// The scenario vouches that nobody unseen is nearer, m.
     EmptyTo(f64),
-    /// The cameras answer for it: so far, with such a probability per frame, and missed for good no more often than this.
+    /// The cameras vouch for it: out to a range, with a probability per frame, and missed for good no more often than this.
     Watched {
         /// How far, m.
         range_m: f64,
@@ -56,7 +56,7 @@ pub enum Unseen {
         probability: f64,
         /// How often somebody may be missed for good.
         missed: f64,
-        /// The scenario answers for it that nobody is steeper above or below than this, rad.
+        /// The scenario vouches that nobody is more steeply above or below than this, rad.
         steep_rad: Option<f64>,
     },
 }
@@ -130,7 +130,7 @@ pub(crate) struct OnMap {
 }
 
 impl Guard {
-    /// The layer of a vehicle; `None` where the limits are none.
+    /// The layer of a vehicle; `None` where the limits have no meaning.
     pub(crate) fn new(
         plan: &SafetyPlan,
         (radius_m, period_s): (f64, f64),

@@ -87,9 +87,9 @@ pub enum Plan {
     Boids(Boids),
     /// Behind a leader.
     Follow(Follower),
-    /// In the scenario's formation, by bearings alone but for one distance. What each is answerable for is filled in.
+    /// In the scenario's formation, by bearings alone but for one distance. The bearings that each keeps are filled in.
     BearingFormation(BearingFormation),
-    /// In the scenario's formation, by relative positions. What each is answerable for is filled in.
+    /// In the scenario's formation, by relative positions. The bearings that each keeps are filled in.
     PoseFormation(PoseFormation),
     /// With the velocity of the others.
     VelocityConsensus,

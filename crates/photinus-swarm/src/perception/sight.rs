@@ -21,7 +21,7 @@ pub struct InView {
     pub light: f64,
 }
 
-/// A marker fainter than this towards the camera, against one straight ahead, is none.
+/// A marker fainter than this towards the camera, against one straight ahead, is not seen.
 const FAINT: f64 = 0.02;
 
 /// Whom `observer` could see, by number of the vehicle.

@@ -32,11 +32,11 @@ pub(crate) struct Start {
     pub(crate) heading_rad: f64,
 }
 
-/// A crowd that does not fit after so many tries does not fit.
+/// A crowd that does not fit after this many tries does not fit.
 const TRIES: usize = 20_000;
 
 impl Layout {
-    /// The places of the group under a seed; `None` where so many do not fit so far apart.
+    /// The places of the group under a seed; `None` where that many do not fit so far apart.
     pub(crate) fn starts(&self, seed: u64, group: u64) -> Option<Vec<Start>> {
         let mut chance = Chance::new(seed, Use::Places, group);
         let mut starts = Vec::with_capacity(self.count);

@@ -55,7 +55,7 @@ impl Scenario {
     /// Where vehicles begin under its seed.
     ///
     /// # Errors
-    /// [`Error`] with the key of the group where so many do not fit.
+    /// [`Error`] with the key of the group where that many do not fit.
     pub(crate) fn starts(&self, path: &Path) -> Result<Vec<Start>> {
         let mut starts = Vec::with_capacity(self.vehicles.len());
         for (group, layout) in self.layouts.iter().enumerate() {

@@ -45,7 +45,7 @@ impl Gust {
 }
 
 impl WindField {
-    /// Air about so many vehicles.
+    /// Air about this many vehicles.
     pub fn new(wind: Wind, vehicles: usize, seed: u64) -> Self {
         let gust = |owner: usize| Gust::new(Chance::new(seed, Use::Wind, owner as u64));
         Self { wind, common: gust(usize::MAX), own: (0..vehicles).map(gust).collect() }

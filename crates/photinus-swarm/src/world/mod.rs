@@ -115,7 +115,7 @@ impl World {
         self.frame as f64 * self.scenario.period_s()
     }
 
-    /// The world as the last frame was exposed, for whoever holds what was seen against it.
+    /// The world as the last frame was exposed, for whoever compares what was seen with it.
     pub fn moment(&self) -> Moment<'_> {
         Moment {
             number: self.frame,
@@ -237,7 +237,7 @@ fn present(scenario: &Scenario, index: usize, state: &State) -> Present {
     }
 }
 
-/// Does something to each of many, on so many threads; what one does depends on no other.
+/// Does something to each of many, on this many threads; what one does depends on no other.
 fn each<T: Send>(items: &mut [T], threads: usize, work: &(dyn Fn(usize, &mut T) + Sync)) {
     let chunk = items.len().div_ceil(threads.max(1)).max(1);
     if threads <= 1 || items.len() <= 1 {
@@ -253,7 +253,7 @@ fn each<T: Send>(items: &mut [T], threads: usize, work: &(dyn Fn(usize, &mut T) 
     });
 }
 
-/// Makes so many, on so many threads; the first error in their order.
+/// Makes this many, on this many threads; the first error in their order.
 fn spread<T: Send, E: Send>(
     count: usize,
     threads: usize,

@@ -39,7 +39,7 @@ impl Airframe {
     ///
     /// # Errors
     /// [`AirframeError`] for more than [`Self::MAX_LEDS`], for an LED that is not finite, has no axis, sits too far
-    /// out or appears twice, and where there is none.
+    /// out or appears twice, and for a list without LEDs.
     pub fn new(name: impl Into<String>, leds: Vec<Led>) -> Result<Self, AirframeError> {
         led::check(&leds)?;
         if leds.is_empty() {

@@ -95,7 +95,7 @@ impl Calibration {
     }
 }
 
-/// Columns whose products with themselves add up to the covariance; `None` when it is none.
+/// Columns whose products with themselves add up to the covariance; `None` when the matrix is not a covariance.
 fn root(covariance: &DMatrix<f64>) -> Option<Vec<f64>> {
     let size = covariance.nrows();
     let sigma: Vec<f64> = (0..size).map(|k| covariance[(k, k)].max(0.0).sqrt()).collect();
@@ -243,7 +243,7 @@ impl Camera {
     /// was not calibrated has zeros.
     ///
     /// # Errors
-    /// [`CameraError::CovarianceSize`] when it is of another size, [`CameraError::NotFinite`] when a number is none,
+    /// [`CameraError::CovarianceSize`] when it is of another size, [`CameraError::NotFinite`] when a number is not finite,
     /// [`CameraError::NoCovariance`] when it is not symmetric or has a negative variance.
     pub fn with_calibration(mut self, covariance: DMatrix<f64>) -> Result<Self, CameraError> {
         self.calibration = Some(Calibration::new(&self, covariance)?);

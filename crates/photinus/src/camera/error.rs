@@ -64,7 +64,7 @@ pub enum CameraError {
     },
     /// A matrix that is no covariance.
     #[error(
-        "the covariance is none: it is not symmetric, or a combination of parameters has a negative variance"
+        "the matrix is not a covariance: it is not symmetric, or a combination of parameters has a negative variance"
     )]
     NoCovariance,
     /// A model that folds back inside the image: two pixels would see the same direction, or one pixel two.

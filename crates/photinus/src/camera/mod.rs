@@ -76,7 +76,7 @@ impl Camera {
     ///
     /// # Errors
     /// [`CameraError::NotMonotonic`] when the model folds back within that field, [`CameraError::Size`] and
-    /// [`CameraError::FieldLimit`] when those are none, [`CameraError::NotFinite`] when the image lies infinitely far
+    /// [`CameraError::FieldLimit`] when the size or the limit has no meaning, [`CameraError::NotFinite`] when the image lies infinitely far
     /// from the centre.
     pub fn new(
         model: Model,

@@ -11,11 +11,11 @@ use super::context::Context;
 use super::grouping::Groups;
 use super::kinds::Kinds;
 
-/// So many of the nearest observations are put together with one.
+/// This many of the nearest observations are put together with one.
 const NEAREST: usize = 6;
 /// Most handfuls that are weighed in full.
 const MOST_WEIGHED: usize = 8;
-/// A handful that is so much less likely by a first look than what its observations are already, nats, is not weighed: first looks are as good.
+/// A handful that is this much less likely by a first look than what its observations are already, nats, is not weighed: first looks are as good.
 pub(super) const POOR_GAIN: f64 = -8.0;
 
 /// An observation and those next to it.
@@ -77,7 +77,7 @@ impl Alternatives {
         }
     }
 
-    /// Begins a frame of so many observations.
+    /// Begins a frame of this many observations.
     pub(super) fn begin(&mut self, observations: usize) {
         self.windows.clear();
         self.windows.resize(observations, None);

@@ -2,7 +2,7 @@
 
 use crate::airframe::Airframe;
 
-/// Of the bits of a word so many are lit, about.
+/// Of the bits of a word this many are lit, about.
 const LIT_BITS: f64 = 0.5;
 
 /// How likely each marker of an airframe is lit in a frame, where nobody follows its signal.

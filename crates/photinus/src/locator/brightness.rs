@@ -17,7 +17,7 @@ use crate::spots::Spot;
 const SIGMA: f64 = 0.03;
 /// Error of a logarithm of light times the root of the light, grey levels^(1/2): noise of pixels and background.
 const NOISE: f64 = 0.75;
-/// Error per light of another spot over the own, at no distance; by e less every so much, px, and none beyond the last.
+/// Error per light of another spot over the own, at no distance; by e less every this much, px, and none beyond the last.
 const OTHERS: f64 = 0.11;
 const FALL_PX: f64 = 3.0;
 const FAR_PX: f64 = 15.0;

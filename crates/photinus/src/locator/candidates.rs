@@ -6,7 +6,7 @@ use crate::pose::{Misfit, Mode};
 
 /// Modes that a candidate has at most, or nearly.
 const MODES_EACH: usize = 32;
-/// A candidate is clear that is likelier than clutter by so much, nats, ...
+/// A candidate is clear that is likelier than clutter by this much, nats, ...
 const CLEAR_GAIN: f64 = 12.0;
 /// ... whose misfit is no more than this, in sigma of any one observation, and no rarer than that as a whole.
 const CLEAR_SIGMAS: f64 = 5.0;
@@ -58,7 +58,7 @@ pub(super) struct Candidates {
 }
 
 impl Candidates {
-    /// None yet, with room for so many.
+    /// None yet, with room for this many.
     pub(super) fn with_room(count: usize) -> Self {
         Self {
             all: Vec::with_capacity(count),

@@ -1,6 +1,6 @@
 //! How dense clutter is: bright points that are no neighbour's markers.
 //!
-//! In: how likely each observation of the frame is clutter, and which belong together if they are none. Out: the density of clutter at each
+//! In: how likely each observation of the frame is clutter, and which belong together if they are not clutter. Out: the density of clutter at each
 //! observation, from the others: those of the frame as a whole, those around it, for glints and hot pixels come in crowds, and those right beside it, for
 //! clutter comes in clumps; and from what stays where it is. Observations that belong
 //! together are clutter together or not at all: the first of them is as dense as what is around, each further one as if those before were clutter
@@ -13,14 +13,14 @@ use super::fixtures::Fixtures;
 use super::grouping::Groups;
 use super::memory::Memory;
 
-/// Clutter of a frame before any was seen: so many points, worth so many frames.
+/// Clutter of a frame before any was seen: this many points, worth this many frames.
 const BEFOREHAND: f64 = 0.2;
 const WORTH_FRAMES: f64 = 0.3;
 /// Side of the cells in which clutter is counted, px: an observation's surroundings are three by three of them.
 const CELL_PX: f64 = 64.0;
-/// The mean of the whole frame is worth what the surroundings tell over so many times their area.
+/// The mean of the whole frame is worth what the surroundings tell over this many times their area.
 const WORTH_SURROUNDINGS: f64 = 1.0;
-/// The light of clutter may be anything over so many units of its logarithm, a factor of 3,000: as good as so many points that show their light.
+/// The light of clutter may be anything over this many units of its logarithm, a factor of 3,000: as good as this many points that show their light.
 const LIGHT_RANGE: f64 = 8.0;
 const WORTH_POINTS: f64 = 3.0;
 /// Clutter that blinks one of our signals is so rare among clutter, as a logarithm: one in a hundred.
@@ -148,7 +148,7 @@ impl Clutter {
         excess
     }
 
-    /// Logarithm of how dense clutter is at an observation, with so many more points at the same place, and so dense beside others per px^2.
+    /// Logarithm of how dense clutter is at an observation, with this many more points at the same place, and so dense beside others per px^2.
     fn log_per_sr(
         &self,
         counts: &Counts,
@@ -219,7 +219,7 @@ impl Counts {
         (self.list[place] + memory.clutter(place)).max(0.0)
     }
 
-    /// Counts an observation by so much.
+    /// Counts an observation by this much.
     fn add(&mut self, sighting: &Sighting, share: f64) {
         self.list[self.cells.index(self.cells.of_observation(sighting))] += share;
         let total = self.list.len() - 1;

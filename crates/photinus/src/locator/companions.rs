@@ -8,7 +8,7 @@ use core::f64::consts::{PI, TAU};
 use super::Sighting;
 use super::cells::{ByCell, Cells};
 
-/// A point of clutter has so many companions.
+/// A point of clutter has this many companions.
 const COMPANIONS: f64 = 0.2;
 /// They are so far away, px: apart from it, and no further than structures of a scene are large.
 const NEAREST_PX: f64 = 2.5;

@@ -19,7 +19,7 @@ pub enum LocatorError {
     /// A tilt limit that is no angle from 0 to 180 deg.
     #[error("a tilt limit of {0} rad: it must be an angle from 0 to pi")]
     Tilt(f64),
-    /// A least probability that is none.
+    /// A least probability that is not from 0 to 1.
     #[error("a least probability of {0}: it must be from 0 to 1")]
     Probability(f64),
     /// A mask of another size than the camera's image.

@@ -8,7 +8,7 @@ use super::candidates::Candidates;
 
 /// Most observations that are explained together.
 const MOST_TOGETHER: usize = 12;
-/// A candidate whose gain over clutter is so much less than that of another it shares an observation with is left out, nats; the
+/// A candidate whose gain over clutter is this much less than that of another it shares an observation with is left out, nats; the
 /// next is tried where too much hangs together.
 const HOPELESS: [f64; 5] = [25.0, 14.0, 8.0, 4.0, 0.0];
 /// Gains over clutter are cut off here, nats: surer is not told, and numbers stay finite.
@@ -45,7 +45,7 @@ struct Choice {
 }
 
 impl Explanation {
-    /// Nothing yet, with room for so many candidates and the largest part.
+    /// Nothing yet, with room for this many candidates and the largest part.
     pub(super) fn with_room(count: usize) -> Self {
         Self {
             probability: Vec::with_capacity(count),
@@ -155,7 +155,7 @@ impl Explanation {
         }
     }
 
-    /// Leaves out candidates that others beat by so much wherever they are, and those of what is done.
+    /// Leaves out candidates that others beat by this much wherever they are, and those of what is done.
     fn leave_out(&mut self, candidates: &Candidates, count: usize, hopeless: f64) {
         self.best.clear();
         self.best.resize(count, 0.0);

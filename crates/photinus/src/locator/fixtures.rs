@@ -11,7 +11,7 @@ use super::memory::Memory;
 
 /// Most places that are remembered: the rarest gives way.
 const MOST: usize = 256;
-/// A place is the same within so many pixels, ...
+/// A place is the same within this many pixels, ...
 const SAME_PX: f64 = 1.5;
 /// ... off by this standard deviation, px, and as bright within this of its logarithm.
 const SIGMA_PX: f64 = 0.5;

@@ -37,15 +37,15 @@ const LOOKS: usize = 4;
 const DOUBTFUL: f64 = 0.05;
 /// Rounds of looking for other ways to put observations together, each at what the one before left.
 const ROUNDS: usize = 2;
-/// However seldom neighbours were, there are so many per frame.
+/// However seldom neighbours were, there are this many per frame.
 const FEWEST_NEIGHBOURS: f64 = 0.2;
 /// Rounds of telling how dense clutter is from what is explained, and what is explained from that.
 const CLUTTER_ROUNDS: usize = 2;
-/// Who asks for neighbours less likely than this is told what a first look has as clutter, too.
+/// Asked for neighbours less likely than this, it also tells what a first look takes for clutter.
 const UNLIKELY: f64 = 1e-3;
 /// A look that changes no more than this, nats, is the last.
 const SMALL_GAIN: f64 = 1e-3;
-/// Weighing a candidate in full is as much work as so many first looks.
+/// Weighing a candidate in full is as much work as this many first looks.
 const LOOKS_PER_WEIGHING: u32 = 32;
 
 /// Explains the frames of one camera. Keeps its room.
@@ -110,7 +110,7 @@ impl Inference {
         self.fixtures.forget();
     }
 
-    /// So many observations of a frame are explained, its first.
+    /// This many observations of a frame are explained, its first.
     pub(super) fn most(&self) -> usize {
         (self.budget / 2) as usize
     }
@@ -277,7 +277,7 @@ struct Work {
 }
 
 impl Work {
-    /// Takes the work of so many first looks.
+    /// Takes the work of this many first looks.
     fn look(&mut self, looks: u32) {
         self.left = self.left.saturating_sub(looks);
     }
@@ -290,7 +290,7 @@ impl Work {
     }
 }
 
-/// Logarithm of how many neighbours there are per sr, where a frame has so many: as many as that tells without one of them, with those that are
+/// Logarithm of how many neighbours there are per sr, where a frame has this many: as many as that tells without one of them, with those that are
 /// remembered, and one to begin with; in a field of half the sphere.
 fn log_neighbours(in_frame: f64, memory: &Memory) -> f64 {
     let per_frame = (1.0 + memory.neighbours() + (in_frame - 1.0).max(0.0)) / (2.0 + memory.frames() as f64);
@@ -301,7 +301,7 @@ fn log_per_sr(per_frame: f64) -> f64 {
     libm::log(per_frame / core::f64::consts::TAU)
 }
 
-/// How much less likely so many neighbours are than where each has this density: that is as it is after all others, but a frame is drawn one after
+/// How much less likely this many neighbours are than where each has this density: that is as it is after all others, but a frame is drawn one after
 /// the other (chain rule).
 fn excess_of_neighbours(in_frame: f64, log_density: f64, memory: &Memory) -> f64 {
     let first = 1.0 + memory.neighbours();

@@ -136,7 +136,7 @@ impl Kinds {
             // What a look cannot tell it does not rule out.
             let look = self.looks.get(number).copied().flatten();
             let is_unlike = look.zip(likeliest).is_some_and(|(look, best)| look < best - UNLIKE);
-            if !is_unlike && group.len() <= matcher.most_visible() && has_work() {
+            if !is_unlike && group.len() <= matcher.most_visible().max(1) && has_work() {
                 poser.weigh(context, group, matcher, candidates);
             }
         }

@@ -6,7 +6,7 @@ use crate::pose::LogLight;
 
 /// Spread of the logarithm of light between neighbours: lobes, units, the lens towards its edge.
 pub(super) const LOG_POWER_SIGMA: f64 = 0.35;
-/// The power of the LEDs is known from so many frames on.
+/// The power of the LEDs is known from this many frames on.
 const FEWEST: usize = 3;
 
 /// The last frames.
@@ -25,10 +25,10 @@ pub(super) struct Memory {
 }
 
 impl Memory {
-    /// So many frames are remembered.
+    /// This many frames are remembered.
     pub(super) const FRAMES: usize = 64;
 
-    /// Nothing yet, of images with so many cells.
+    /// Nothing yet, of images with this many cells.
     pub(super) fn new(cells: usize) -> Self {
         Self {
             cells,
@@ -65,7 +65,7 @@ impl Memory {
         (0..self.frames).map(|age| self.neighbours[self.aged(age)]).sum()
     }
 
-    /// The place of the frame so many frames ago.
+    /// The place of the frame this many frames ago.
     fn aged(&self, age: usize) -> usize {
         (self.next + Self::FRAMES - 1 - age) % Self::FRAMES
     }

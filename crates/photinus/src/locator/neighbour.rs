@@ -83,9 +83,9 @@ pub struct Neighbour {
 pub struct Located {
     /// Spots with their bearings.
     pub sightings: Vec<Sighting>,
-    /// What is bright and no marker.
+    /// Bright regions that are not markers.
     pub rejected: Vec<Rejected>,
-    /// Who is there, in the order of their first sighting.
+    /// The neighbours, in the order of their first sighting.
     pub neighbours: Vec<Neighbour>,
     /// Whether the frame was explained within the budget; if not, neighbours may be missing.
     pub is_complete: bool,

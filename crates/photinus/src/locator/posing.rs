@@ -33,7 +33,7 @@ pub(crate) const RESOLUTION_PX: f64 = 2.5;
 /// Light of a spot that is found half of the time over the step that makes a pixel bright, px (rendered frames).
 const FAINTEST_PX: f64 = 2.5;
 
-/// Over so much of the field the error of a calibration changes by itself.
+/// Over this much of the field the error of a calibration changes by itself.
 const CALIBRATION_LENGTH_RAD: f64 = 0.5;
 
 /// Tells the neighbours behind groups of sightings.
@@ -78,7 +78,7 @@ impl Poser {
         })
     }
 
-    /// Adds the candidate that a group, ascending, is; an observation that cannot be its marker is none of it. Nothing is added where the group
+    /// Adds the candidate that a group, ascending, is; an observation that cannot be its marker is left out. Nothing is added where the group
     /// cannot be one neighbour.
     pub(super) fn weigh(
         &mut self,
@@ -127,7 +127,7 @@ impl Poser {
             matcher.hypotheses(context, group, &mut self.hypotheses);
         }
         self.gather_others(context, group, matcher);
-        // Who tells the light of the frame's LEDs is not told by it.
+        // A group that sets the prior of the LED power does not get it as its prior.
         let power = if group.len() < CLEAR_SPOTS { context.power } else { None };
         let visible =
             Visible { watched: Some(context.watched), others: &self.others, lit: &self.lit, ..self.visible };

@@ -32,7 +32,7 @@ pub(super) struct Telling {
 }
 
 impl Telling {
-    /// Room for so many candidates.
+    /// Room for this many candidates.
     pub(super) fn with_room(count: usize) -> Self {
         Self {
             order: Vec::with_capacity(count),
@@ -91,7 +91,7 @@ impl Telling {
             let probability = explanation.probability(index);
             all += probability;
             if index == own && probability == 0.0 {
-                // Nobody would say so, but it is what is asked for.
+                // Unlikely to be chosen, but it is what the setting asks for.
                 self.same.push((index, f64::MIN_POSITIVE));
             } else if is_same(candidates, own, index) {
                 self.same.push((index, probability));

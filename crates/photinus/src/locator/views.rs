@@ -1,6 +1,6 @@
 //! What an airframe can look like: its markers as a far camera sees them, from a grid of directions.
 //!
-//! In: an airframe. Out: for every number of spots from two up to a handful the *arrangements* that so many of its markers
+//! In: an airframe. Out: for every number of spots from two up to a handful the *arrangements* which that many of its markers
 //! can show, in every order, since spots come without names; and for every view its *outline*, the spread of all that
 //! shows, for groups too large to be put in order. Both are in metres in the image plane of the far camera (x right,
 //! y up), with "up" that of the body.
@@ -121,7 +121,7 @@ pub(super) struct Band<'a> {
 }
 
 impl Arrangements {
-    /// Those that a neighbour tilted by so much may show to a camera at this elevation, where it is known.
+    /// Those that a neighbour tilted by that much may show to a camera at this elevation, where it is known.
     pub(super) fn within(&self, elevation_rad: Option<f64>, tilt_sigma_rad: f64) -> Band<'_> {
         let reach_rad = (2.0 * FAR_NATS).sqrt() * tilt_sigma_rad;
         let rows_up_to = |most_rad: f64| self.rows.partition_point(|(row_rad, _)| *row_rad < most_rad);
@@ -131,7 +131,7 @@ impl Arrangements {
         };
         let quads_before = |row: usize| row.checked_sub(1).map_or(0, |before| self.rows[before].1);
         let [first, end] = match [first, end].map(quads_before) {
-            // Where so many markers never show from there, the nearest that does is as good as any.
+            // Where that many markers never show from there, the nearest that does is as good as any.
             [first, end] if first == end => [0, self.quads.len()],
             band => band,
         };

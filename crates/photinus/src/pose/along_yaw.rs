@@ -20,12 +20,12 @@ const WIDEST_STEP_RAD: f64 = 5.0 * PI / 180.0;
 /// ... and this share of the yaw's sigma: sums over a normal distribution in such steps are exact to a part in 10^5.
 const STEP_SIGMAS: f64 = 1.2;
 /// Where a marker comes into sight or goes out of it by more than this from one slice to the next, nats, the slices are
-/// halved, down to so much, rad.
+/// halved, down to this much, rad.
 const ABRUPT_NATS: f64 = 1.0;
 const FINEST_STEP_RAD: f64 = 0.015;
 /// A slice this much worse than the best, nats, is one of two that end the walk ...
 const LITTLE_NATS: f64 = 5.0;
-/// ... or of so many where one spot alone is seen: it may be any marker whose neighbours are out of sight.
+/// ... or of this many where one spot alone is seen: it may be any marker whose neighbours are out of sight.
 const MOST_POOR_ALONE: usize = 16;
 /// Most slices on one side.
 const MOST_SLICES: usize = 36;

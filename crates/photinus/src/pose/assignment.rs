@@ -13,7 +13,7 @@ pub(crate) struct Assignment {
 }
 
 impl Assignment {
-    /// Room for so many spots and markers.
+    /// Room for this many spots and markers.
     pub(crate) fn with_room(markers: usize) -> Self {
         Self { pairs: Vec::with_capacity(markers * markers), taken: Vec::with_capacity(2 * markers) }
     }

@@ -24,7 +24,7 @@ use super::problem::{Normal, Pose, Problem};
 
 /// Logarithm of 2 pi.
 const LOG_TAU: f64 = 1.837_877_066_409_345_5;
-/// Beyond so many sigma the pull of a bearing no longer grows.
+/// Beyond this many sigma the pull of a bearing no longer grows.
 const HUBER: f64 = 3.5;
 /// Without gravity: how far a camera is above or below a neighbour's own horizon, the sine's sigma.
 const ELEVATION_SIGMA: f64 = 0.6;

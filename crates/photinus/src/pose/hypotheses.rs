@@ -27,13 +27,13 @@ impl Hypotheses {
     /// Most hypotheses about one neighbour: the time of a neighbour is bounded.
     pub const MOST: usize = 16;
 
-    /// None yet, with room for so many spots.
+    /// None yet, with room for this many spots.
     pub fn with_room(spots: usize) -> Self {
         let (starts, markers) = (Vec::with_capacity(Self::MOST), Vec::with_capacity(Self::MOST * spots));
         Self { spots: 0, starts, markers }
     }
 
-    /// Forgets all hypotheses; the next are about so many spots.
+    /// Forgets all hypotheses; the next are about this many spots.
     pub fn begin(&mut self, spots: usize) {
         self.spots = spots;
         self.starts.clear();

@@ -8,7 +8,7 @@ use super::merging::Shining;
 use super::observation::LogLight;
 use super::problem::{Normal, Pose, Problem};
 
-/// Light tells no more than that of so many spots: lobes that are no cosines and lenses that darken towards their edge err alike
+/// Light tells no more than that of this many spots: lobes that are no cosines and lenses that darken towards their edge err alike
 /// for spots that are near each other.
 const INDEPENDENT: f64 = 4.0;
 /// Squared misfit of all lights of a neighbour together, in units of its variance, beyond which lobes or powers are not as they are told: it counts by
@@ -16,7 +16,7 @@ const INDEPENDENT: f64 = 4.0;
 const AS_TOLD: f64 = 6.0;
 /// A marker that shines with less than this towards the camera shines away.
 const DARK: f64 = 0.01;
-/// Where nothing tells the power of the LEDs it may be anything over so many units of its logarithm: a factor of 20,000.
+/// Where nothing tells the power of the LEDs it may be anything over this many units of its logarithm: a factor of 20,000.
 pub(crate) const POWER_RANGE: f64 = 10.0;
 
 /// The light of the spots in use against that of their markers.

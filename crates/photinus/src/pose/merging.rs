@@ -18,7 +18,7 @@ use crate::airframe::Marker;
 
 /// Radius of the window in resolutions.
 const WINDOW: f64 = 1.32;
-/// Beyond so many resolutions markers have nothing to do with each other.
+/// Beyond this many resolutions markers have nothing to do with each other.
 const FAR: f64 = 2.0;
 /// How much farther than a pose markers are looked from to tell whether any merge near it.
 const ROOM: f64 = 1.5;

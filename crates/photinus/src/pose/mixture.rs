@@ -7,7 +7,7 @@ use crate::ranging::{Estimate, Interval};
 
 /// Most slices that one mode stands for: their valley is straight over so short a stretch.
 const SLICES_PER_MODE: usize = 3;
-/// A component is at most so many sigma beyond the bounds.
+/// A component is at most this many sigma beyond the bounds.
 const FARTHEST_SIGMAS: f64 = 2.0;
 /// Modes with less weight are not told.
 const NEGLIGIBLE: f64 = 1e-3;

@@ -65,7 +65,7 @@ impl Symmetry {
         self.turns_with_signals
     }
 
-    /// How many turns signals tell apart: the first so many, at least 1.
+    /// How many turns signals tell apart: the first this many, at least 1.
     pub(crate) fn told_apart(&self) -> usize {
         self.turns / self.turns_with_signals
     }

@@ -9,7 +9,7 @@ use crate::camera::Bearing;
 /// Light at which a marker is found half of the time when nothing tells what is faintest, 1 being one LED straight ahead.
 const FAINTEST_SHARE: f64 = 0.15;
 
-/// The odds of finding a marker whose light is so many times that at which they are even. On rendered frames 39, 71, 86, 96
+/// The odds of finding a marker whose light is this many times that at which they are even. On rendered frames 39, 71, 86, 96
 /// and 99 % are found at 0.9, 1.1, 1.3, 1.6 and 1.9 times.
 fn odds(times: f64) -> f64 {
     let cube = times * times * times;
@@ -40,7 +40,7 @@ impl Problem<'_> {
             let lit = self.known.visible.lit.get(marker).copied().unwrap_or(1.0);
             let found = lit * (1.0 - self.settings.missed) * probability(odds(shines / half));
             if self.is_used(marker) {
-                // How seldom what is too faint is found was never measured: no more seldom than what is bright is missed.
+                // How rarely a marker that is too faint is found all the same was never measured: it is taken to be no rarer than that a bright one is missed.
                 return -libm::log(found.max(self.settings.missed.max(1e-9)));
             }
             if !self.is_watched(pose, marker) {

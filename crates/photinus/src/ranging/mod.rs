@@ -3,7 +3,7 @@
 //! Bearings to markers and the areas of their spots enter; distances from the camera's centre to the
 //! airframe's origin leave, in four kinds that are never mixed:
 //!
-//! - [`SpotCurve`]: how near or far a spot of so many pixels can be (paper (13), inverted);
+//! - [`SpotCurve`]: how near or far a spot of this many pixels can be (paper (13), inverted);
 //! - [`AdjacentPair`] and [`Margins`](margins::Margins): the paper's two estimates for a ring seen from the
 //!   side, (5) to (12);
 //! - [`DistanceBounds`]: strict bounds for any airframe, attitude and subset of its markers;

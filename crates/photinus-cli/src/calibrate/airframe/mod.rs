@@ -34,7 +34,7 @@ may be off by centimetres: from it come the axes and lobes of the LEDs, the body
 frame, and without --distance the scale. Take a dozen photos or more from all
 around and from above, with four LEDs or more in each.";
 
-/// Standard deviation of a place that says none, px: only its ratio to others matters.
+/// Standard deviation of a place whose row gives none, px: only its ratio to others matters.
 const SIGMA_PX: f64 = 1.0;
 
 /// Calibrate where the LEDs of an airframe sit

@@ -29,7 +29,7 @@ in the body frame, the camera's place is found as well. A column sigma_px may
 say how sure each row is. Spread the markers over the image; ten or more, of
 which a few may be wrong.";
 
-/// Standard deviation of a place that says none, px: only its ratio to others matters.
+/// Standard deviation of a place whose row gives none, px: only its ratio to others matters.
 const SIGMA_PX: f64 = 1.0;
 
 /// Calibrate how a camera sits on its vehicle

@@ -21,7 +21,7 @@ use crate::terminal::Terminal;
 const GATE_PX: f64 = 3.0;
 /// Places within a pixel are told apart on a raster of 4 x 4.
 const RASTER: usize = 4;
-/// Of 16 places, so many must have been seen.
+/// Of 16 places, this many must have been seen.
 const ENOUGH_PLACES: usize = 12;
 
 /// Areas of one exposure.

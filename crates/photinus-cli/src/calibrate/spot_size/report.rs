@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 
 use super::recordings::Recording;
 
-/// So many outliers are listed.
+/// This many outliers are listed.
 const LISTED: usize = 8;
 
 /// The text for the terminal.

@@ -20,7 +20,7 @@ use crate::scenario::Scenario;
 
 /// A name is taken for right from this probability on.
 const SURE_NAME: f64 = 0.9;
-/// What a tilt of neighbours that is larger than their autopilots ask for: overshoot, and the own tilt's error.
+/// By how much neighbours tilt more than their autopilots ask for: overshoot, and the error of the own tilt.
 const TILT_MARGIN_RAD: f64 = 0.15;
 /// Gyros are never trusted beyond this, rad/s.
 const LEAST_TURN_RAD_S: f64 = 1e-3;

@@ -1,8 +1,8 @@
 //! What stands in for frames when there are too many of them: who is in view is told with errors drawn from a table.
 //!
 //! For each neighbour in view: whether it is followed is a chain of two states whose shares and lengths are those of the table; its errors are processes of
-//! Ornstein and Uhlenbeck with the table's sigmas, so that they last as long as those of tracks do. docs/swarm.md holds it against rendered frames that it was
-//! not fitted to.
+//! Ornstein and Uhlenbeck with the table's sigmas, so that they last as long as those of tracks do. docs/swarm.md compares it with rendered frames that it was not
+//! fitted to.
 
 mod sampling;
 pub(crate) mod table;
@@ -50,7 +50,7 @@ struct Followed {
     bounds: [f64; 2],
 }
 
-/// A neighbour that nobody is.
+/// A phantom: a neighbour where no vehicle is.
 #[derive(Clone, Copy, Debug)]
 struct Phantom {
     track: u64,
@@ -178,7 +178,7 @@ impl StandIn {
         }
     }
 
-    /// Neighbours that nobody is, as rendered frames have them now and then.
+    /// Phantoms, as rendered frames have them now and then.
     fn imagine(&mut self, looking: &Looking<'_>, moment: &Moment<'_>, seen: &mut Vec<Seen>) {
         let Self { table, chance, period_s, .. } = self;
         self.phantoms.retain(|phantom| phantom.until_s > moment.time_s);
@@ -246,7 +246,7 @@ fn told_covariance(cell: &Cell, mean: &Vector3<f64>) -> Matrix3<f64> {
     part(along, range_m) + part(left, across_m) + part(up, across_m)
 }
 
-/// Bounds about the true distance: they hold but for the share that the table has them broken.
+/// Bounds about the true distance: they hold except in the share of cases in which the table says that they are broken.
 fn bounds(cell: &Cell, followed: &Followed, distance_m: f64) -> Interval {
     let [low, high] = followed.bounds;
     // a standard normal number as a number from 0 to 1, so that nothing more is drawn

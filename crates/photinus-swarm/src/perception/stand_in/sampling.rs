@@ -33,7 +33,7 @@ impl Sampling {
         self.followed_since.clear();
     }
 
-    /// Takes a frame, after everybody looked. Instruments should be without error: what they err is none of the eyes'.
+    /// Takes a frame, after everybody looked. Instruments should be without error: their errors are not those of the eyes.
     pub fn take(&mut self, world: &World) {
         let period_s = world.scenario().period_s();
         self.lit = world.scenario().codes.as_ref().map_or(1.0, lit);

@@ -93,7 +93,7 @@ pub struct Cell {
     pub estimates: [f64; 2],
     /// Median bound of the bearing, rad.
     pub bearing_bound_rad: f64,
-    /// Share of tells that this very frame showed, of frames in which LEDs shine.
+    /// Share of reports that this very frame showed, of frames in which LEDs shine.
     pub fresh: f64,
 }
 
@@ -115,9 +115,9 @@ pub struct Following {
 pub struct StandInTable {
     /// Time from when a vehicle is followed until its word is read, s.
     pub name_s: f64,
-    /// Neighbours that nobody is, per camera and second.
+    /// Phantoms per camera and second.
     pub phantoms_per_s: f64,
-    /// How long such a one is told, s.
+    /// How long a phantom is reported, s.
     pub phantom_lasts_s: f64,
     /// By class of markers, then by bin of distance.
     pub error: Vec<Vec<Cell>>,
@@ -150,7 +150,7 @@ impl StandInTable {
         Err(photinus_io::Error::format(path, reason).advise("fit it anew"))
     }
 
-    /// Errors at a distance with so many markers.
+    /// Errors at a distance with this many markers.
     pub fn errors(&self, distance_m: f64, markers: usize) -> &Cell {
         &self.error[class(markers)][bin(distance_m)]
     }
@@ -174,7 +174,7 @@ fn bin(distance_m: f64) -> usize {
     EDGES_M.iter().filter(|edge_m| distance_m > **edge_m).count()
 }
 
-/// Fits a table. `phantoms` are how many neighbours were told that nobody is, for how many seconds in all, and how many seconds all cameras looked together;
+/// Fits a table. `phantoms` are how many neighbours were reported where no vehicle was, for how many seconds in all, and how many seconds all cameras looked together;
 /// `names_s` are the times until words were read; LEDs shone for the share `lit` of the time.
 pub(crate) fn fit(
     samples: &[Sample],

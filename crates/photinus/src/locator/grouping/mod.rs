@@ -22,7 +22,7 @@ use crate::pose::LogLight;
 use partition::{MOST_PARTITIONED, Partition};
 use tree::Tree;
 
-/// Groups of so many spots tell their distance and so the light of their LEDs.
+/// Groups of this many spots tell their distance and so the light of their LEDs.
 pub(super) const CLEAR_SPOTS: usize = 3;
 /// A group that is less likely clutter than this by a first look tells the light of the LEDs.
 const CLEAR_SHARE: f64 = 0.02;
@@ -127,13 +127,13 @@ impl Groups {
         }
     }
 
-    /// Supposes that every one of so many observations is as likely clutter.
+    /// Supposes that every one of this many observations is as likely clutter.
     pub(super) fn suppose(&mut self, observations: usize, share: f64) {
         self.clutter.clear();
         self.clutter.resize(observations, share);
     }
 
-    /// Weighs that look against clutter of this density, where so many neighbours are per sr. Returns the logarithm of the density of all
+    /// Weighs that look against clutter of this density, where this many neighbours are per sr. Returns the logarithm of the density of all
     /// observations.
     pub(super) fn weigh_looks(&mut self, clutter_log_density: &[f64], log_neighbours: f64) -> f64 {
         let mut total = 0.0;

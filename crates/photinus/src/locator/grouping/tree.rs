@@ -4,7 +4,7 @@ use crate::locator::context::Context;
 use crate::locator::kinds::Kinds;
 use crate::locator::matching::{IMPOSSIBLE, NEIGHBOUR_NATS};
 
-/// A spot is joined to so many of the nearest, and to as many as one neighbour shows.
+/// A spot is joined to this many of the nearest, and to as many as one neighbour shows.
 const FEWEST_LINKS: usize = 16;
 
 /// Trees over the sightings of a frame: spots are leaves, every branch joins the two that are nearest.

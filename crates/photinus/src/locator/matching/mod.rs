@@ -31,16 +31,16 @@ use triples::Triples;
 
 /// What a neighbour costs, nats: fewer neighbours are the better explanation.
 pub(super) const NEIGHBOUR_NATS: f64 = 8.0;
-/// A view that costs so much more than the best one, nats, is no first guess of a pose. Views are a coarse grid, and what
+/// A view that costs this much more than the best one, nats, is no first guess of a pose. Views are a coarse grid, and what
 /// they cost as coarse.
 const POOR_NATS: f32 = 9.0;
 /// How far the grid of views leaves the logarithm of a light from the nearest one's.
 const LOG_FLUX_GRID: f64 = 0.25;
 /// Light alone does not rule a neighbour out.
 const MOST_POWER_NATS: f64 = 30.0;
-/// An outline that costs so much, nats, may be that of a neighbour that is not seen whole.
+/// An outline that costs this much, nats, may be that of a neighbour that is not seen whole.
 const POOR_OUTLINE_NATS: f64 = 6.0;
-/// So many spots have closed forms.
+/// This many spots have closed forms.
 const FEWEST_IN_PART: usize = 3;
 /// What cannot be, nats.
 pub(super) const IMPOSSIBLE: f64 = 1e9;

@@ -113,7 +113,7 @@ impl Ordered {
         let per_spot = 1.0 / self.count as f64;
         // How much nearer each marker is matters in the second order only: a distance as from afar will do for that.
         let far_m = size_m / image.size + ahead_m.iter().take(self.count).sum::<f64>() * per_spot;
-        // Nearer than a few radii perspective is no correction any more, and the match none that counts.
+        // Within a few radii perspective is more than a correction, and such a match does not count.
         let larger: [f64; MOST_ORDERED] = ahead_m.map(|ahead_m| far_m / (far_m - ahead_m).max(0.3 * far_m));
         let place_m: [Vector2<f64>; MOST_ORDERED] =
             std::array::from_fn(|spot| shape[spot] * (size_m * larger[spot]));

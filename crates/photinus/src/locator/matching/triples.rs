@@ -13,9 +13,9 @@ use crate::pose::{Pose, Symmetry, p3p_with_near_misses};
 
 /// Most choices of three markers in an order: the time of a group is bounded.
 const MOST_CHOICES: usize = 130;
-/// Three spots with noise tell where the others must be to so many sigma.
+/// Three spots with noise tell where the others must be to this many sigma.
 const SIGMAS: f64 = 3.0;
-/// A spot farther from every marker, nats, is none of them.
+/// A spot farther than this from every marker, nats, is none of the markers.
 const FAR_NATS: f64 = 12.0;
 
 /// Choices of three markers, one of each handful that symmetry makes equal.

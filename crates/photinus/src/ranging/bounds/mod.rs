@@ -47,7 +47,7 @@ impl DistanceBounds {
     pub const DEFAULT_MAX_TILT_RAD: f64 = core::f64::consts::PI / 12.0;
 
     /// Tabulates what `airframe` can show. `max_tilt_rad` is the largest angle of its z axis to the vertical;
-    /// a number that is none (negative or not a number) counts as pi, any attitude.
+    /// a value that is not an angle (negative or not a number) counts as pi, any attitude.
     pub fn new(airframe: &Airframe, max_tilt_rad: f64) -> Self {
         Self {
             table: Table::of(airframe),

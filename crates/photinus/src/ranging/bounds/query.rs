@@ -145,7 +145,7 @@ fn rows_within(lo_rad: f64, hi_rad: f64) -> Option<(usize, usize)> {
     (lo_rad <= hi_rad && hi_rad >= -FRAC_PI_2 && lo_rad <= FRAC_PI_2).then(|| (row(lo_rad), row(hi_rad)))
 }
 
-/// A bound or limit on an angle, rad; pi, nothing known, for a number that is none.
+/// A bound or limit on an angle, rad; pi, nothing known, for a value that is not an angle.
 pub(super) fn known_angle_rad(angle_rad: f64) -> f64 {
     if angle_rad >= 0.0 { angle_rad.min(PI) } else { PI }
 }

@@ -24,7 +24,7 @@ const GAIN_OF_REACH: f64 = 0.0075;
 /// ... until the pairs looked at in one row and column reach this number.
 const PAIR_BUDGET: usize = 4_000;
 
-/// Bounds of distance times angle, m, over a box of camera places; `lo` above `hi` where so many markers
+/// Bounds of distance times angle, m, over a box of camera places; `lo` above `hi` where that many markers
 /// never show.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Extents {
@@ -127,7 +127,7 @@ impl Table {
         self.columns[COLUMNS - 1].min_m
     }
 
-    /// For so many spots, 2 or more: each column with its extents in any row and by row.
+    /// For this many spots, 2 or more: each column with its extents in any row and by row.
     pub(super) fn of_spots(&self, spots: usize) -> impl Iterator<Item = (&Column, &Extents, &[Extents])> {
         let size = spots.min(self.any_row.len() / COLUMNS + 1) - 2;
         let any_row = &self.any_row[size * COLUMNS..][..COLUMNS];

@@ -48,7 +48,7 @@ pub(crate) fn ln(numbers: Lanes) -> Lanes {
     let s = (m - Lanes::ONE) / (m + Lanes::ONE);
     let q = s * s;
     let [a, b, c, d] = [2.0, 2.0 / 3.0, 2.0 / 5.0, 2.0 / 7.0].map(Lanes::splat);
-    exponent * Lanes::splat(std::f32::consts::LN_2) + s * (a + q * (b + q * (c + q * d)))
+    exponent * Lanes::splat(core::f32::consts::LN_2) + s * (a + q * (b + q * (c + q * d)))
 }
 
 /// e^x for x from -80 to 0, to 3e-7 of it; e^-80 below.
@@ -59,7 +59,7 @@ pub(crate) fn exp(numbers: Lanes) -> Lanes {
     let x = numbers.fast_max(Lanes::splat(-80.0));
     // Adding and taking away 1.5 x 2^23 rounds to the nearest whole number.
     let whole = Lanes::splat(12_582_912.0);
-    let n = (x * Lanes::splat(std::f32::consts::LOG2_E) + whole) - whole;
+    let n = (x * Lanes::splat(core::f32::consts::LOG2_E) + whole) - whole;
     // ln 2 in two parts, the first of few bits: n times it is exact.
     let f = (x - n * Lanes::splat(0.693_359_4)) - n * Lanes::splat(-2.121_944_4e-4);
     let terms = [1.0 / 720.0, 1.0 / 120.0, 1.0 / 24.0, 1.0 / 6.0, 0.5, 1.0, 1.0];

@@ -31,13 +31,24 @@
 //! ```
 //!
 //! No files, threads, clocks or printing happen here. Transcendental functions come from the `libm`
-//! crate, because those of the C library give other last bits on other processors.
+//! crate, because those of the C library give other last bits on other processors. Without the feature `std` (on by
+//! default) the crate asks for an allocator and for no operating system, with the same bits.
+
+#![cfg_attr(not(test), no_std)]
+#![cfg_attr(
+    test,
+    allow(unused_imports, reason = "under test the standard library is there and stands in front")
+)]
+
+extern crate alloc;
 
 /// The linear algebra of the interface, in the version that it is built with.
 pub use nalgebra;
 
 pub mod airframe;
 pub mod camera;
+#[cfg(not(feature = "std"))]
+mod float;
 pub mod following;
 pub mod frame;
 pub mod identity;

@@ -1,7 +1,7 @@
 //! How the light of an LED falls off to the side: a law, or a table of intensities.
 
+use alloc::sync::Arc;
 use core::f64::consts::PI;
-use std::sync::Arc;
 
 /// How the light of an LED falls off with the angle to its axis.
 #[derive(Clone, Debug, PartialEq)]

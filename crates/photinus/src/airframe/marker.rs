@@ -1,5 +1,8 @@
 //! LEDs that a camera cannot tell apart: one marker, one spot.
 
+use alloc::vec;
+use alloc::vec::Vec;
+
 use nalgebra::Vector3;
 
 use super::Led;

@@ -11,6 +11,9 @@ mod marker;
 mod ring;
 mod symmetry;
 
+use alloc::string::String;
+use alloc::vec::Vec;
+
 use nalgebra::Vector3;
 
 pub use error::AirframeError;

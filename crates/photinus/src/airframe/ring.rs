@@ -1,5 +1,6 @@
 //! Arms at equal angles around the body's z axis: how most multirotors carry their markers.
 
+use alloc::vec::Vec;
 use core::f64::consts::{PI, TAU};
 
 use nalgebra::{Unit, Vector3};

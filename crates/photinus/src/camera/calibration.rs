@@ -4,12 +4,17 @@
 //! bearing at a pixel a little. What an error turns over the whole field alike is taken out: it turns the camera's
 //! frame, and that frame is fixed by the mounting calibration, which is made with the same camera file and takes the turn in.
 
+use alloc::vec;
+use alloc::vec::Vec;
+
 use nalgebra::{DMatrix, Matrix3, Matrix3x2, Vector2, Vector3};
 
 use super::error::{CameraError, finite};
 use super::field::Field;
 use super::radial::{AtRadius, Radial};
 use super::{Camera, KannalaBrandt, Model, OCam, Pixel};
+#[cfg(not(feature = "std"))]
+use crate::float::Float as _;
 
 /// Most parameters of a model: the coefficients of an OCam polynomial, its centre and its stretch matrix.
 const MOST_PARAMETERS: usize = OCam::MAX_COEFFICIENTS + 6;

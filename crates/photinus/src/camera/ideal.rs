@@ -1,12 +1,14 @@
 //! Lenses with a law in place of a polynomial: what a data sheet says, and what the paper uses (phi = k r).
 
-use std::f64::consts::{FRAC_PI_2, PI};
+use core::f64::consts::{FRAC_PI_2, PI};
 
 use super::Pixel;
 use super::error::CameraError;
 use super::inverse::Inverse;
 use super::plane::Plane;
 use super::radial::{AtAngle, AtRadius, End, Radial, Reach};
+#[cfg(not(feature = "std"))]
+use crate::float::Float as _;
 
 /// A law between the angle theta off the axis and the radius r, in focal lengths.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

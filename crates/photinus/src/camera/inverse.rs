@@ -1,5 +1,8 @@
 //! The inverse of a rising function that has no closed form: a table to start from, Newton to finish, a bracket for safety.
 
+use alloc::vec;
+use alloc::vec::Vec;
+
 /// Where a root lies, and where to start looking for it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Bracket {

@@ -1,6 +1,6 @@
 //! The fisheye model of OpenCV, Kalibr ("equidistant") and ROS: a polynomial of the angle.
 
-use std::f64::consts::PI;
+use core::f64::consts::PI;
 
 use super::Pixel;
 use super::error::{CameraError, finite};

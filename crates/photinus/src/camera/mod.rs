@@ -25,7 +25,7 @@ mod radial;
 mod tests;
 mod watched;
 
-use std::sync::Arc;
+use alloc::sync::Arc;
 
 use nalgebra::{Matrix2, Matrix2x3, Matrix3, Matrix3x2};
 
@@ -38,6 +38,8 @@ pub use ocam::OCam;
 pub use pinhole::Pinhole;
 pub use watched::Watched;
 
+#[cfg(not(feature = "std"))]
+use crate::float::Float as _;
 use crate::frame::FrameView;
 use crate::optics::Optics;
 use calibration::Calibration;
@@ -88,7 +90,7 @@ impl Camera {
             return Err(CameraError::Size { width_px, height_px });
         }
         if let Some(value_rad) =
-            field_limit_rad.filter(|limit| !(*limit > 0.0 && *limit <= std::f64::consts::PI))
+            field_limit_rad.filter(|limit| !(*limit > 0.0 && *limit <= core::f64::consts::PI))
         {
             return Err(CameraError::FieldLimit { value_rad });
         }

@@ -1,6 +1,7 @@
 //! Scaramuzza's omnidirectional model as OCamCalib writes it: z(r), a polynomial of any degree.
 
-use std::f64::consts::PI;
+use alloc::vec::Vec;
+use core::f64::consts::PI;
 
 use nalgebra::Matrix2;
 
@@ -10,6 +11,8 @@ use super::inverse::{Bracket, Inverse};
 use super::plane::Plane;
 use super::polynomial::{first_not_positive, value_and_slope};
 use super::radial::{AtAngle, AtRadius, End, Radial, Reach};
+#[cfg(not(feature = "std"))]
+use crate::float::Float as _;
 
 /// D. Scaramuzza, A. Martinelli, R. Siegwart, "A Flexible Technique for Accurate Omnidirectional Camera Calibration
 /// and Structure from Motion", ICVS 2006.

@@ -1,6 +1,8 @@
 //! The ordinary camera: a pinhole with Brown-Conrady distortion, as OpenCV and ROS ("plumb_bob",
 //! "rational_polynomial") write it. The one model that does not reach 90 deg.
 
+use alloc::vec;
+
 use nalgebra::{Matrix2, Matrix2x3, Matrix3, Matrix3x2, Vector2, Vector3};
 
 use super::Pixel;
@@ -23,7 +25,7 @@ pub struct Pinhole {
 
 impl Pinhole {
     /// The farthest off the axis that a pinhole is followed: 89.9 deg.
-    const STEEPEST_RAD: f64 = 89.9 * std::f64::consts::PI / 180.0;
+    const STEEPEST_RAD: f64 = 89.9 * core::f64::consts::PI / 180.0;
 
     /// The model with focal lengths along u and v in px, about `centre`, with `radial` k1 to k6 (k4 to k6 divide) and
     /// `tangential` p1, p2.

@@ -4,6 +4,8 @@ use nalgebra::{Matrix2, Vector2};
 
 use super::Pixel;
 use super::error::{CameraError, finite};
+#[cfg(not(feature = "std"))]
+use crate::float::Float as _;
 
 /// The lens's plane, x along the columns and y along the rows from the optical centre, in units of the lens (px for
 /// OCam, focal lengths for the others).

@@ -1,5 +1,8 @@
 //! Polynomials in ascending powers: their value and slope, and a proof of where they stay positive.
 
+use alloc::vec;
+use alloc::vec::Vec;
+
 /// Value and slope of the polynomial at `x` (Horner).
 #[inline]
 pub(super) fn value_and_slope(ascending: &[f64], x: f64) -> (f64, f64) {

@@ -5,6 +5,8 @@ use nalgebra::{Matrix2, Matrix2x3, Matrix3x2, Vector2, Vector3};
 
 use super::field::Field;
 use super::inverse::Inverse;
+#[cfg(not(feature = "std"))]
+use crate::float::Float as _;
 
 /// The curve at a radius.
 pub(super) struct AtRadius {

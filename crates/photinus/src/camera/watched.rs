@@ -1,6 +1,8 @@
 //! The part of the world that is watched: what a camera shows and no mask hides.
 
 use super::{Bearing, Camera};
+#[cfg(not(feature = "std"))]
+use crate::float::Float as _;
 use crate::frame::Mask;
 
 /// Nearer to the image's border a spot may be cut off or missed, px.

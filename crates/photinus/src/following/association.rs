@@ -7,6 +7,8 @@
 //! Trans. AES 50(4), 2014): exact where the graph has no loop, near where it has, and each round costs no more than there are pairs,
 //! however large a cluster is; listing all ways grows beyond bounds with the cluster.
 
+use alloc::vec::Vec;
+
 /// Rounds of messages at most.
 const ROUNDS: usize = 60;
 /// Messages that change by less than this stand.

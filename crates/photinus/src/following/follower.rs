@@ -1,5 +1,7 @@
 //! A frame's sightings -> the marker tracks, moved on: a line per stage.
 
+use alloc::vec::Vec;
+
 use nalgebra::{Matrix2, Matrix3, Rotation3};
 
 use super::association::Association;

@@ -3,6 +3,8 @@
 //! Most tracks that begin are clutter and end within frames: what a new one sees is only kept, and is told to a listener once it is likely
 //! a marker.
 
+use alloc::vec::Vec;
+
 use crate::identity::Evidence;
 use crate::identity::decoder::{Decoder, Listener};
 

@@ -1,8 +1,12 @@
 //! What lies near a direction, without looking at everything: directions in the order of one of their axes.
 
+use alloc::vec::Vec;
+
 use nalgebra::{Matrix2, Vector3};
 
 use super::motion::{Motion, Offset};
+#[cfg(not(feature = "std"))]
+use crate::float::Float as _;
 use crate::locator::Sighting;
 
 /// Sightings so far from a track, in squared standard deviations, are not its own.

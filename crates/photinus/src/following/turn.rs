@@ -7,10 +7,14 @@
 //! Nothing tells a rotation of the observer from markers that all move as if it rotated: what rates have in common is taken for the observer's,
 //! and how unsure that leaves them is told.
 
+use alloc::vec::Vec;
+
 use nalgebra::{Matrix2, Matrix3, Matrix3x2, Rotation3, Vector2, Vector3};
 
 use super::Settings;
 use super::motion::{Motion, Offset};
+#[cfg(not(feature = "std"))]
+use crate::float::Float as _;
 
 /// How much of what the rotation leaves open beforehand widens the offsets, round by round.
 const ROUNDS: [f64; 4] = [1.0, 0.3, 0.03, 0.0];

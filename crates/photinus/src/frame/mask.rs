@@ -1,5 +1,7 @@
 //! Where not to look: the observer's own airframe, mostly.
 
+use alloc::vec::Vec;
+
 use super::{FrameError, FrameView};
 
 /// Pixels to ignore, in the size of the camera.

@@ -1,5 +1,7 @@
 //! A code book: the words that a fleet blinks.
 
+use alloc::vec::Vec;
+
 use super::Word;
 
 /// Words of one length; the index of a word is its id. At least one word.

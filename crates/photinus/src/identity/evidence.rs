@@ -113,6 +113,6 @@ pub(crate) fn probability_of_absence(limit: f64, sigma: f64, level: &Level) -> [
         if off.abs() > NEVER {
             return if off > 0.0 { 1.0 + level.surprise } else { level.surprise };
         }
-        0.5 * libm::erfc(-off / std::f64::consts::SQRT_2) + level.surprise
+        0.5 * libm::erfc(-off / core::f64::consts::SQRT_2) + level.surprise
     })
 }

@@ -1,6 +1,6 @@
 //! What a book truly has, whatever its name says.
 
-use std::collections::HashMap;
+use alloc::collections::BTreeMap;
 
 use super::{CodeBook, Word};
 
@@ -54,7 +54,7 @@ impl Properties {
 /// Whether equal windows of `bits` bits, begun anywhere, always have the same owner. A round tells all: words of one length that
 /// agree for a round agree for ever.
 fn each_window_has_one<O: PartialEq>(words: &[Word], bits: usize, owner: impl Fn(usize, usize) -> O) -> bool {
-    let mut owners: HashMap<u64, O> = HashMap::new();
+    let mut owners: BTreeMap<u64, O> = BTreeMap::new();
     let windows = words.iter().enumerate().flat_map(|(id, word)| {
         (0..word.length()).map(move |at| (word.turned(at).number() & (u64::MAX >> (64 - bits)), id, at))
     });

@@ -5,6 +5,7 @@
 //! whatever that looks like at first: what hardly shows is hardly told from afar. A look is taken once a frame; what it is worth changes as clutter
 //! is known better.
 
+use alloc::vec::Vec;
 use core::ops::Range;
 
 use super::context::Context;

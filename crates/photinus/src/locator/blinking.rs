@@ -1,5 +1,7 @@
 //! Markers that blink are dark now and then, and no single frame tells when.
 
+use alloc::vec::Vec;
+
 use crate::airframe::Airframe;
 
 /// Of the bits of a word this many are lit, about.

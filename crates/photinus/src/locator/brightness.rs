@@ -9,6 +9,8 @@ use core::cmp::Ordering;
 
 use super::Sighting;
 use super::cells::{ByCell, Cells};
+#[cfg(not(feature = "std"))]
+use crate::float::Float as _;
 use crate::pose::LogLight;
 use crate::spots::Spot;
 

@@ -1,5 +1,7 @@
 //! Groups of observations that may be a neighbour, each with its pose and how well it explains them: kept until the frame is explained as a whole.
 
+use alloc::vec::Vec;
+
 use super::neighbour::{Distance, Orientation, Position};
 use crate::camera::Bearing;
 use crate::pose::{Misfit, Mode};
@@ -98,7 +100,7 @@ impl Candidates {
     /// The candidates of just these observations, ascending: one of each kind at most.
     fn of<'a>(&'a self, group: &'a [usize]) -> impl Iterator<Item = &'a Candidate> {
         let last = group.first().and_then(|&first| self.last.get(first).copied().flatten());
-        let with_first = std::iter::successors(last, |&index| self.all[index].before);
+        let with_first = core::iter::successors(last, |&index| self.all[index].before);
         with_first.filter(move |&index| self.members(index) == group).map(|index| &self.all[index])
     }
 

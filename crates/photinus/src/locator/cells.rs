@@ -1,6 +1,10 @@
 //! An image that is divided into cells, to count what is in them and to find what is near.
 
+use alloc::vec::Vec;
+
 use super::Sighting;
+#[cfg(not(feature = "std"))]
+use crate::float::Float as _;
 
 /// Square cells over an image.
 #[derive(Clone, Copy, Debug)]

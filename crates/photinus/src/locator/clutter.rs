@@ -6,6 +6,9 @@
 //! together are clutter together or not at all: the first of them is as dense as what is around, each further one as if those before were clutter
 //! (a Poisson process whose rate is not known), and each gets the mean of the logarithms. A density is per sr and per unit of the logarithm of light.
 
+use alloc::vec;
+use alloc::vec::Vec;
+
 use super::Sighting;
 use super::cells::Cells;
 use super::companions::Companions;

@@ -3,10 +3,13 @@
 //! In: the observations of a frame. Out: of each, those near it, with how dense clutter is at it if the other one is clutter. Clumps have no scale of
 //! their own: a companion is as likely at any logarithm of distance, and about as bright.
 
+use alloc::vec::Vec;
 use core::f64::consts::{PI, TAU};
 
 use super::Sighting;
 use super::cells::{ByCell, Cells};
+#[cfg(not(feature = "std"))]
+use crate::float::Float as _;
 
 /// A point of clutter has this many companions.
 const COMPANIONS: f64 = 0.2;

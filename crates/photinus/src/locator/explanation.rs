@@ -4,6 +4,8 @@
 //! What has no candidate in common is explained apart; in each such part the weights of *all* explanations are added up (dynamic programming over
 //! subsets, as bit masks), which gives the probability of every candidate, and of every observation to be clutter.
 
+use alloc::vec::Vec;
+
 use super::candidates::Candidates;
 
 /// Most observations that are explained together.
@@ -143,7 +145,7 @@ impl Explanation {
             self.join(candidates, count);
             self.sort_into_parts(candidates);
             let last = round + 1 == HOPELESS.len();
-            let spots = std::mem::take(&mut self.spots);
+            let spots = core::mem::take(&mut self.spots);
             let mut rest = &spots[..];
             while let Some(&first) = rest.first() {
                 let of_part = |&spot: &usize| self.roots[spot] == self.roots[first];

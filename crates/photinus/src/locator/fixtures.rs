@@ -3,6 +3,7 @@
 //! In: of each frame its observations, and how likely each is clutter. Out: how dense clutter is at an observation for having been there before, and how
 //! much of it that explains: the rest is what comes and goes.
 
+use alloc::vec::Vec;
 use core::f64::consts::TAU;
 
 use super::Sighting;

@@ -12,6 +12,8 @@
 //! How dense clutter is and how many neighbours there are is told by the frame itself, with what [`Memory`] has of those before. Little clutter
 //! and much both bear themselves out (what is near clutter is clutter): both are tried, and what makes the frame likelier is right.
 
+use alloc::vec::Vec;
+
 use super::alternatives::{Alternatives, POOR_GAIN};
 use super::candidates::Candidates;
 use super::clutter::{Clutter, Counts, Surroundings};
@@ -117,10 +119,10 @@ impl Inference {
 
     /// Tells the neighbours behind the observations of `located`.
     pub(super) fn explain(&mut self, located: &mut Located, watched: Watched<'_>, input: &mut Input<'_>) {
-        let all = std::mem::take(&mut located.sightings);
+        let all = core::mem::take(&mut located.sightings);
         let (sightings, besides) = all.split_at(all.len().min(self.most()));
         self.besides.count(besides);
-        let mut near = std::mem::take(&mut self.near);
+        let mut near = core::mem::take(&mut self.near);
         near.sort(sightings);
         let context = Context {
             sightings,

@@ -2,6 +2,8 @@
 //!
 //! In: groups of observations. Out: how well a group is a neighbour of some kind, and a candidate for each kind that it may be.
 
+use alloc::vec::Vec;
+
 use super::Sighting;
 use super::candidates::Candidates;
 use super::context::Context;

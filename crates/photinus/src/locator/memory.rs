@@ -2,6 +2,9 @@
 //!
 //! In: of each frame its clutter, how many neighbours it has and the power of their LEDs. Out: the same over the last [`Memory::FRAMES`] frames.
 
+use alloc::vec;
+use alloc::vec::Vec;
+
 use crate::pose::LogLight;
 
 /// Spread of the logarithm of light between neighbours: lobes, units, the lens towards its edge.

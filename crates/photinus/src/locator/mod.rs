@@ -117,7 +117,7 @@ impl Locator {
         curve: Option<SpotCurve>,
         settings: Settings,
     ) -> Result<Self, LocatorError> {
-        if !(0.0..=std::f64::consts::PI).contains(&settings.max_tilt_rad) {
+        if !(0.0..=core::f64::consts::PI).contains(&settings.max_tilt_rad) {
             return Err(LocatorError::Tilt(settings.max_tilt_rad));
         }
         if !(0.0..=1.0).contains(&settings.min_probability) {

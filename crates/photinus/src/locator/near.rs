@@ -2,6 +2,8 @@
 //!
 //! Gaps are chords, rad for all that are near each other.
 
+use alloc::vec::Vec;
+
 use nalgebra::Vector3;
 
 use super::Sighting;

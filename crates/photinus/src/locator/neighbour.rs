@@ -1,5 +1,7 @@
 //! What is told of a frame: its observations, and its neighbours with their evidence.
 
+use alloc::vec::Vec;
+
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
 use super::Sighting;

@@ -1,5 +1,8 @@
 //! The paper's two estimates of distance, from the pair of neighbouring markers that is seen the widest.
 
+use alloc::vec;
+use alloc::vec::Vec;
+
 use nalgebra::Vector3;
 
 use super::Sighting;

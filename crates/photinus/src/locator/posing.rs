@@ -3,6 +3,7 @@
 //! In: the sightings of one group. Out: a candidate with its modes. The bounds are strict and come from
 //! [`crate::ranging::DistanceBounds`] and spot sizes alone; the posterior of [`crate::pose`] is cut off at them.
 
+use alloc::vec::Vec;
 use core::f64::consts::TAU;
 
 use nalgebra::{Matrix3, Unit, Vector3};
@@ -17,6 +18,8 @@ use super::neighbour::{Distance, Orientation, Position};
 use super::pairs::Pairs;
 use crate::airframe::Airframe;
 use crate::camera::Bearing;
+#[cfg(not(feature = "std"))]
+use crate::float::Float as _;
 use crate::pose::{
     self, Estimator, Hypotheses, Known, LogDistance, Observation, POWER_RANGE, Pose, Posterior,
     SettingsError, Summary, Visible,
@@ -93,7 +96,7 @@ impl Poser {
         let Some(bounds) = self.estimate(context, group, matcher) else { return };
         let markers = &self.estimator.posterior().markers;
         if markers.contains(&None) {
-            let mut within = std::mem::take(&mut self.within);
+            let mut within = core::mem::take(&mut self.within);
             within.clear();
             within.extend(
                 group.iter().zip(markers).filter(|(_, marker)| marker.is_some()).map(|(&spot, _)| spot),

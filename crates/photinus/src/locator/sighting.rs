@@ -56,7 +56,7 @@ pub(super) fn sight(
         bearing,
         covariance_rad2: spot_covariance_rad2 + calibration,
         spot_covariance_rad2,
-        bound_rad: (farthest_px(spot) * rad_per_px * SCALE_CHANGE).min(std::f64::consts::PI),
+        bound_rad: (farthest_px(spot) * rad_per_px * SCALE_CHANGE).min(core::f64::consts::PI),
         range: curve.and_then(|curve| curve.distances(spot.area_px.max(1))),
     })
 }

@@ -4,11 +4,15 @@
 //! neighbour, seen by more or fewer of its markers: they add to its probability, widen its covariance and stand among its modes. Those at another
 //! place are what it may be otherwise.
 
+use alloc::vec::Vec;
+
 use nalgebra::Matrix3;
 
 use super::candidates::Candidates;
 use super::explanation::Explanation;
 use super::neighbour::{Located, Neighbour, Position, RunnerUp};
+#[cfg(not(feature = "std"))]
+use crate::float::Float as _;
 use crate::pose::Mode;
 use crate::ranging::{Estimate, Interval};
 

@@ -5,11 +5,14 @@
 //! shows, for groups too large to be put in order. Both are in metres in the image plane of the far camera (x right,
 //! y up), with "up" that of the body.
 
-use std::f64::consts::{PI, TAU};
+use alloc::vec::Vec;
+use core::f64::consts::{PI, TAU};
 
 use nalgebra::{Vector2, Vector3};
 
 use crate::airframe::Airframe;
+#[cfg(not(feature = "std"))]
+use crate::float::Float as _;
 use crate::lanes::{LANES, Lanes};
 use crate::pose::Symmetry;
 
@@ -148,12 +151,12 @@ impl Arrangements {
 
     fn pack(&mut self) {
         let number = |four: &[Arrangement], of: &dyn Fn(&Arrangement) -> f64| {
-            Lanes::new(std::array::from_fn(|lane| of(&four[lane]) as f32))
+            Lanes::new(core::array::from_fn(|lane| of(&four[lane]) as f32))
         };
         let pack = |four: &[Arrangement]| Quad {
-            x: std::array::from_fn(|spot| number(four, &|a| a.shape[spot].x)),
-            y: std::array::from_fn(|spot| number(four, &|a| a.shape[spot].y)),
-            log_intensity: std::array::from_fn(|spot| number(four, &|a| a.log_intensity[spot])),
+            x: core::array::from_fn(|spot| number(four, &|a| a.shape[spot].x)),
+            y: core::array::from_fn(|spot| number(four, &|a| a.shape[spot].y)),
+            log_intensity: core::array::from_fn(|spot| number(four, &|a| a.log_intensity[spot])),
             nats: number(four, &|a| a.unseen_nats - a.log_prior),
             elevation_rad: number(four, &|a| a.elevation_rad),
             firmness: number(four, &|a| firmness(a.elevation_rad)),

@@ -1,5 +1,7 @@
 //! Which marker track belongs to which vehicle's track, as which of its markers: told by the sightings that both have, and kept while a marker is dark.
 
+use alloc::vec::Vec;
+
 use crate::following::{Follower, MarkerTrack};
 use crate::tracking::Tracked;
 

@@ -1,5 +1,7 @@
 //! Who there may be, and what each blinks.
 
+use alloc::vec::Vec;
+
 use crate::identity::CodeBook;
 
 /// Clocks of LEDs differ by no more than this share: one rate stands for all of them, and what is left is followed as a drift.

@@ -11,7 +11,7 @@
 //!
 //! ```no_run
 //! # use photinus::{locator::{self, Input, Locator}, lookout::{Glance, Lookout}, tracking, airframe::Airframe, camera::Camera, frame::FrameView};
-//! # fn see(camera: Camera, airframe: Airframe, frame: FrameView<'_>) -> Result<(), Box<dyn std::error::Error>> {
+//! # fn see(camera: Camera, airframe: Airframe, frame: FrameView<'_>) -> Result<(), Box<dyn core::error::Error>> {
 //! let settings = locator::Settings::default();
 //! let mut locator = Locator::new(camera.clone(), &airframe, None, settings)?;
 //! let mut lookout = Lookout::new(camera, &airframe, &settings, tracking::Settings::default(), None)?;
@@ -30,6 +30,8 @@ mod fleet;
 mod naming;
 #[cfg(test)]
 mod tests;
+
+use alloc::vec::Vec;
 
 use nalgebra::{Unit, Vector3};
 

@@ -9,6 +9,8 @@
 //! A marker track's own probabilities hold all that was heard of it: each enters once, as it stands, and not once per frame. Somebody who is in no list may
 //! blink the words of one who is, by mistake, so that nobody is ever sure beyond that; and where two blink the words of one vehicle, both are less than sure.
 
+use alloc::vec::Vec;
+
 use super::belonging::{Belonging, Belongings};
 use super::fleet::{Fleet, Vehicle};
 use crate::airframe::Airframe;
@@ -143,7 +145,7 @@ impl Naming {
     /// What a marker said that is no longer followed stays with its vehicle.
     pub(super) fn remember(&mut self, over: &Belonging) {
         let Some(place) = self.files.iter().position(|file| file.track == over.track) else { return };
-        let mut file = std::mem::take(&mut self.files[place]);
+        let mut file = core::mem::take(&mut self.files[place]);
         self.add(over, &mut file.remembered);
         settle(&mut file.remembered);
         file.remembered.iter_mut().for_each(|nats| *nats = nats.max(-REMEMBERED_NATS));
@@ -154,7 +156,7 @@ impl Naming {
     pub(super) fn name(&mut self, tracked: &Tracked, belongings: &Belongings) {
         self.open_files(tracked);
         for place in 0..self.files.len() {
-            let mut file = std::mem::take(&mut self.files[place]);
+            let mut file = core::mem::take(&mut self.files[place]);
             file.said.clone_from(&file.remembered);
             for own in belongings.of(file.track) {
                 self.add(own, &mut file.said);

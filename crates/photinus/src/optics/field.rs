@@ -1,5 +1,8 @@
 //! The point spread all over the image: a grid of zones.
 
+use alloc::vec;
+use alloc::vec::Vec;
+
 use super::{OpticsError, PointSpread, check};
 use crate::camera::Pixel;
 

@@ -1,6 +1,8 @@
 //! What a pixel makes of light: noise, where it is full, and where the excess goes.
 
 use super::{OpticsError, check};
+#[cfg(not(feature = "std"))]
+use crate::float::Float as _;
 
 /// A number with its standard deviation.
 #[derive(Clone, Copy, Debug, PartialEq)]

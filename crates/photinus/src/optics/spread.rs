@@ -5,7 +5,12 @@
 //! sorted by phase: all pixels of a window have the same phase, so that each of the 16 coefficients that make a value comes from a
 //! plane of its own, in which neighbouring pixels lie side by side.
 
+use alloc::vec;
+use alloc::vec::Vec;
+
 use super::{OpticsError, check, spline};
+#[cfg(not(feature = "std"))]
+use crate::float::Float as _;
 use crate::lanes::{LANES, Lanes};
 
 /// Samples per pixel: enough for a Gaussian of 0.3 px to a thousandth of its summit.
@@ -152,7 +157,7 @@ impl PointSpread {
         let mut room = [0.0; Self::SIDE];
         let mut line = [0.0; Self::SIDE];
         // Coefficients along rows first, in place of samples of a row; then along columns of those.
-        let mut table = std::mem::take(&mut self.table);
+        let mut table = core::mem::take(&mut self.table);
         table.clear();
         table.extend_from_slice(&self.samples);
         for row in table.chunks_exact_mut(side) {

@@ -1,5 +1,7 @@
 //! How much light passes a lens off its axis.
 
+use alloc::vec::Vec;
+
 use super::{OpticsError, check};
 
 /// Relative illumination: 1 on the axis, between the angles where it was measured straight lines.

@@ -5,6 +5,7 @@
 //! its best value. Their weights are the integrals over all but yaw (Laplace's method, as in nested integration). A mode whose
 //! yaw is certain is one normal distribution in all six.
 
+use alloc::vec::Vec;
 use core::f64::consts::{PI, TAU};
 
 use nalgebra::{Matrix3, SMatrix, Vector3};

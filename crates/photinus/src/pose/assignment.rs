@@ -1,5 +1,7 @@
 //! A pose -> which spot is which marker: the nearest, each marker once.
 
+use alloc::vec::Vec;
+
 use super::observation::Observation;
 use super::problem::Pose;
 use crate::airframe::Airframe;

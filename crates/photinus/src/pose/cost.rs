@@ -21,6 +21,8 @@ use super::light::Light;
 use super::merging::{LightCentre, Shining};
 use super::observation::{Observation, Whitened};
 use super::problem::{Normal, Pose, Problem};
+#[cfg(not(feature = "std"))]
+use crate::float::Float as _;
 
 /// Logarithm of 2 pi.
 const LOG_TAU: f64 = 1.837_877_066_409_345_5;

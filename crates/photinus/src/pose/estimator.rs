@@ -1,5 +1,6 @@
 //! Observations and hypotheses of one neighbour -> its posterior.
 
+use alloc::vec::Vec;
 use core::f64::consts::TAU;
 
 use super::along_yaw;
@@ -14,6 +15,8 @@ use super::refine::{Refined, following, refine, yaw_sigma_rad};
 use super::settings::{Settings, SettingsError};
 use super::symmetry::Symmetry;
 use crate::airframe::Airframe;
+#[cfg(not(feature = "std"))]
+use crate::float::Float as _;
 
 /// A mode this much worse than the best, nats, has no weight.
 const HOPELESS_NATS: f64 = 8.0;

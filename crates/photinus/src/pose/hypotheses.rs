@@ -1,5 +1,7 @@
 //! Which markers the spots may be, with a first guess of the pose of each assignment.
 
+use alloc::vec::Vec;
+
 use super::problem::Pose;
 
 /// The branch of starts whose assignment is not settled.

@@ -15,6 +15,8 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::problem::{Pose, Problem};
 use crate::airframe::Marker;
+#[cfg(not(feature = "std"))]
+use crate::float::Float as _;
 
 /// Radius of the window in resolutions.
 const WINDOW: f64 = 1.32;

@@ -2,6 +2,8 @@
 
 use super::light::Light;
 use super::problem::{Pose, Problem};
+#[cfg(not(feature = "std"))]
+use crate::float::Float as _;
 
 /// Squared residuals in units of their variance, summed, and how many of them are left when the pose is fitted.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -1,8 +1,12 @@
 //! Normal distributions with weights -> what is told: modes, mean and covariance, distance, all within the strict bounds.
 
+use alloc::vec::Vec;
+
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
 
 use super::problem::Pose;
+#[cfg(not(feature = "std"))]
+use crate::float::Float as _;
 use crate::ranging::{Estimate, Interval};
 
 /// Most slices that one mode stands for: their valley is straight over so short a stretch.

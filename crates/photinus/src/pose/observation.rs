@@ -3,6 +3,8 @@
 use nalgebra::{Matrix2x3, Matrix3, Vector3};
 
 use crate::camera::Bearing;
+#[cfg(not(feature = "std"))]
+use crate::float::Float as _;
 
 /// Variances of a direction are taken between these, rad^2: nothing is known to better than a millionth of a radian, and a
 /// sphere is no wider.

@@ -3,6 +3,8 @@
 use nalgebra::{Matrix5, Vector5, Vector6};
 
 use super::problem::{Normal, Pose, Problem};
+#[cfg(not(feature = "std"))]
+use crate::float::Float as _;
 
 /// Most steps towards a mode: sharp bearings make the valley of distance against yaw narrow, and the way along it long.
 const MOST_STEPS: usize = 80;

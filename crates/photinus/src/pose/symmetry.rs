@@ -1,5 +1,6 @@
 //! Turns about the body's z axis that leave an airframe as it was: yaw is told modulo these.
 
+use alloc::vec::Vec;
 use core::f64::consts::TAU;
 
 use nalgebra::{Rotation3, Vector3};

@@ -1,6 +1,8 @@
 //! Area of a spot -> the distances at which a spot of that area is possible.
 
 use super::Interval;
+#[cfg(not(feature = "std"))]
+use crate::float::Float as _;
 
 /// The area of a spot over distance, S(l) = round(offset + scale / (l + shift)^2): the form of the paper's
 /// (13).

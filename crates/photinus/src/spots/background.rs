@@ -9,6 +9,8 @@
 //! three quarters of all tiles exceed, each without its brightest columns, so that even a marker in every tile does not
 //! count as noise.
 
+use alloc::vec::Vec;
+
 use wide::u8x16;
 
 use super::settings::Brightness;
@@ -118,7 +120,7 @@ impl Background {
         for (medians, level) in self.scratch.as_flattened().chunks_exact(pitch).zip(levels) {
             let inner = columns.saturating_sub(4);
             if inner > 0 {
-                let near: [&[u8]; 5] = std::array::from_fn(|offset| &medians[offset..][..inner]);
+                let near: [&[u8]; 5] = core::array::from_fn(|offset| &medians[offset..][..inner]);
                 median_of_five(near, &mut level[2..columns - 2]);
             }
             for column in (0..columns.min(2)).chain((inner + 2).min(columns)..columns) {
@@ -145,7 +147,7 @@ impl Background {
 
 /// Where the bits of a number are set, from the lowest.
 fn set_bits(mut bits: u32) -> impl Iterator<Item = usize> {
-    std::iter::from_fn(move || {
+    core::iter::from_fn(move || {
         let lowest = (bits != 0).then(|| bits.trailing_zeros() as usize);
         bits &= bits.wrapping_sub(1);
         lowest
@@ -168,7 +170,7 @@ fn count_up_to(blocks: &[Block], most: u8) -> u32 {
 
 /// Five neighbours of `at` among `count`, itself in the middle; the last repeat past the ends.
 fn near(at: usize, count: usize) -> [usize; 5] {
-    std::array::from_fn(|offset| (at + offset).saturating_sub(2).min(count - 1))
+    core::array::from_fn(|offset| (at + offset).saturating_sub(2).min(count - 1))
 }
 
 fn median_of_five([a, b, c, d, e]: [&[u8]; 5], out: &mut [u8]) {

@@ -1,6 +1,7 @@
 //! The stages in order: read this first.
 
-use std::sync::Arc;
+use alloc::sync::Arc;
+use alloc::vec::Vec;
 
 use super::background::Background;
 use super::grouping::Components;

@@ -14,6 +14,8 @@
 use nalgebra::{Matrix2, SMatrix, SVector};
 
 use super::window::{Four, Spill, Window};
+#[cfg(not(feature = "std"))]
+use crate::float::Float as _;
 use crate::lanes::{self, Lanes};
 use crate::optics::{PointSpread, Shares};
 

@@ -4,7 +4,8 @@
 //! too wide for a window or fits no point spread. Point spread, noise and full level are those of the camera where they were measured, else
 //! what frames have told (`lessons`).
 
-use std::sync::Arc;
+use alloc::sync::Arc;
+use alloc::vec::Vec;
 
 use nalgebra::Matrix2;
 
@@ -21,6 +22,8 @@ use super::settings::{Brightness, Noise, Settings};
 use super::smear::{self, Smeared};
 use super::window::{Spill, WIDEST_PX, Window, nearest_pixel};
 use crate::camera::Pixel;
+#[cfg(not(feature = "std"))]
+use crate::float::Float as _;
 use crate::frame::FrameView;
 use crate::optics::{Measured, Optics, PointSpread, Sensor};
 

@@ -5,6 +5,8 @@
 //! are not full are as different as their light.
 
 use super::Extent;
+#[cfg(not(feature = "std"))]
+use crate::float::Float as _;
 use crate::frame::FrameView;
 
 /// Pixels within this share of a spot's brightest are its top; from there to the next its shoulder. A summit has more of a shoulder than
@@ -69,7 +71,7 @@ impl FullLevel {
     fn found(&self) -> Option<u8> {
         let highest = self.tops.iter().rposition(|&tops| tops > 0)?;
         let pile = (highest as f64 * (1.0 - PILE)) as usize;
-        let count = |of: &[u32; 256], levels: std::ops::Range<usize>| of[levels].iter().sum::<u32>();
+        let count = |of: &[u32; 256], levels: core::ops::Range<usize>| of[levels].iter().sum::<u32>();
         let (piled, below) = (count(&self.tops, pile..highest + 1), count(&self.tops, highest / 2..pile));
         let as_high = count(&self.spots, pile..256);
         if piled < FEWEST

@@ -3,7 +3,8 @@
 //! In: runs in raster order. Out: the same runs ordered by component, components in the order of their first pixel. One
 //! pass with union-find: two runs of neighbouring rows touch when they overlap by a pixel more on either side.
 
-use std::ops::Range;
+use alloc::vec::Vec;
+use core::ops::Range;
 
 use super::runs::Run;
 

@@ -4,6 +4,8 @@
 //! brightest least where it falls on that one's middle; a hot pixel gives them nothing. Where the point spread was measured, one frame tells
 //! that. Where it was not, cameras that cut off what is dark show real markers so, too: then a pixel is hot if it stands alone frame after frame.
 
+use alloc::vec::Vec;
+
 use super::fit::PixelNoise;
 use crate::optics::PointSpread;
 

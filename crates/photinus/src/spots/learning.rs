@@ -11,6 +11,8 @@ use super::fit::{PixelNoise, Shape, U, V, WIDTH};
 use super::noise_bins::NoiseBins;
 use super::settings::Noise;
 use super::window::Spill;
+#[cfg(not(feature = "std"))]
+use crate::float::Float as _;
 use crate::lanes::Lanes;
 use crate::optics::{Placed, PointSpread, Profile, Shares};
 
@@ -68,7 +70,7 @@ impl Belief {
             information,
             weighted: information * numbers,
             spread: PointSpread::dark(),
-            by_number: std::array::from_fn(|_| PointSpread::dark()),
+            by_number: core::array::from_fn(|_| PointSpread::dark()),
             noise: NoiseBins::new(noise),
         };
         belief.draw();
@@ -107,7 +109,7 @@ impl Belief {
 
     fn sigmas(&self) -> [f64; NUMBERS] {
         let covariance = self.information.try_inverse().unwrap_or_else(Information::zeros);
-        std::array::from_fn(|i| covariance[(i, i)].max(0.0).sqrt())
+        core::array::from_fn(|i| covariance[(i, i)].max(0.0).sqrt())
     }
 
     /// The spread with its numbers free.

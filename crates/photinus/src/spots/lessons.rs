@@ -9,6 +9,8 @@ use super::fitting::{Fitter, NO_POINT, SIZE_PX2, WIDEST_POINT_PX};
 use super::learning::{Belief, NUMBERS, Told};
 use super::neighbourhood::Neighbourhood;
 use super::part::Part;
+#[cfg(not(feature = "std"))]
+use crate::float::Float as _;
 use crate::frame::FrameView;
 
 /// Levels of full pixels that differ by no more are one, grey levels.

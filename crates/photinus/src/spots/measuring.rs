@@ -4,7 +4,8 @@
 //! where it fits one (`fitting`); what is wider, or of another shape, is centred by its wings (`wings`) or a
 //! balanced window (`centroid`).
 
-use std::sync::Arc;
+use alloc::sync::Arc;
+use alloc::vec::Vec;
 
 use nalgebra::Matrix2;
 

@@ -52,9 +52,13 @@ mod tiles;
 mod window;
 mod wings;
 
+use alloc::vec::Vec;
+
 use nalgebra::Matrix2;
 
 use crate::camera::Pixel;
+#[cfg(not(feature = "std"))]
+use crate::float::Float as _;
 use crate::optics::Measured;
 
 pub use detector::Detector;

@@ -3,8 +3,12 @@
 //! In: the centres and radii of all parts. Out: the room around each. Small parts are looked up in the cells of a grid, so
 //! that a frame of ten thousands of specks takes no longer per speck; the few large ones are gone through.
 
+use alloc::vec::Vec;
+
 use super::tiles::TILE_PX;
 use crate::camera::Pixel;
+#[cfg(not(feature = "std"))]
+use crate::float::Float as _;
 use crate::frame::FrameView;
 
 /// Radius above which a part is one of the few large ones, px.

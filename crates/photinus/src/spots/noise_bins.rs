@@ -7,6 +7,8 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::fit::PixelNoise;
 use super::settings::Noise;
+#[cfg(not(feature = "std"))]
+use crate::float::Float as _;
 
 /// What is believed of the variance of a pixel: the share of its light by which the point spread is wrong ...
 const SHAPE: f64 = 0.08;

@@ -8,6 +8,8 @@ use super::ledge;
 use super::rejection::{Outline, Reason};
 use super::runs::Run;
 use crate::camera::Pixel;
+#[cfg(not(feature = "std"))]
+use crate::float::Float as _;
 use crate::frame::{FrameView, Mask};
 
 /// Bright pixels that belong together.

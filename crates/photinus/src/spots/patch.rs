@@ -3,6 +3,8 @@
 //! In: the frame, a place and a reach. Out: the signal in a square window, in rows of whole lanes so that the sums over it
 //! vectorise alike on every machine, and the background with its noise from a frame of pixels around the window.
 
+use alloc::vec::Vec;
+
 use super::ring::{self, Sums};
 use crate::camera::Pixel;
 use crate::frame::FrameView;

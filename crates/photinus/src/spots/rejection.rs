@@ -2,11 +2,13 @@
 //!
 //! In: the outline of a part: its size, shape, saturation and how much of it is masked. Out: a reason, or none.
 
-use std::f64::consts::PI;
-use std::fmt;
+use core::f64::consts::PI;
+use core::fmt;
 
 use super::Extent;
 use super::settings::Shape;
+#[cfg(not(feature = "std"))]
+use crate::float::Float as _;
 
 /// A saturated core of this many pixels, 8 px wide, in something too large for a marker makes it the sun.
 const SUN_CORE_PX: u32 = 50;

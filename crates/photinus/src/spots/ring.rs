@@ -61,7 +61,7 @@ struct Columns {
 
 impl Columns {
     fn mask(&self) -> u8x16 {
-        let lanes = u8x16::new(std::array::from_fn(|lane| lane as u8));
+        let lanes = u8x16::new(core::array::from_fn(|lane| lane as u8));
         let [from, end] = [self.from, self.to + 1].map(|x| (x - self.first).clamp(0, LANES) as u8);
         let reaches = |least: u8| lanes.max(u8x16::splat(least)).simd_eq(lanes);
         reaches(from) & !reaches(end)
@@ -74,7 +74,7 @@ fn sixteen(row: &[u8], first: i32) -> u8x16 {
     let inside = usize::try_from(first).ok().and_then(|first| row.get(first..)?.first_chunk());
     u8x16::new(inside.copied().unwrap_or_else(|| {
         let pixel = |i: usize| usize::try_from(first + i as i32).ok().and_then(|u| row.get(u));
-        std::array::from_fn(|i| pixel(i).copied().unwrap_or(0))
+        core::array::from_fn(|i| pixel(i).copied().unwrap_or(0))
     }))
 }
 
@@ -111,7 +111,7 @@ impl LaneSums {
 
     /// Adds the lanes, the first in column `x`, to `sums`.
     fn add_up(&self, x: i16, sums: &mut Sums) {
-        let columns = [0, 8].map(|from| i16x8::new(std::array::from_fn(|lane| x + from + lane as i16)));
+        let columns = [0, 8].map(|from| i16x8::new(core::array::from_fn(|lane| x + from + lane as i16)));
         let times = |lanes: &[i16x8; 2], by: &[i16x8; 2]| total(lanes[0].dot(by[0]) + lanes[1].dot(by[1]));
         let ones = [i16x8::ONE; 2];
         let by_column = [self.count[0] * columns[0], self.count[1] * columns[1]];

@@ -3,6 +3,8 @@
 //! In: the frame and the thresholds of its tiles. Out: the runs in raster order. Only tiles that hold a bright pixel are
 //! looked at, tile by tile, and of those only the rows that do are gone through pixel by pixel.
 
+use alloc::vec::Vec;
+
 use wide::u8x16;
 
 use super::background::Background;
@@ -74,7 +76,7 @@ impl Runs {
         for (row, line) in self.rows.iter_mut().zip(lines) {
             let tile = line.first_chunk().copied().unwrap_or_else(|| {
                 let pixel = |i: usize| line.get(i).copied().unwrap_or(0);
-                std::array::from_fn(pixel)
+                core::array::from_fn(pixel)
             });
             let tile = u8x16::new(tile);
             let bright = tile.max(threshold).simd_eq(tile).to_bitmask() & own;

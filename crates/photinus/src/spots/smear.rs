@@ -3,6 +3,8 @@
 //! In: the spread of a point that stands still, and what the outline of a spot says of how far it moved. Out: the spread of one that moved
 //! evenly, whose place is that of the middle of the exposure; how far it moved along columns and rows are two more unknowns.
 
+use alloc::vec::Vec;
+
 use nalgebra::SVector;
 
 use super::fit::{self, Fitted, PointSource, Shape, U, V};
@@ -46,7 +48,7 @@ impl Fitter {
         if !self.is_smeared {
             return;
         }
-        let mut joined = std::mem::take(&mut self.joined);
+        let mut joined = core::mem::take(&mut self.joined);
         joined.clear();
         joined.extend(
             (0..split.len())

@@ -5,9 +5,13 @@
 //! only if its summit stands out of the saddle by more than noise and a mosaic of pixels that answer differently to light can
 //! explain. A saturated plateau has one summit: what lies inside it is not to be seen.
 
+use alloc::vec::Vec;
+
 use super::runs::Run;
 use super::settings::Noise;
 use super::summits::{self, LANES};
+#[cfg(not(feature = "std"))]
+use crate::float::Float as _;
 use crate::frame::FrameView;
 
 /// A summit must stand out of the saddle by this many sigma of its pixel noise...

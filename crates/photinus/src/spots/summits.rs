@@ -26,7 +26,7 @@ fn beside(row: &[u8], u: usize) -> [u8x16; 3] {
         return [sixteen(pixels), sixteen(&pixels[1..]), sixteen(&pixels[2..])];
     }
     let pixel = |u: usize| u.checked_sub(1).and_then(|u| row.get(u)).copied().unwrap_or(0);
-    [0, 1, 2].map(|from| u8x16::new(std::array::from_fn(|i| pixel(u + from + i))))
+    [0, 1, 2].map(|from| u8x16::new(core::array::from_fn(|i| pixel(u + from + i))))
 }
 
 #[cfg(test)]

@@ -4,6 +4,8 @@
 //! extremes are taken side by side, so that sixteen columns stay sixteen lanes of a register, and only then are the lanes of
 //! sixteen tiles folded, all at once. That costs what reading the frame costs.
 
+use alloc::vec::Vec;
+
 use wide::u8x16;
 
 use crate::frame::FrameView;
@@ -105,7 +107,7 @@ fn band_extremes<const LOW: bool>(frame: &FrameView<'_>, top: usize, high: &mut 
 fn whole_tiles<const LOW: bool>(pixels: &[u8], stride: usize, high: &mut [u8x16], low: &mut [u8x16]) {
     let tiles = high.len();
     let rows: [&[Block]; TILE_PX] =
-        std::array::from_fn(|v| &pixels[v * stride..][..tiles * TILE_PX].as_chunks().0[..tiles]);
+        core::array::from_fn(|v| &pixels[v * stride..][..tiles * TILE_PX].as_chunks().0[..tiles]);
     for (tile, (high, low)) in high.iter_mut().zip(&mut low[..tiles]).enumerate() {
         *high = highest(|v| u8x16::new(rows[v][tile]));
         if LOW {
@@ -142,13 +144,13 @@ fn row_by_row<'a>(
 #[inline(always)]
 fn last_columns(row: &[u8]) -> u8x16 {
     let last = row.last_chunk().copied();
-    u8x16::new(last.unwrap_or_else(|| std::array::from_fn(|i| row[i.min(row.len() - 1)])))
+    u8x16::new(last.unwrap_or_else(|| core::array::from_fn(|i| row[i.min(row.len() - 1)])))
 }
 
 /// Which of the last sixteen pixels of rows this long belong to the tile that the end of the row cuts.
 fn last_of_tile(width: usize) -> u8x16 {
     let is_own = |i: usize| width < TILE_PX || i + width % TILE_PX >= TILE_PX;
-    u8x16::new(std::array::from_fn(|i| if is_own(i) { u8::MAX } else { 0 }))
+    u8x16::new(core::array::from_fn(|i| if is_own(i) { u8::MAX } else { 0 }))
 }
 
 /// Folds the sixteen columns of each of sixteen tiles: to a byte per tile, in their order.
@@ -177,7 +179,7 @@ fn fold_once<const HALF: usize>(tiles: &mut [u8x16; TILE_PX], with: impl Fn(u8x1
 fn spread(columns: [u8x16; TILE_PX], darkest: u8x16) -> Block {
     let spread = brightest_without_markers(columns).saturating_sub(darkest).to_array();
     let darkest = darkest.to_array();
-    std::array::from_fn(|i| spread[i].saturating_add(if darkest[i] > 0 { 0 } else { spread[i] / 3 }))
+    core::array::from_fn(|i| spread[i].saturating_add(if darkest[i] > 0 { 0 } else { spread[i] / 3 }))
 }
 
 /// From the highest pixel of each column: the lowest of every fourth column, and of those four the second lowest. One marker

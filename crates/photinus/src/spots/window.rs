@@ -4,8 +4,12 @@
 //! them are full, and what other spots and overflown charge add to them. Rows are whole lanes, so that sums over them are the
 //! same on every machine.
 
+use alloc::vec::Vec;
+
 use super::patch::Surroundings;
 use crate::camera::Pixel;
+#[cfg(not(feature = "std"))]
+use crate::float::Float as _;
 use crate::frame::FrameView;
 use crate::lanes::{self, LANES, Lanes};
 use crate::optics::PointSpread;

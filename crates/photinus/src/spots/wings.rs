@@ -17,6 +17,8 @@ use nalgebra::{Matrix2, Matrix2x4, Matrix4, Vector4};
 use super::centroid::PixelVariance;
 use super::patch::Patch;
 use crate::camera::Pixel;
+#[cfg(not(feature = "std"))]
+use crate::float::Float as _;
 use crate::lanes::{self, Lanes};
 
 /// Pixels of the wings needed: twice the unknowns.

@@ -2,6 +2,8 @@
 //!
 //! A neighbour that is a vehicle's own spots, located again, is claimed and no news. The mixture of a neighbour's poses enters as it is.
 
+use alloc::vec::Vec;
+
 use nalgebra::Matrix3;
 
 use super::component::{Component, Covariance};

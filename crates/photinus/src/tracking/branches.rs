@@ -3,6 +3,8 @@
 //! Markers are looked for one after the other, the brightest first. What one of them tells of the pose sharpens the prediction of the next: errors of the
 //! markers of one vehicle are one error. Ways that fall behind are left out (beam search), so that the work is bounded.
 
+use alloc::vec::Vec;
+
 use nalgebra::{
     Matrix2, Matrix2x6, Matrix3, Matrix3x6, Matrix6, Matrix6x2, Rotation3, SVector, Vector2, Vector3,
 };
@@ -164,7 +166,7 @@ impl Branches {
         }
         let least = next.first().map_or(f64::NEG_INFINITY, |best| best.gain - HOPELESS_NATS);
         next.retain(|branch| branch.gain >= least);
-        std::mem::swap(all, next);
+        core::mem::swap(all, next);
     }
 }
 

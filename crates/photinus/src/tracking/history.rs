@@ -1,5 +1,7 @@
 //! The last frames with what was believed after each: a late frame takes its place among them, and all after it are gone through again.
 
+use alloc::vec::Vec;
+
 use super::Tracker;
 use super::error::TrackError;
 use super::look::{Look, Moment};

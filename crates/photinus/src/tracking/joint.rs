@@ -5,6 +5,8 @@
 //! association filter", IEEE Control Systems 29 (2009), for the events; dynamic programming in place of their list). Vehicles that have no spot in common
 //! are explained apart. Of sets, the likeliest are gone on with where there are too many.
 
+use alloc::vec::Vec;
+
 use super::settings::Association;
 
 /// Most sets of spots that are gone on with.
@@ -137,7 +139,7 @@ impl Joint {
             unseen[vehicle] = if total > 0.0 { none * scale } else { 1.0 };
             let own = of(vehicle);
             extend(backward, &choices[own.clone()], &weights[own], unseen_weights[vehicle], next);
-            std::mem::swap(backward, next);
+            core::mem::swap(backward, next);
         }
     }
 

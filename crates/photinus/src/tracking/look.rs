@@ -1,5 +1,7 @@
 //! What a frame brings: its time, how the camera turned, what was sighted and located, who blinks; and the copy of it that is kept for replays.
 
+use alloc::vec::Vec;
+
 use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 
 use super::error::TrackError;

@@ -1,5 +1,7 @@
 //! Many normal distributions of one vehicle -> few: those of no weight go, those that say the same become one, unless that is wider than is split again.
 
+use alloc::vec::Vec;
+
 use super::component::{Component, merged};
 use super::splitting::STRAIGHT_RAD;
 use super::state::MOST_COMPONENTS;

@@ -3,7 +3,11 @@
 //! Two spots leave a bent valley of distance against yaw; a Kalman update takes it for straight. Over a narrow stretch of yaw it is, so that updates see
 //! narrow stretches only, and weigh them against each other (a Gaussian sum: D. L. Alspach, H. W. Sorenson, IEEE Trans. Autom. Control 17 (1972)).
 
+use alloc::vec::Vec;
+
 use super::component::{Component, Covariance};
+#[cfg(not(feature = "std"))]
+use crate::float::Float as _;
 
 /// Over so wide a yaw, one standard deviation, rad, valleys are straight.
 pub(super) const STRAIGHT_RAD: f64 = 0.06;

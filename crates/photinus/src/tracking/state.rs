@@ -1,5 +1,7 @@
 //! What is believed after a frame: every vehicle, as a sum of normal distributions, with how likely it exists.
 
+use alloc::vec::Vec;
+
 use nalgebra::{Matrix3, Unit, Vector3};
 
 use super::component::Component;

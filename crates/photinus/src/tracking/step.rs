@@ -8,6 +8,8 @@
 //! appeared    located neighbours whose spots nobody claims             appearing
 //! ```
 
+use alloc::vec::Vec;
+
 use nalgebra::Matrix3;
 
 use super::Settings;

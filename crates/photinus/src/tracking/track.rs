@@ -1,5 +1,7 @@
 //! What is believed -> what is told: for each vehicle one mean and one covariance.
 
+use alloc::vec::Vec;
+
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
 use super::component::{Component, merged};

@@ -5,6 +5,8 @@ use super::Decoder;
 use super::listener::{Listener, Others, TimeStands};
 use super::phases;
 use super::window::{PLACES, Window};
+#[cfg(not(feature = "std"))]
+use crate::float::Float as _;
 
 /// What is less probable than this does not tell whether a marker shines.
 const NEGLIGIBLE: f64 = 1e-4;

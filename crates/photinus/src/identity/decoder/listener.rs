@@ -1,10 +1,15 @@
 //! What is known of one marker, and how a frame moves it on.
 
+use alloc::vec;
+use alloc::vec::Vec;
+
 use super::super::evidence::Evidence;
 use super::Decoder;
 use super::phases::{self, Step};
 use super::stranger::Stranger;
 use super::window::{PLACES, Window};
+#[cfg(not(feature = "std"))]
+use crate::float::Float as _;
 
 /// The time of a frame is not after that of the frame before: nothing was changed. A clock that was set back wants
 /// [`Decoder::restart`].

@@ -19,6 +19,8 @@ mod phases;
 mod stranger;
 mod window;
 
+use alloc::vec::Vec;
+
 use super::CodeBook;
 use phases::Signal;
 

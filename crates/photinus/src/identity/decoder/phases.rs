@@ -3,6 +3,8 @@
 //! A phase is a shift by whole bits and a place in the bit: a row of numbers for each place, a number for each shift. The grid moves
 //! along with the nominal clock, so that an LED on time stays where it is; one that is fast or slow steps to a neighbour now and then.
 
+use alloc::vec::Vec;
+
 use super::super::Word;
 use super::window::{PLACES, Window};
 use crate::lanes::{LANES, Lanes, sum};
@@ -45,7 +47,7 @@ pub(super) fn weigh(phases: &mut [f32], signal: &Signal, length: usize, step: &S
     let width = row(length);
     let (keep, share) = (Lanes::splat(step.keep), Lanes::splat(step.share));
     let last =
-        Lanes::new(std::array::from_fn(|lane| if width - LANES + lane < length { step.share } else { 0.0 }));
+        Lanes::new(core::array::from_fn(|lane| if width - LANES + lane < length { step.share } else { 0.0 }));
     let mut total = Lanes::ZERO;
     for (window, row) in step.windows.iter().zip(phases.chunks_exact_mut(width)) {
         let bits = &signal.0[window.bit..];

@@ -3,6 +3,9 @@
 //! Before anything is seen each of its bits is on or off with equal probability, apart from the others; so they stay, but for exposures
 //! that fall on two bits, where the tie between the two is left out. The probability of all 2^L words together is then a product.
 
+use alloc::vec;
+use alloc::vec::Vec;
+
 use super::super::evidence::Evidence;
 use super::phases::Signal;
 use super::window::{PLACES, Window};

@@ -23,7 +23,7 @@ impl Window {
     pub(super) fn all(base: f64, exposure_bits: f64, length: usize, evidence: &Evidence) -> [Self; PLACES] {
         let (off, on, inverted) = (evidence.off(), evidence.on(), evidence.inverted());
         let exposure = (exposure_bits as f32).clamp(1e-3, 1.0);
-        std::array::from_fn(|place| {
+        core::array::from_fn(|place| {
             let at = base + place as f64 / PLACES as f64;
             let whole = at as usize;
             let into = (at - whole as f64) as f32;

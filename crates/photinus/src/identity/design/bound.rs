@@ -5,8 +5,10 @@
 //! most `groups / m` words. Which groups to lay is a linear program, solved nearly by weights that fall as a candidate is covered
 //! (N. Young, "Randomized rounding without solving the linear program", SODA 1995). The bound holds however well it is solved.
 
-use std::cmp::Ordering;
-use std::collections::{BinaryHeap, HashMap};
+use alloc::collections::{BTreeMap, BinaryHeap};
+use alloc::vec;
+use alloc::vec::Vec;
+use core::cmp::Ordering;
 
 use super::super::Word;
 use super::candidates::Requirements;
@@ -33,7 +35,7 @@ pub(super) fn at_most(conflicts: &Conflicts, requirements: &Requirements, words:
 /// that differ from it in up to half of what is too close; when that is odd, one more bit of all is free.
 fn balls(requirements: &Requirements, words: &[Word]) -> Vec<Vec<u32>> {
     let length = requirements.length();
-    let index: HashMap<Word, u32> = words.iter().copied().zip(0..).collect();
+    let index: BTreeMap<Word, u32> = words.iter().copied().zip(0..).collect();
     let too_close = requirements.distance().saturating_sub(1);
     let free_bits = if too_close % 2 == 1 { length } else { 1 };
     let circles = (0..1_u64 << length).map(|number| Word::of(number, length as u32));

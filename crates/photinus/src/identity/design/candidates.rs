@@ -1,6 +1,7 @@
 //! Which circles of bits may be words of a book.
 
-use std::ops::RangeInclusive;
+use alloc::vec::Vec;
+use core::ops::RangeInclusive;
 
 use super::super::{CodeBook, Properties, Word};
 

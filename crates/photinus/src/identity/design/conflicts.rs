@@ -1,5 +1,8 @@
 //! Which candidates are too much alike to stand in one book.
 
+use alloc::vec;
+use alloc::vec::Vec;
+
 use super::super::Word;
 
 /// A graph of candidates with an edge between two that conflict, as rows of bits and as lists.

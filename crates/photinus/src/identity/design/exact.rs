@@ -4,6 +4,9 @@
 //! at most, so that no set in the branch is larger than the number of groups (P. San Segundo, D. Rodriguez-Losada, A. Jimenez, "An
 //! exact bit-parallel algorithm for the maximum clique problem", Computers & Operations Research 38, 2011, on the complement).
 
+use alloc::vec;
+use alloc::vec::Vec;
+
 use super::conflicts::{Conflicts, first};
 
 /// How the search ended.

@@ -4,6 +4,9 @@
 //! Werneck, "Fast local search for the maximum independent set problem", J. Heuristics 18, 2012); what was dropped stays out for
 //! some steps, so that the walk does not turn back.
 
+use alloc::vec;
+use alloc::vec::Vec;
+
 use super::Effort;
 use super::conflicts::Conflicts;
 

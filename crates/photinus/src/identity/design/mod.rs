@@ -14,6 +14,8 @@ mod conflicts;
 mod exact;
 mod local_search;
 
+use alloc::vec::Vec;
+
 use super::{CodeBook, Word};
 use conflicts::Conflicts;
 

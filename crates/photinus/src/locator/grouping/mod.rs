@@ -11,6 +11,8 @@
 mod partition;
 mod tree;
 
+use alloc::vec::Vec;
+
 use nalgebra::Vector3;
 
 use super::Sighting;
@@ -287,7 +289,7 @@ impl Groups {
             }
         }
         self.partition.each_part(|members, nats| self.spare.push(members, nats));
-        std::mem::swap(&mut self.list, &mut self.spare);
+        core::mem::swap(&mut self.list, &mut self.spare);
     }
 
     /// Members ascending, groups in the order of their first member.
@@ -304,7 +306,7 @@ impl Groups {
         for &group in &self.near {
             self.spare.push(self.list.group(group).iter().copied(), self.list.nats[group]);
         }
-        std::mem::swap(&mut self.list, &mut self.spare);
+        core::mem::swap(&mut self.list, &mut self.spare);
         self.of.clear();
         self.of.resize(self.list.members.len(), 0);
         for group in 0..self.list.len() {

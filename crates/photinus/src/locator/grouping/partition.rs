@@ -1,5 +1,7 @@
 //! All partitions of a few spots, by dynamic programming over subsets (bit masks).
 
+use alloc::vec::Vec;
+
 /// Most spots of which all partitions are tried.
 pub(super) const MOST_PARTITIONED: usize = 7;
 

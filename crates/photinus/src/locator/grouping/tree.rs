@@ -1,5 +1,7 @@
 //! The trees of nearest neighbours (single linkage), and their cheapest cut. What is unlikely a marker is as far away as it is unlikely: it joins last.
 
+use alloc::vec::Vec;
+
 use crate::locator::context::Context;
 use crate::locator::kinds::Kinds;
 use crate::locator::matching::{IMPOSSIBLE, NEIGHBOUR_NATS};

@@ -1,7 +1,11 @@
 //! A group as the camera sees it: places in a plane, with the vertical where it is known.
 
+use alloc::vec::Vec;
+
 use nalgebra::{Matrix3, Rotation3, Unit, Vector2, Vector3};
 
+#[cfg(not(feature = "std"))]
+use crate::float::Float as _;
 use crate::locator::context::Context;
 use crate::locator::views::{Outline, firmness, view_axes};
 use crate::pose::Pose;

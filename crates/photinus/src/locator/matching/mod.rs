@@ -10,6 +10,7 @@ mod outlined;
 mod size;
 mod triples;
 
+use alloc::vec::Vec;
 use core::f64::consts::TAU;
 
 use nalgebra::Vector2;
@@ -20,6 +21,8 @@ use super::context::Context;
 use super::posing::LOG_RANGE;
 use super::views::{Arrangement, ELEVATION_STEP_RAD, Spread, Views};
 use crate::airframe::Airframe;
+#[cfg(not(feature = "std"))]
+use crate::float::Float as _;
 use crate::lanes::{self, LANES, Lanes};
 use crate::pose::{self, Hypotheses, LogDistance, LogLight, POWER_RANGE, Pose, Symmetry};
 use crate::ranging::{BoundedBearing, DistanceBounds, Interval};

@@ -1,8 +1,12 @@
 //! A handful of spots against the arrangements of a handful of markers, spot by spot.
 
+use alloc::vec::Vec;
+
 use nalgebra::{Vector2, Vector3};
 
 use super::image::{Image, turned};
+#[cfg(not(feature = "std"))]
+use crate::float::Float as _;
 use crate::lanes::{self, Lanes};
 use crate::locator::Sighting;
 use crate::locator::views::{Arrangement, Arrangements, Band, MOST_ORDERED};
@@ -61,9 +65,9 @@ impl Ordered {
     ) -> Best<'a> {
         let Band { all, quads } = arrangements.within(image.elevation_rad, tilt_sigma_rad);
         let splat = |number: f64| Lanes::splat(number as f32);
-        let x: [Lanes; MOST_ORDERED] = std::array::from_fn(|spot| splat(self.shape[spot].x));
-        let y: [Lanes; MOST_ORDERED] = std::array::from_fn(|spot| splat(self.shape[spot].y));
-        let log_flux: [Lanes; MOST_ORDERED] = std::array::from_fn(|spot| splat(self.log_flux[spot]));
+        let x: [Lanes; MOST_ORDERED] = core::array::from_fn(|spot| splat(self.shape[spot].x));
+        let y: [Lanes; MOST_ORDERED] = core::array::from_fn(|spot| splat(self.shape[spot].y));
+        let log_flux: [Lanes; MOST_ORDERED] = core::array::from_fn(|spot| splat(self.log_flux[spot]));
         let per_shape = splat(0.5 / (self.shape_sigma * self.shape_sigma));
         let per_light = splat(0.5 / (self.log_flux_sigma * self.log_flux_sigma));
         let tilt = 1.0 / (tilt_sigma_rad * tilt_sigma_rad);
@@ -116,7 +120,7 @@ impl Ordered {
         // Within a few radii perspective is more than a correction, and such a match does not count.
         let larger: [f64; MOST_ORDERED] = ahead_m.map(|ahead_m| far_m / (far_m - ahead_m).max(0.3 * far_m));
         let place_m: [Vector2<f64>; MOST_ORDERED] =
-            std::array::from_fn(|spot| shape[spot] * (size_m * larger[spot]));
+            core::array::from_fn(|spot| shape[spot] * (size_m * larger[spot]));
         let middle = place_m.iter().take(self.count).sum::<Vector2<f64>>() * per_spot;
         let (mut dot, mut cross, mut square) = (0.0, 0.0, 0.0);
         for (place, z) in place_m.iter().zip(&self.shape).take(self.count) {

@@ -1,5 +1,7 @@
 //! What the sizes of spots say of a distance when no curve of spot sizes is known: little, and only softly.
 
+#[cfg(not(feature = "std"))]
+use crate::float::Float as _;
 use crate::locator::Sighting;
 
 /// What it costs that spots of these sizes are at a distance, where no curve of spot sizes is known.

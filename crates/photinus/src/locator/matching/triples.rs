@@ -4,6 +4,8 @@
 //! spots, far apart, are three markers, each with what it costs by a first look: the tilt, and how far the other spots are
 //! from markers that are left. Outlines suppose that all is in sight; these do not.
 
+use alloc::vec::Vec;
+
 use nalgebra::{Unit, Vector3};
 
 use crate::airframe::Airframe;

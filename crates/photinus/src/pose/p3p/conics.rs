@@ -5,6 +5,9 @@
 
 use nalgebra::{Matrix3, Vector3};
 
+#[cfg(not(feature = "std"))]
+use crate::float::Float as _;
+
 /// Calls `found` with a vector along each direction where y' A y = y' B y = 0 for symmetric A and B. Pairs of
 /// complex directions come as the real one between them. Four calls at most.
 pub(super) fn meets(cones: &[Matrix3<f64>; 2], mut found: impl FnMut(Vector3<f64>)) {

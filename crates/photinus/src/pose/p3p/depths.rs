@@ -16,6 +16,8 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::conics::meets;
+#[cfg(not(feature = "std"))]
+use crate::float::Float as _;
 
 /// Newton steps that bring a start of a few digits to rounding: one or two, more where solutions meet.
 const POLISHING_STEPS: usize = 12;

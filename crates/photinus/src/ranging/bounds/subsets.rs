@@ -4,6 +4,9 @@
 //! spots can show; with a value that falls with the angle it is, mirrored, the largest narrowest angle. One
 //! function does both.
 
+use alloc::vec;
+use alloc::vec::Vec;
+
 /// Up to this many markers the least diameters are exact: 2^8 subsets.
 const EXACT: usize = 8;
 

@@ -1,5 +1,7 @@
 //! What an airframe can show, over boxes of elevation and distance: filled once, by branch and bound.
 
+use alloc::vec;
+use alloc::vec::Vec;
 use core::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use nalgebra::Vector3;
@@ -7,6 +9,8 @@ use nalgebra::Vector3;
 use super::subsets::{PairValues, least_diameters};
 use super::view::{Pair, Range, ViewBox, Views};
 use crate::airframe::Airframe;
+#[cfg(not(feature = "std"))]
+use crate::float::Float as _;
 
 /// Elevations of the camera in the body frame, from straight below to straight above.
 pub(super) const ROWS: usize = 24;

@@ -13,6 +13,8 @@
 use nalgebra::Vector3;
 
 use crate::airframe::Airframe;
+#[cfg(not(feature = "std"))]
+use crate::float::Float as _;
 
 /// Widens every box, against the rounding of its own arithmetic.
 const ROUNDING: f64 = 1e-9;

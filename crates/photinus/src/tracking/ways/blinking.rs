@@ -3,6 +3,8 @@
 //! A marker of the vehicle is lit as the followed one is that is where it must be, whoever that is. Where none is, those that are known to blink the same
 //! signal tell it; else nobody does. It is told anew for each way to see a vehicle: which marker is which is just what ways differ in.
 
+use alloc::vec::Vec;
+
 use super::super::look::Followed;
 use super::super::step::Model;
 use crate::pose::Pose;

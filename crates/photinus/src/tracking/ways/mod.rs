@@ -8,6 +8,8 @@ mod blinking;
 mod located;
 mod screening;
 
+use alloc::vec::Vec;
+
 use super::branches::{Around, Branches, Pairs};
 use super::component::Component;
 use super::existence::Existence;
@@ -18,6 +20,8 @@ use super::step::Model;
 use super::update::Prior;
 use crate::airframe::Airframe;
 use crate::camera::{Bearing, Watched};
+#[cfg(not(feature = "std"))]
+use crate::float::Float as _;
 use crate::pose::{self, Assignment, Known, Measurement, Observation, Pose, Seen, Visible, Whitened};
 use crate::ranging::Interval;
 use blinking::Blinking;

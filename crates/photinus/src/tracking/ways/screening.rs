@@ -1,6 +1,8 @@
 //! Vehicles ahead of each other -> which markers may be hidden by a nearer one: nobody describes its body, but it may fill the sphere on which its
 //! markers sit.
 
+use alloc::vec::Vec;
+
 use nalgebra::Vector3;
 
 use super::super::component::Component;

@@ -1,7 +1,7 @@
 # One command for each chore; `.ci/run` takes the same steps as `check`.
 
 # Formatting, lints, documentation, tests: what must be green before a change lands.
-check: format-check lint doc test python
+check: format-check lint doc test bare python
 
 test:
     cargo test --workspace --locked
@@ -17,6 +17,10 @@ format-check:
 
 doc:
     RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --locked
+
+# The core without an operating system: for a microcontroller, and as WebAssembly with the same bits; needs rustup and Node.
+bare:
+    crates/photinus-bare/try-bare
 
 # The Python wheel, built and tried in a virtual environment; arguments go to pytest.
 python *arguments:

@@ -9,6 +9,7 @@
 //! evaluate: results against the truth of a dataset
 //! calibrate: photos of a grid -> a camera whose errors are known
 //! codes: what words must have -> books of words that LEDs blink
+//! plan: LEDs, lens, sensor and airframe -> how far and how exactly they will see
 //! swarm: a scenario -> robots that fly by what they see
 //! demo: all of it on a flight that the program carries along
 //! reproduce: the experiments of the founding paper, each number beside the paper's
@@ -37,6 +38,7 @@ mod number;
 mod output;
 mod overlay;
 mod page;
+mod plan;
 mod plots;
 mod pose_options;
 mod protocols;
@@ -82,6 +84,8 @@ Examples:
   photinus run photinus.toml
   # frames with truth, where there is no recording
   photinus simulate scene.toml --out recording
+  # how far LEDs and a camera will see, before they are bought
+  photinus plan set-up.toml
   # robots that fly by what they see
   photinus swarm three --out three
   # how well that went, where truth is known
@@ -107,6 +111,7 @@ enum Command {
     Recover(recover::Args),
     Simulate(simulate::Args),
     Swarm(swarm::Args),
+    Plan(plan::Args),
     Inject(inject::Args),
     Evaluate(evaluate::Args),
     Demo(demo::Args),
@@ -140,6 +145,7 @@ impl Command {
             Self::Detect(args) => args.quiet(),
             Self::Simulate(args) => args.quiet(),
             Self::Swarm(args) => args.quiet(),
+            Self::Plan(args) => args.quiet(),
             Self::Inject(args) => args.quiet(),
             Self::Evaluate(args) => args.quiet(),
             Self::Reproduce(args) => args.quiet(),
@@ -166,6 +172,7 @@ impl Command {
             Self::Recover(args) => recover::run(args, terminal),
             Self::Simulate(args) => simulate::run(args, terminal),
             Self::Swarm(args) => swarm::run(args, terminal),
+            Self::Plan(args) => plan::run(args, terminal),
             Self::Inject(args) => inject::run(args, terminal),
             Self::Evaluate(args) => evaluate::run(args, terminal),
             Self::Demo(args) => demo::run(args, terminal),

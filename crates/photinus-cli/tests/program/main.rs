@@ -29,6 +29,7 @@ mod mutated;
 mod narrow_frames;
 mod odd_input;
 mod overlays;
+mod plan;
 mod real_photos;
 mod recording;
 mod reproduce;

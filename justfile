@@ -22,6 +22,10 @@ doc:
 bare:
     crates/photinus-bare/try-bare
 
+# The page for browsers, in one file that works from a folder: target/browser/index.html.
+browser:
+    crates/photinus-browser/build
+
 # The Python wheel, built and tried in a virtual environment; arguments go to pytest.
 python *arguments:
     cargo build -p photinus-cli --locked

@@ -62,7 +62,8 @@ function drawPicture({ spots = [], neighbours = [] }) {
   [canvas.width, canvas.height] = [width, height];
   const context = canvas.getContext("2d");
   const image = context.createImageData(width, height);
-  grey.forEach((level, i) => image.data.set([level, level, level].map((l) => Math.min(255, BRIGHTER * l)).concat(255), 4 * i));
+  const pixels = new Uint32Array(image.data.buffer); // 0xAABBGGRR
+  grey.forEach((level, i) => (pixels[i] = 0xff000000 | (Math.min(255, BRIGHTER * level) * 0x010101)));
   context.putImageData(image, 0, 0);
   const scale = width / 752;
   const circle = (spot, colour) => {
@@ -140,12 +141,13 @@ function drawAbove({ neighbours }) {
 
 function tell({ spots, rejected, neighbours, took_ms }) {
   const fixed = (number, digits = 2) => (number === undefined || number === null ? "-" : number.toFixed(digits));
+  const side = (rad, one, other) => `${fixed((180 / Math.PI) * Math.abs(rad), 1)} ${rad < 0 ? other : one}`;
   const row = ({ bearing, distance_m: d, probability, spots: members }, index) => [
     index + 1,
     fixed(d.estimate),
     fixed(d.sigma),
     `${fixed(d.min)} to ${fixed(d.max)}`,
-    `${fixed((180 / Math.PI) * Math.atan2(bearing[0], bearing[2]), 1)} right, ${fixed((-180 / Math.PI) * Math.asin(bearing[1]), 1)} up`,
+    `${side(Math.atan2(bearing[0], bearing[2]), "right", "left")}, ${side(-Math.asin(bearing[1]), "up", "down")}`,
     `${fixed(100 * probability, 1)} %`,
     members.length,
   ];

@@ -1,5 +1,6 @@
 //! A set-up: enters a TOML file and the parts of data sheets that it names, leaves what simulator and core take.
 
+mod read;
 mod table;
 
 use std::path::Path;
@@ -80,7 +81,7 @@ impl Setup {
     /// # Errors
     /// As [`Setup::read`].
     pub fn parse(text: &str, path: &Path) -> Result<Self> {
-        table::read(text, path)
+        read::read(text, path)
     }
 
     /// Photo-electrons of the background in a pixel in the middle of the image, with dark current.

@@ -92,8 +92,7 @@ fn split(residuals: &[Residual], dark: Option<f64>, shot: Option<f64>, before: &
     LightNoise { noise: whole, dark_sigma, shot_sigma, shape_sigma, is_shot_seen: true }
 }
 
-/// Least squares of squared residuals on 1, light and its square, none below 0; a normal residual's square has twice its variance
-/// squared.
+/// Least squares of squared residuals on 1, light and its square; a normal residual's square has twice its variance squared.
 fn solve(
     residuals: &[Residual],
     (dark, shot): (Option<f64>, Option<f64>),
@@ -114,14 +113,26 @@ fn solve(
             normal += row * row.transpose() * weight;
             right += row * ((residual.square - known) * weight);
         }
-        let found = non_negative(&normal, &right);
+        let found = least_squares(&normal, &right);
         noise = Noise {
             dark: dark.unwrap_or(found[0].max(ROUNDING)),
             shot: shot.unwrap_or(found[1].max(1e-5)),
             shape: found[2].max(0.0).sqrt(),
+            bend: before.bend,
         };
     }
     noise
+}
+
+/// The least squares, where darkness and shot noise come out as what can be. The square of the shape may then be below 0: were it held at 0
+/// there, shot noise would be too low on average.
+fn least_squares(normal: &SMatrix<f64, 3, 3>, right: &SVector<f64, 3>) -> SVector<f64, 3> {
+    let mut matrix = *normal;
+    for known in (0..2).filter(|&index| normal[(index, index)] <= 0.0) {
+        matrix[(known, known)] = 1.0;
+    }
+    let free = matrix.lu().solve(right).filter(|found| found[0] >= 0.0 && found[1] >= 0.0);
+    free.filter(|found| found[2].is_finite()).unwrap_or_else(|| non_negative(normal, right))
 }
 
 /// The least squares among numbers not below 0: of all choices of those that are 0, the best.

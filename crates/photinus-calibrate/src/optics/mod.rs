@@ -9,32 +9,47 @@
 //! start        the round core and halo that explain the spots best
 //! spot, field  places and light of spots by the table, the table by what they leave, in turn (phases: kept even)
 //! light        noise against light, and how wrong the table is
+//! response     whether bright spots are flatter than faint ones
 //! spill        what the excess of full pixels does to their neighbours
+//! dark_frame   frames kept whole -> what each pixel reads without light
+//! hot          pixels that are bright without any
+//! column_smear what dark pixels get of the light in their column
+//! trail, vignetting  one LED at many places of the image -> how much light passes there
 //! prediction   what was learned against other frames
 //! ```
 //! What a recording does not excite stays what is believed beforehand and is named in [`Learned::unseen`].
 
 mod collect;
+mod column_smear;
 mod correction;
+mod dark_frame;
 mod evidence;
 mod field;
+mod hot;
 mod light;
 mod noise;
 mod phases;
 mod prediction;
 mod profile;
+mod response;
 mod saturation;
 mod spill;
 mod spot;
 mod start;
+mod summits;
 mod table;
+mod trail;
+mod vignetting;
 mod window;
 
-use photinus::optics::{Measured, Optics, OpticsError, Saturation, Sensor};
+use photinus::camera::Pixel;
+use photinus::optics::{HotPixels, Measured, Optics, OpticsError, Response, Saturation, Sensor, SpreadField};
 
 pub use collect::Collection;
 pub use evidence::{Evidence, NoiseBin};
+use dark_frame::DarkFrame;
 use field::Field;
+use hot::Candidate;
 use light::LightNoise;
 use noise::{Darkness, Noise, ROUNDING};
 pub use prediction::{Prediction, predict};
@@ -58,10 +73,14 @@ pub enum Unseen {
     Spill,
     /// Too few spots to see how the point spread changes over the image.
     Field,
-    /// LEDs at distances and directions that nobody told.
+    /// No LED that moved far over the image, or none that kept its light meanwhile.
     Vignetting,
-    /// Light that rows pick up on their way out.
+    /// No light that moved from column to column.
     ColumnSmear,
+    /// Spots that are too much alike in light.
+    Response,
+    /// Too few frames to see what stays.
+    HotPixels,
 }
 
 impl Unseen {
@@ -76,6 +95,8 @@ impl Unseen {
             Self::Field => "field",
             Self::Vignetting => "vignetting",
             Self::ColumnSmear => "column_smear",
+            Self::Response => "response",
+            Self::HotPixels => "hot_pixels",
         }
     }
 }
@@ -126,6 +147,8 @@ const ROUNDS_WHOLE: usize = 5;
 const ROUNDS_BY_NODE: usize = 8;
 /// Rounds after which noise is explained anew: what the table cannot follow yet must not be taken for noise.
 const NOISE_AFTER: [usize; 2] = [8, 10];
+/// Rounds after which a bend of the response is taken out of grey levels: the table follows it otherwise.
+const BEND_AFTER: [usize; 4] = [3, 5, 8, 10];
 /// How far from a spot its place is told, px.
 const PLACE_REACH: usize = 8;
 /// What is believed of a sensor that nobody measured.
@@ -140,9 +163,13 @@ pub fn learn(collection: &Collection) -> Result<Learned, LearnError> {
     let windows = &collection.windows.kept;
     let summits = saturation::summits(windows);
     let pile = saturation::find(&summits);
+    let dark_frame = DarkFrame::of(collection);
+    let standing = dark_frame.as_ref().map(|dark| hot::candidates(dark, collection.mask.as_ref()));
     let full_from = pile.map_or(255, |pile| pile.least_dn());
     let darkness = noise::darkness(&collection.patches.kept);
     let mut spots: Vec<Spot<'_>> = windows.iter().map(|window| Spot::new(window, full_from)).collect();
+    leave_out(&mut spots, standing.as_deref().unwrap_or_default());
+    let all = spots.clone();
     let full: Vec<Spot<'_>> = spots.iter().filter(|spot| !spot.is_linear()).cloned().collect();
     choose(&mut spots);
     let size_px = collection.size_px.unwrap_or([1, 1]);
@@ -164,22 +191,39 @@ pub fn learn(collection: &Collection) -> Result<Learned, LearnError> {
         if NOISE_AFTER.contains(&round) {
             noise = explain(&spots, &field, &noise, &darkness).noise;
         }
+        if BEND_AFTER.contains(&round) {
+            noise.bend = bend(&spots, &field, &noise);
+        }
     }
     place(&mut spots, &field, &noise, 2);
+    let response = response::learn(&spots, &field, &noise).map(|bend_per_dn| Response { bend_per_dn });
     let light = explain(&spots, &field, &noise, &darkness);
     let used = spots.iter().filter(|spot| spot.is_used).count();
     if used < FEWEST_SPOTS {
         return Err(LearnError::TooFew { found: used, needed: FEWEST_SPOTS });
     }
     let spill = pile.and_then(|pile| spill::learn(&full, &field, &light.noise, &pile));
+    let column_smear = dark_frame.as_ref().and_then(|dark| column_smear::learn(dark, full_from));
+    let vignetting = collection.camera.as_ref().and_then(|camera| {
+        let mut spots = all;
+        place(&mut spots, &field, &light.noise, 5);
+        vignetting::learn(&spots, &field, &light.noise, camera)
+    });
+    let spread = field.spread(light.noise.shape.min(1.0))?;
+    let hot_pixels = standing.as_ref().map(|standing| hot_pixels(standing, &spread)).transpose()?;
     let (sensor, mut unseen) = sensor(&darkness, &light, pile.as_ref(), spill);
-    if nodes == [1, 1] {
-        unseen.push(Unseen::Field);
-    }
-    unseen.extend([Unseen::Vignetting, Unseen::ColumnSmear]);
+    let missing = [
+        (nodes == [1, 1], Unseen::Field),
+        (vignetting.is_none(), Unseen::Vignetting),
+        (column_smear.is_none(), Unseen::ColumnSmear),
+        (response.is_none(), Unseen::Response),
+        (hot_pixels.is_none(), Unseen::HotPixels),
+    ];
+    unseen.extend(missing.into_iter().filter_map(|(is_missing, unseen)| is_missing.then_some(unseen)));
     unseen.sort_unstable();
+    let sensor = Sensor { response, column_smear, ..sensor };
     sensor.check()?;
-    let optics = Optics { spread: field.spread(light.noise.shape.min(1.0))?, sensor, vignetting: None };
+    let optics = Optics { spread, sensor, vignetting, hot_pixels: hot_pixels.unwrap_or_default() };
     Ok(Learned {
         optics,
         saturation_sigma_dn: pile.map(|pile| pile.sigma_dn),
@@ -193,6 +237,33 @@ pub fn learn(collection: &Collection) -> Result<Learned, LearnError> {
             phases: evidence::phases(&spots, &field, &light.noise),
         },
     })
+}
+
+/// Takes out what is a hot pixel behind any lens, and spots beside one.
+fn leave_out(spots: &mut Vec<Spot<'_>>, standing: &[Candidate]) {
+    let hot: Vec<_> = standing.iter().filter(|candidate| candidate.is_surely_hot()).map(|hot| hot.pixel).collect();
+    spots.retain(|spot| {
+        let near = |at: usize, hot: u32| at.abs_diff(hot as usize) <= PLACE_REACH;
+        !hot.iter().any(|hot| near(spot.window.column, hot.column) && near(spot.window.row, hot.row))
+    });
+}
+
+/// The pixels that are no LEDs behind this lens.
+fn hot_pixels(standing: &[Candidate], spread: &SpreadField) -> Result<HotPixels, OpticsError> {
+    let is_hot = |candidate: &&Candidate| {
+        let place = Pixel::new(f64::from(candidate.pixel.column), f64::from(candidate.pixel.row));
+        let spread = spread.at(place);
+        let around = (0..9).filter(|at| *at != 4).map(|at| [f64::from(at % 3 - 1), f64::from(at / 3 - 1)]);
+        let around: f64 = around.map(|[x, y]| spread.share(x, y)).sum();
+        candidate.is_hot(around / spread.share(0.0, 0.0))
+    };
+    HotPixels::new(standing.iter().filter(is_hot).map(|candidate| candidate.pixel).collect())
+}
+
+/// The bend of the response that spots tell; none where it may be chance.
+fn bend(spots: &[Spot<'_>], field: &Field, noise: &Noise) -> f64 {
+    let told = response::learn(spots, field, noise).map(|bend_per_dn| Response { bend_per_dn });
+    told.filter(Response::is_bent).map_or(0.0, |response| response.bend_per_dn.value)
 }
 
 /// Keeps the spots that a table can be made of: those without full pixels, the brighter the better, spread over the image.
@@ -210,7 +281,7 @@ fn choose(spots: &mut Vec<Spot<'_>>) {
 
 fn first_noise(darkness: &Darkness) -> Noise {
     let read = darkness.noise_dn.map_or(READ_NOISE_BELIEVED.value, |noise| noise.value);
-    Noise { dark: read * read + ROUNDING, shot: light::SHOT_BELIEVED.value, shape: 0.02 }
+    Noise { dark: read * read + ROUNDING, shot: light::SHOT_BELIEVED.value, shape: 0.02, bend: 0.0 }
 }
 
 /// Nodes along columns and rows that so many spots allow.
@@ -283,6 +354,7 @@ fn sensor(
         spill: spill.share,
         full_well_dn: spill.well_dn,
         column_smear: None,
+        response: None,
     };
     (sensor, unseen)
 }

@@ -30,6 +30,7 @@ pub fn predict(optics: &Optics, collection: &Collection) -> Option<Prediction> {
         dark: sensor.read_noise_dn.value * sensor.read_noise_dn.value + ROUNDING,
         shot: sensor.shot.value,
         shape: optics.spread.shape_error(),
+        bend: sensor.bent().map_or(0.0, |response| response.bend_per_dn.value),
     };
     let full_from = sensor.full_from_dn();
     let mut spots: Vec<Spot<'_>> =

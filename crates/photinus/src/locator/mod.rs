@@ -177,7 +177,9 @@ impl Locator {
             }
         }
         let size = [self.camera.width(), self.camera.height()];
-        brightness::tell(&mut self.located.sightings, self.inference.most(), size, &mut self.by_cell);
+        let vignetting = self.camera.optics().and_then(|optics| optics.vignetting.as_ref());
+        let most = self.inference.most();
+        brightness::tell(&mut self.located.sightings, vignetting, most, size, &mut self.by_cell);
         input.tell(Stage::Bearings);
         let watched = Watched::new(&self.camera, self.mask.as_ref());
         self.inference.explain(&mut self.located, watched, &mut input);

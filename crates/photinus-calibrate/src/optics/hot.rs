@@ -33,11 +33,6 @@ impl Candidate {
         let Measured { value, sigma } = self.around;
         expected - value > TELLS_SIGMAS * sigma && value < 0.5 * expected
     }
-
-    /// Whether so little is around it that it is hot behind any lens.
-    pub(super) fn is_surely_hot(&self) -> bool {
-        self.is_hot(LEAST_AROUND)
-    }
 }
 
 /// Pixels that stand out in the median; none where the mask ignores them or one beside.

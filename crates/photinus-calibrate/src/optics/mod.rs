@@ -145,12 +145,16 @@ const SPOTS_PER_NODE: usize = 40;
 const MOST_SPOTS: usize = 3000;
 const ROUNDS_WHOLE: usize = 5;
 const ROUNDS_BY_NODE: usize = 8;
+/// Rounds until tables of half of the spots have nothing of the other half left.
+const ROUNDS_OF_HALVES: usize = 3;
 /// Rounds after which noise is explained anew: what the table cannot follow yet must not be taken for noise.
 const NOISE_AFTER: [usize; 2] = [8, 10];
 /// Rounds after which a bend of the response is taken out of grey levels: the table follows it otherwise.
 const BEND_AFTER: [usize; 4] = [3, 5, 8, 10];
 /// How far from a spot its place is told, px.
 const PLACE_REACH: usize = 8;
+/// What stands out all the time so near to a spot is in its light, px.
+const STANDING_PX: usize = 4;
 /// What is believed of a sensor that nobody measured.
 const READ_NOISE_BELIEVED: Measured = Measured { value: 1.0, sigma: 1.0 };
 const SPILL_BELIEVED: Measured = Measured { value: 0.0, sigma: 0.5 };
@@ -183,13 +187,13 @@ pub fn learn(collection: &Collection) -> Result<Learned, LearnError> {
     for round in 0..ROUNDS_WHOLE + ROUNDS_BY_NODE {
         place(&mut spots, &field, &noise, if round == 0 { 6 } else { 1 });
         phases::even_out(&mut spots);
-        if round < ROUNDS_WHOLE || nodes == [1, 1] {
+        if round < ROUNDS_WHOLE {
             field.learn_whole(&spots, &noise);
         } else {
-            field.learn_nodes(&spots, &noise);
+            field.learn(&spots, &noise);
         }
         if NOISE_AFTER.contains(&round) {
-            noise = explain(&spots, &field, &noise, &darkness).noise;
+            noise = light::explain(&light::residuals(&spots, &field, &noise), darkness.noise_dn, &noise).noise;
         }
         if BEND_AFTER.contains(&round) {
             noise.bend = bend(&spots, &field, &noise);
@@ -197,7 +201,9 @@ pub fn learn(collection: &Collection) -> Result<Learned, LearnError> {
     }
     place(&mut spots, &field, &noise, 2);
     let response = response::learn(&spots, &field, &noise).map(|bend_per_dn| Response { bend_per_dn });
-    let light = explain(&spots, &field, &noise, &darkness);
+    let halves = [0, 1].map(|half| field_of_half(&spots, &field, &noise, half));
+    let residuals = light::free_residuals(&spots, &field, halves.each_ref(), &noise);
+    let light = light::explain(&residuals, darkness.noise_dn, &noise);
     let used = spots.iter().filter(|spot| spot.is_used).count();
     if used < FEWEST_SPOTS {
         return Err(LearnError::TooFew { found: used, needed: FEWEST_SPOTS });
@@ -233,19 +239,22 @@ pub fn learn(collection: &Collection) -> Result<Learned, LearnError> {
         spots: used,
         evidence: Evidence {
             summits,
-            noise: evidence::noise(&light::residuals(&spots, &field, &light.noise)),
+            noise: evidence::noise(&residuals),
             phases: evidence::phases(&spots, &field, &light.noise),
         },
     })
 }
 
-/// Takes out what is a hot pixel behind any lens, and spots beside one.
+/// Takes out spots at pixels that stand out all the time, where enough are left without: they may be hot pixels.
 fn leave_out(spots: &mut Vec<Spot<'_>>, standing: &[Candidate]) {
-    let hot: Vec<_> = standing.iter().filter(|candidate| candidate.is_surely_hot()).map(|hot| hot.pixel).collect();
-    spots.retain(|spot| {
-        let near = |at: usize, hot: u32| at.abs_diff(hot as usize) <= PLACE_REACH;
-        !hot.iter().any(|hot| near(spot.window.column, hot.column) && near(spot.window.row, hot.row))
-    });
+    let is_moving = |spot: &Spot<'_>| {
+        let near = |at: usize, hot: u32| at.abs_diff(hot as usize) <= STANDING_PX;
+        let window = spot.window;
+        !standing.iter().any(|hot| near(window.column, hot.pixel.column) && near(window.row, hot.pixel.row))
+    };
+    if spots.iter().filter(|spot| is_moving(spot)).count() >= 3 * FEWEST_SPOTS {
+        spots.retain(is_moving);
+    }
 }
 
 /// The pixels that are no LEDs behind this lens.
@@ -306,8 +315,15 @@ fn place(spots: &mut [Spot<'_>], field: &Field, noise: &Noise, steps: usize) {
     spots.iter_mut().for_each(|spot| spot.is_used &= spot.misfit < 2.5 * middle + 0.5);
 }
 
-fn explain(spots: &[Spot<'_>], field: &Field, noise: &Noise, darkness: &Darkness) -> LightNoise {
-    light::explain(&light::residuals(spots, field, noise), darkness.noise_dn, noise)
+/// Tables of the spots of even or of odd number.
+fn field_of_half(spots: &[Spot<'_>], field: &Field, noise: &Noise, half: usize) -> Field {
+    let mut spots: Vec<Spot<'_>> = spots.iter().skip(half).step_by(2).cloned().collect();
+    let mut field = field.clone();
+    for _ in 0..ROUNDS_OF_HALVES {
+        field.learn(&spots, noise);
+        place(&mut spots, &field, noise, 1);
+    }
+    field
 }
 
 /// The sensor, and what was not seen of it.

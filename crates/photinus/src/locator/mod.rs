@@ -50,7 +50,7 @@ pub use input::Input;
 use input::Seen;
 pub use kinds::Kind;
 pub use neighbour::{Distance, Located, Neighbour, Orientation, Position, RunnerUp};
-pub(crate) use posing::{RESOLUTION_PX, faintest_light, of_mean_calibration};
+pub(crate) use posing::{faintest_light, of_mean_calibration};
 pub use settings::Settings;
 pub use sighting::Sighting;
 

@@ -37,7 +37,7 @@ fn main() {
         let mut claims = Claims::new();
         for seed in 0..seeds {
             let collection = if name == "turned" {
-                eye.turned(3 * FRAMES, 40, 0.01, 100 + seed)
+                eye.turned(2 * FRAMES, 20, 0.005, 100 + seed)
             } else {
                 eye.recorded(FRAMES, LEDS, 100 + seed)
             };
@@ -62,7 +62,7 @@ fn eyes() -> Vec<(&'static str, Eye)> {
     let mut spilling = eye("gaussian-0.4");
     spilling.preset.sensor.full_well_e = 240.0 * spilling.preset.sensor.electrons_per_dn;
     spilling.preset.sensor.overflow = Overflow { spill: 0.5 };
-    let turned = Eye::named("vignette");
+    let turned = Eye::named("vignette").small_and_wide();
     vec![
         ("plain", eye("gaussian-1.0")),
         ("sharp", eye("gaussian-0.4")),

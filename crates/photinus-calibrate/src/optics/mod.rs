@@ -145,8 +145,10 @@ const SPOTS_PER_NODE: usize = 40;
 const MOST_SPOTS: usize = 3000;
 const ROUNDS_WHOLE: usize = 5;
 const ROUNDS_BY_NODE: usize = 8;
-/// Rounds until tables of half of the spots have nothing of the other half left.
-const ROUNDS_OF_HALVES: usize = 3;
+/// Rounds in which tables of half of the spots are learned.
+const ROUNDS_OF_HALVES: usize = 6;
+/// So far below what a full pixel reads none is full by chance.
+const CLEAR_SIGMAS: f64 = 3.0;
 /// Rounds after which noise is explained anew: what the table cannot follow yet must not be taken for noise.
 const NOISE_AFTER: [usize; 2] = [8, 10];
 /// Rounds after which a bend of the response is taken out of grey levels: the table follows it otherwise.
@@ -196,13 +198,17 @@ pub fn learn(collection: &Collection) -> Result<Learned, LearnError> {
             noise = light::explain(&light::residuals(&spots, &field, &noise), darkness.noise_dn, &noise).noise;
         }
         if BEND_AFTER.contains(&round) {
-            noise.bend = bend(&spots, &field, &noise);
+            noise.bend = bend(&clear_of_full(&spots, &field, &noise, full_from), &field, &noise);
         }
     }
     place(&mut spots, &field, &noise, 2);
-    let response = response::learn(&spots, &field, &noise).map(|bend_per_dn| Response { bend_per_dn });
-    let halves = [0, 1].map(|half| field_of_half(&spots, &field, &noise, half));
-    let residuals = light::free_residuals(&spots, &field, halves.each_ref(), &noise);
+    let clear = clear_of_full(&spots, &field, &noise, full_from);
+    let response = response::learn(&clear, &field, &noise).map(|bend_per_dn| Response { bend_per_dn });
+    let halves = [0, 1].map(|half| {
+        let start = Field::new(start.table(), size_px, nodes);
+        field_of_half(&clear, start, &noise, half)
+    });
+    let residuals = light::free_residuals(&clear, &field, halves.each_ref(), &noise);
     let light = light::explain(&residuals, darkness.noise_dn, &noise);
     let used = spots.iter().filter(|spot| spot.is_used).count();
     if used < FEWEST_SPOTS {
@@ -213,7 +219,8 @@ pub fn learn(collection: &Collection) -> Result<Learned, LearnError> {
     let vignetting = collection.camera.as_ref().and_then(|camera| {
         let mut spots = all;
         place(&mut spots, &field, &light.noise, 5);
-        vignetting::learn(&spots, &field, &light.noise, camera)
+        let clear = clear_of_full(&spots, &field, &light.noise, full_from);
+        vignetting::learn(&clear, &field, &light.noise, camera)
     });
     let spread = field.spread(light.noise.shape.min(1.0))?;
     let hot_pixels = standing.as_ref().map(|standing| hot_pixels(standing, &spread)).transpose()?;
@@ -315,15 +322,31 @@ fn place(spots: &mut [Spot<'_>], field: &Field, noise: &Noise, steps: usize) {
     spots.iter_mut().for_each(|spot| spot.is_used &= spot.misfit < 2.5 * middle + 0.5);
 }
 
-/// Tables of the spots of even or of odd number.
-fn field_of_half(spots: &[Spot<'_>], field: &Field, noise: &Noise, half: usize) -> Field {
+/// Tables of the spots of even or of odd number, from a start that knows none of them.
+fn field_of_half(spots: &[Spot<'_>], start: Field, noise: &Noise, half: usize) -> Field {
     let mut spots: Vec<Spot<'_>> = spots.iter().skip(half).step_by(2).cloned().collect();
-    let mut field = field.clone();
-    for _ in 0..ROUNDS_OF_HALVES {
-        field.learn(&spots, noise);
+    let mut field = start;
+    for round in 0..ROUNDS_OF_HALVES {
+        if round < ROUNDS_OF_HALVES / 2 {
+            field.learn_whole(&spots, noise);
+        } else {
+            field.learn(&spots, noise);
+        }
         place(&mut spots, &field, noise, 1);
     }
     field
+}
+
+/// Spots of which no pixel would be full by chance: were those left out that are, the rest would be darker than they are on average.
+fn clear_of_full<'a>(spots: &[Spot<'a>], field: &Field, noise: &Noise, full_from: u8) -> Vec<Spot<'a>> {
+    let is_clear = |spot: &&Spot<'_>| {
+        let table = field.at(spot.place_px());
+        let (full, slope) = noise.straightened(f64::from(full_from) - spot.level);
+        let mut brightest = 0.0_f64;
+        spot.each_pixel(table, noise, 1, &mut Shares::default(), |pixel| brightest = brightest.max(pixel.light));
+        brightest + CLEAR_SIGMAS * slope * noise.variance(brightest).sqrt() < full
+    };
+    spots.iter().filter(is_clear).cloned().collect()
 }
 
 /// The sensor, and what was not seen of it.

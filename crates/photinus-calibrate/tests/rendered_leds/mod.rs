@@ -4,7 +4,7 @@
 #![allow(dead_code, reason = "each test looks at a part")]
 
 use nalgebra::{UnitQuaternion, Vector3};
-use photinus::camera::{Bearing, Camera, Ideal, Model, Pixel};
+use photinus::camera::{Bearing, Camera, Ideal, IdealLaw, Model, Pixel};
 use photinus::frame::FrameView;
 use photinus::optics::PointSpread;
 use photinus_calibrate::optics::Collection;
@@ -50,6 +50,12 @@ impl Eye {
         let lens = Ideal::new(lens.law(), lens.focal_px(), centre).expect("the same lens");
         let camera = Camera::new(Model::Ideal(lens), width, height, None).expect("a smaller image");
         Self { camera, ..self }
+    }
+
+    /// The same behind a lens that sees 160 deg across a small image.
+    pub(crate) fn small_and_wide(self) -> Self {
+        let lens = Ideal::new(IdealLaw::Equidistant, [140.0; 2], Pixel::new(199.5, 149.5)).expect("a lens");
+        Self { camera: Camera::new(Model::Ideal(lens), 400, 300, None).expect("a small image"), ..self }
     }
 
     fn size(&self) -> (usize, usize) {

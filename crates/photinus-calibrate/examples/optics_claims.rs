@@ -55,7 +55,7 @@ fn eyes() -> Vec<(&'static str, Eye)> {
     let eye = |name: &str| Eye::named(name).cropped(SIZE.0, SIZE.1);
     let mut smeared = eye("gaussian-0.6");
     smeared.preset.sensor.smear = ColumnSmear { share: 2e-4 };
-    smeared.preset.sensor.pattern = Pattern { offset_dn: 0.5, column_offset_dn: 0.5, ..Pattern::NONE };
+    smeared.preset.sensor.pattern = Pattern { offset_dn: 0.5, ..Pattern::NONE };
     smeared.hot = (0..12).map(|k| (20 + 23 * k, 15 + 17 * k, 6.0 * f64::from(1 + k as u32))).collect();
     let mut soft = eye("gaussian-0.6");
     soft.preset.sensor.response = Response::Soft { ceiling_dn: CEILING_DN };
@@ -106,7 +106,9 @@ fn take(claims: &mut Claims, eye: &Eye, learned: &Learned) {
     });
     false_alarms.for_each(|hot| claim("hot pixels that are none", 0.0, Some(hot.level_dn)));
     let Some(vignetting) = &learned.optics.vignetting else { return };
-    for (name, deg) in [("passes at 20 deg", 20.0_f64), ("passes at 40 deg", 40.0), ("passes at 60 deg", 60.0)] {
+    for (name, deg) in
+        [("passes at 20 deg", 20.0_f64), ("passes at 40 deg", 40.0), ("passes at 60 deg", 60.0)]
+    {
         let rad = deg.to_radians();
         if vignetting.table().0.last().is_some_and(|last| *last >= rad) {
             let (value, sigma) = vignetting.share(rad);
@@ -122,7 +124,8 @@ fn row(camera: &str, number: &str, truth: f64, found: &[Measured], seeds: u64) {
         return;
     }
     let mean = found.iter().map(|found| found.value).sum::<f64>() / count;
-    let scatter = found.iter().map(|found| (found.value - mean).powi(2)).sum::<f64>() / (count - 1.0).max(1.0);
+    let scatter =
+        found.iter().map(|found| (found.value - mean).powi(2)).sum::<f64>() / (count - 1.0).max(1.0);
     let claimed = found.iter().map(|found| found.sigma).sum::<f64>() / count;
     let squares = found.iter().map(|found| ((found.value - truth) / found.sigma.max(1e-12)).powi(2));
     let squares = squares.sum::<f64>() / count;

@@ -99,8 +99,13 @@ fn hot_pixels_smear_and_response_are_as_wrong_as_they_say() {
     assert!((0.3..2.0).contains(&of_levels), "{of_levels}: {levels:?}");
     assert!(of_smears < 3.5, "{of_smears}: {smears:?}");
     assert!(of_bends < 3.5, "{of_bends}: {bends:?}");
-    let sure = |claims: &[(Measured, f64)], share: f64| claims.iter().all(|(found, truth)| found.sigma < share * truth);
-    assert!(sure(&levels, 0.1) && sure(&smears, 0.3) && sure(&bends, 0.05), "{levels:?} {smears:?} {bends:?}");
+    let sure = |claims: &[(Measured, f64)], share: f64| {
+        claims.iter().all(|(found, truth)| found.sigma < share * truth)
+    };
+    assert!(
+        sure(&levels, 0.1) && sure(&smears, 0.3) && sure(&bends, 0.05),
+        "{levels:?} {smears:?} {bends:?}"
+    );
 }
 
 #[test]
@@ -111,7 +116,10 @@ fn a_camera_that_is_turned_learns_what_its_lens_passes() {
     for deg in [20.0_f64, 40.0, 55.0] {
         let (share, sigma) = vignetting.share(deg.to_radians());
         let truth = eye.preset.lens.illumination(deg.to_radians());
-        assert!((share - truth).abs() < 3.5 * sigma && sigma < 0.05, "{share} ± {sigma} for {truth} at {deg}");
+        assert!(
+            (share - truth).abs() < 3.5 * sigma && sigma < 0.05,
+            "{share} ± {sigma} for {truth} at {deg}"
+        );
     }
     // LEDs that are elsewhere in each frame say nothing
     assert!(learned.unseen.iter().all(|unseen| *unseen != Unseen::Vignetting));

@@ -23,7 +23,8 @@ pub fn as_measured(camera: &Camera, lens: &mut Lens, sensor: &mut Sensor) {
     }
     if let Some(vignetting) = &optics.vignetting {
         let (angles_rad, shares, _) = vignetting.table();
-        lens.falloff = Falloff::new(angles_rad.iter().zip(shares).map(|(angle, share)| [*angle, *share]).collect());
+        lens.falloff =
+            Falloff::new(angles_rad.iter().zip(shares).map(|(angle, share)| [*angle, *share]).collect());
     }
     let measured = &optics.sensor;
     let (fewest, most) = ELECTRONS_PER_DN;
@@ -78,7 +79,9 @@ fn sampled(samples: &[f64]) -> Option<SampledSpread> {
 #[cfg(test)]
 mod tests {
     use photinus::camera::{Ideal, IdealLaw, Model, Pixel};
-    use photinus::optics::{Gaussian, HotPixels, Measured, Optics, PointSpread as Learned, Saturation, SpreadField};
+    use photinus::optics::{
+        Gaussian, HotPixels, Measured, Optics, PointSpread as Learned, Saturation, SpreadField,
+    };
 
     use super::*;
     use crate::optics::PointLight;

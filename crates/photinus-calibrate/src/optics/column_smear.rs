@@ -32,7 +32,8 @@ struct Column {
 
 /// The share; `None` where no light moved along columns. `full_from` is the least grey level of a full pixel.
 pub(super) fn learn(dark: &DarkFrame<'_>, full_from: u8) -> Option<Measured> {
-    let mut frames: Vec<Vec<Column>> = dark.frames.iter().map(|frame| columns(dark, frame, full_from)).collect();
+    let mut frames: Vec<Vec<Column>> =
+        dark.frames.iter().map(|frame| columns(dark, frame, full_from)).collect();
     frames.iter_mut().for_each(|columns| against_aside(columns));
     against_means(&mut frames, dark.width);
     let whole = slope(&frames, |_| true)?;
@@ -88,7 +89,8 @@ fn against_aside(columns: &mut [Column]) {
         let (mut count, mut sum) = (0.0, 0.0);
         let far = |aside: &usize| (ASIDE_PX.0..=ASIDE_PX.1).contains(&aside.abs_diff(at));
         for aside in (at.saturating_sub(ASIDE_PX.1)..=at + ASIDE_PX.1).filter(far) {
-            if let Some(other) = before.get(aside).filter(|other| other.is_told && other.light_dn < LEAST_DN) {
+            if let Some(other) = before.get(aside).filter(|other| other.is_told && other.light_dn < LEAST_DN)
+            {
                 (count, sum) = (count + 1.0, sum + other.dark_dn);
             }
         }

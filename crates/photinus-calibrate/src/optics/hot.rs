@@ -65,9 +65,8 @@ fn far() -> impl Iterator<Item = usize> {
 
 /// Median of the sixteen pixels two columns or rows away.
 fn ring(dark: &DarkFrame<'_>, column: usize, row: usize) -> f64 {
-    let mut values: Vec<u8> = far()
-        .map(|at| dark.levels[(row + at / 5 - 2) * dark.width + column + at % 5 - 2])
-        .collect();
+    let mut values: Vec<u8> =
+        far().map(|at| dark.levels[(row + at / 5 - 2) * dark.width + column + at % 5 - 2]).collect();
     values.sort_unstable();
     0.5 * (f64::from(values[7]) + f64::from(values[8]))
 }

@@ -89,10 +89,7 @@ struct Left {
     variance: f64,
 }
 
-fn residuals_by(
-    spots: &[Spot<'_>],
-    mut left: impl FnMut(usize, &Spot<'_>) -> Vec<Left>,
-) -> Vec<Residual> {
+fn residuals_by(spots: &[Spot<'_>], mut left: impl FnMut(usize, &Spot<'_>) -> Vec<Left>) -> Vec<Residual> {
     let mut residuals = Vec::new();
     for (number, spot) in spots.iter().enumerate().filter(|(_, spot)| spot.is_used && spot.is_linear()) {
         let tells = |left: &&Left| {

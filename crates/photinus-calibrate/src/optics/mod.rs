@@ -46,8 +46,8 @@ use photinus::camera::Pixel;
 use photinus::optics::{HotPixels, Measured, Optics, OpticsError, Response, Saturation, Sensor, SpreadField};
 
 pub use collect::Collection;
-pub use evidence::{Evidence, NoiseBin};
 use dark_frame::DarkFrame;
+pub use evidence::{Evidence, NoiseBin};
 use field::Field;
 use hot::Candidate;
 use light::LightNoise;
@@ -195,7 +195,8 @@ pub fn learn(collection: &Collection) -> Result<Learned, LearnError> {
             field.learn(&spots, &noise);
         }
         if NOISE_AFTER.contains(&round) {
-            noise = light::explain(&light::residuals(&spots, &field, &noise), darkness.noise_dn, &noise).noise;
+            noise =
+                light::explain(&light::residuals(&spots, &field, &noise), darkness.noise_dn, &noise).noise;
         }
         if BEND_AFTER.contains(&round) {
             noise.bend = bend(&clear_of_full(&spots, &field, &noise, full_from), &field, &noise);
@@ -343,7 +344,9 @@ fn clear_of_full<'a>(spots: &[Spot<'a>], field: &Field, noise: &Noise, full_from
         let table = field.at(spot.place_px());
         let (full, slope) = noise.straightened(f64::from(full_from) - spot.level);
         let mut brightest = 0.0_f64;
-        spot.each_pixel(table, noise, 1, &mut Shares::default(), |pixel| brightest = brightest.max(pixel.light));
+        spot.each_pixel(table, noise, 1, &mut Shares::default(), |pixel| {
+            brightest = brightest.max(pixel.light)
+        });
         brightest + CLEAR_SIGMAS * slope * noise.variance(brightest).sqrt() < full
     };
     spots.iter().filter(is_clear).cloned().collect()

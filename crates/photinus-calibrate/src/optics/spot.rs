@@ -139,7 +139,12 @@ impl<'a> Spot<'a> {
                 light,
                 left: seen - light,
                 weight: 1.0 / (noise.variance(light) + steeper),
-                jacobian: SVector::from([self.light * share.by_u, self.light * share.by_v, share.value, slope]),
+                jacobian: SVector::from([
+                    self.light * share.by_u,
+                    self.light * share.by_v,
+                    share.value,
+                    slope,
+                ]),
             });
         }
     }

@@ -33,9 +33,10 @@ impl Trails {
             let others = places.iter().enumerate().filter(|(other, _)| *other != index);
             let room_px = others.map(|(_, other)| distance_px(at, *other)).fold(f64::INFINITY, f64::min);
             let expected = |end: &End| [end.at[0] + end.step[0], end.at[1] + end.step[1]];
-            let near = self.ends.iter().filter(|end| {
-                distance_px(expected(end), at) < (APART * room_px).min(FARTHEST_PX)
-            });
+            let near = self
+                .ends
+                .iter()
+                .filter(|end| distance_px(expected(end), at) < (APART * room_px).min(FARTHEST_PX));
             let near: Vec<&End> = near.collect();
             let end = match near.as_slice() {
                 [one] => End { trail: one.trail, at, step: [at[0] - one.at[0], at[1] - one.at[1]] },

@@ -52,7 +52,9 @@ pub(super) fn learn(spots: &[Spot<'_>], field: &Field, noise: &Noise, camera: &C
     let mut trails = Trails::of(spots, field, noise, camera)?;
     let mut step = STEPS.0;
     for _ in 0..2 {
-        let cost = |log_step: f64| trails.solve(libm::exp(log_step), |_| true).map_or(f64::INFINITY, |found| found.1);
+        let cost = |log_step: f64| {
+            trails.solve(libm::exp(log_step), |_| true).map_or(f64::INFINITY, |found| found.1)
+        };
         step = libm::exp(least(cost, libm::log(STEPS.0), libm::log(STEPS.1), 12));
         let (found, _) = trails.solve(step, |_| true)?;
         trails.drop_outliers(&found, step);
@@ -155,7 +157,11 @@ impl Trails {
     }
 
     /// Normal matrix, right side, squares and logarithms of determinants of the trails used.
-    fn normal(&self, step: f64, is_used: impl Fn(usize) -> bool) -> Option<(DMatrix<f64>, DVector<f64>, f64)> {
+    fn normal(
+        &self,
+        step: f64,
+        is_used: impl Fn(usize) -> bool,
+    ) -> Option<(DMatrix<f64>, DVector<f64>, f64)> {
         let (mut matrix, mut right, mut cost) = (self.believed(), DVector::zeros(self.knots), 0.0);
         for (_, trail) in self.trails.iter().enumerate().filter(|(number, _)| is_used(*number)) {
             let (weights, log_determinant) = Self::weights(trail, step)?;

@@ -36,7 +36,8 @@ impl Falloff {
     /// From pairs of an angle off the axis, rad, and the share that passes; `None` unless angles rise and shares are not below 0.
     pub fn new(points: Vec<[f64; 2]>) -> Option<Self> {
         let rises = points.windows(2).all(|pair| pair[1][0] > pair[0][0]);
-        let legal = points.iter().all(|[angle, share]| angle.is_finite() && *share >= 0.0 && share.is_finite());
+        let legal =
+            points.iter().all(|[angle, share]| angle.is_finite() && *share >= 0.0 && share.is_finite());
         (rises && legal && !points.is_empty()).then_some(Self { points })
     }
 

@@ -33,7 +33,12 @@ impl HotPixels {
         }
         for pair in pixels.windows(2) {
             let column = f64::from(pair[1].column);
-            check("the column of a hot pixel", column, place(&pair[0]) != place(&pair[1]), "told once in its row")?;
+            check(
+                "the column of a hot pixel",
+                column,
+                place(&pair[0]) != place(&pair[1]),
+                "told once in its row",
+            )?;
         }
         Ok(Self { pixels })
     }

@@ -35,7 +35,9 @@ impl Response {
     /// By how much of itself a light of so many grey levels reads too little, with its sigma.
     pub fn missing_share(&self, light_dn: f64) -> Measured {
         let bend = self.bend_per_dn.value;
-        let read = |bend: f64| if bend.abs() < 1e-9 { 1.0 } else { -libm::expm1(-bend * light_dn) / (bend * light_dn) };
+        let read = |bend: f64| {
+            if bend.abs() < 1e-9 { 1.0 } else { -libm::expm1(-bend * light_dn) / (bend * light_dn) }
+        };
         Measured { value: 1.0 - read(bend), sigma: 0.5 * light_dn * self.bend_per_dn.sigma }
     }
 }

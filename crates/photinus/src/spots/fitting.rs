@@ -219,7 +219,8 @@ impl Fitter {
         let Some(optics) = &self.optics else { return self.lone_pixels.odds((u, v)) };
         let place = Pixel::new(f64::from(u), f64::from(v));
         let dark = Surroundings { level: 0.0, slope: [0.0; 2], variance: 0.0 };
-        let beforehand = if optics.hot_pixels.at(u, v).is_some() { hot_pixel::KNOWN } else { hot_pixel::BEFOREHAND };
+        let beforehand =
+            if optics.hot_pixels.at(u, v).is_some() { hot_pixel::KNOWN } else { hot_pixel::BEFOREHAND };
         beforehand * hot_pixel::odds(own, around, optics.spread.at(place), self.pixel_noise(dark))
     }
 

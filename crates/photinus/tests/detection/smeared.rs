@@ -31,7 +31,12 @@ fn optics() -> Arc<Optics> {
         full_well_dn: None,
         column_smear: None,
     };
-    Arc::new(Optics { spread: SpreadField::even(spread, 0.02).unwrap(), sensor, vignetting: None, hot_pixels: HotPixels::default() })
+    Arc::new(Optics {
+        spread: SpreadField::even(spread, 0.02).unwrap(),
+        sensor,
+        vignetting: None,
+        hot_pixels: HotPixels::default(),
+    })
 }
 
 /// What became of the markers of all frames.

@@ -44,7 +44,13 @@ impl fmt::Display for Told<'_> {
             Some((response, Measured { value, sigma })) => {
                 let shape = if response.is_bent() { "bent" } else { "straight" };
                 let missing = Measured { value: 100.0 * value, sigma: 100.0 * sigma };
-                line(f, "response", missing, &format!("% less than in proportion at {BRIGHT_DN:.0}: {shape}"), "")?;
+                line(
+                    f,
+                    "response",
+                    missing,
+                    &format!("% less than in proportion at {BRIGHT_DN:.0}: {shape}"),
+                    "",
+                )?;
             }
             None => writeln!(f, "  response          not measured: taken for straight")?,
         }
@@ -76,7 +82,8 @@ impl fmt::Display for Told<'_> {
             let hot = learned.optics.hot_pixels.iter();
             let count = hot.len();
             let brightest = hot.map(|hot| hot.level_dn.value).fold(0.0, f64::max);
-            let so_bright = if count > 0 { format!(", up to {brightest:.0} grey levels") } else { String::new() };
+            let so_bright =
+                if count > 0 { format!(", up to {brightest:.0} grey levels") } else { String::new() };
             writeln!(f, "  hot pixels        {count}{so_bright}")?;
         }
         let unseen: Vec<&str> = learned.unseen.iter().map(|unseen| unseen.name()).collect();

@@ -103,7 +103,8 @@ impl OpticsTable {
         let sensor = self.sensor();
         sensor.check().map_err(|error| wrong(path, "optics", &error))?;
         let hot_pixels = self.hot_pixels.as_deref().unwrap_or_default();
-        let hot_pixels = read_hot_pixels(hot_pixels, size).map_err(|error| wrong(path, "optics.hot_pixels", &error))?;
+        let hot_pixels =
+            read_hot_pixels(hot_pixels, size).map_err(|error| wrong(path, "optics.hot_pixels", &error))?;
         let vignetting = self.vignetting.map(VignettingTable::read).transpose();
         let optics = Optics {
             spread: self.point_spread.read(size, path)?,
@@ -139,13 +140,16 @@ fn read_hot_pixels(
     listed: &[(u32, u32, Finite, Finite)],
     [width, height]: [usize; 2],
 ) -> std::result::Result<HotPixels, OpticsError> {
-    let outside = listed.iter().find(|(column, row, ..)| *column as usize >= width || *row as usize >= height);
+    let outside =
+        listed.iter().find(|(column, row, ..)| *column as usize >= width || *row as usize >= height);
     if let Some((column, ..)) = outside {
         let (name, must) = ("the column or row of a hot pixel", "within the image");
         return Err(OpticsError::Number { name, value: f64::from(*column), must });
     }
-    let one = |&(column, row, ref level, ref sigma): &(u32, u32, Finite, Finite)| {
-        HotPixel { column, row, level_dn: Measured { value: level.0, sigma: sigma.0 } }
+    let one = |&(column, row, ref level, ref sigma): &(u32, u32, Finite, Finite)| HotPixel {
+        column,
+        row,
+        level_dn: Measured { value: level.0, sigma: sigma.0 },
     };
     HotPixels::new(listed.iter().map(one).collect())
 }
@@ -247,9 +251,8 @@ mod tests {
                     dark_dn: dark,
                     read_noise_dn: noise,
                     shot,
-                    response: bend.map(|bend| Response {
-                        bend_per_dn: Measured { value: 0.05 * bend.value, ..bend },
-                    }),
+                    response: bend
+                        .map(|bend| Response { bend_per_dn: Measured { value: 0.05 * bend.value, ..bend } }),
                     saturation: Saturation { level_dn: 230.0 + full.value, spread_dn: full.sigma },
                     spill,
                     full_well_dn: well,

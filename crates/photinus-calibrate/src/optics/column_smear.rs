@@ -8,6 +8,7 @@ use photinus::optics::Measured;
 
 use super::collect::Whole;
 use super::dark_frame::DarkFrame;
+use super::noise::Noise;
 
 /// A pixel farther than this from every spot along columns and rows is dark.
 const FAR_PX: usize = 24;
@@ -30,10 +31,11 @@ struct Column {
     is_told: bool,
 }
 
-/// The share; `None` where no light moved along columns. `full_from` is the least grey level of a full pixel.
-pub(super) fn learn(dark: &DarkFrame<'_>, full_from: u8) -> Option<Measured> {
+/// The share; `None` where no light moved along columns. `full_from` is the least grey level of a full pixel; light is what levels stand
+/// for by the response of `noise`.
+pub(super) fn learn(dark: &DarkFrame<'_>, noise: &Noise, full_from: u8) -> Option<Measured> {
     let mut frames: Vec<Vec<Column>> =
-        dark.frames.iter().map(|frame| columns(dark, frame, full_from)).collect();
+        dark.frames.iter().map(|frame| columns(dark, frame, noise, full_from)).collect();
     frames.iter_mut().for_each(|columns| against_aside(columns));
     against_means(&mut frames, dark.width);
     let whole = slope(&frames, |_| true)?;
@@ -45,7 +47,7 @@ pub(super) fn learn(dark: &DarkFrame<'_>, full_from: u8) -> Option<Measured> {
 }
 
 /// Light and darkness of every column of a frame.
-fn columns(dark: &DarkFrame<'_>, frame: &Whole, full_from: u8) -> Vec<Column> {
+fn columns(dark: &DarkFrame<'_>, frame: &Whole, noise: &Noise, full_from: u8) -> Vec<Column> {
     let mut columns = vec![Column { is_told: true, ..Column::default() }; dark.width];
     let span = |middle: usize, reach: usize, length: usize| {
         middle.saturating_sub(reach)..(middle + reach + 1).min(length)
@@ -73,7 +75,7 @@ fn columns(dark: &DarkFrame<'_>, frame: &Whole, full_from: u8) -> Vec<Column> {
                 count += 1.0;
                 column.dark_dn += dark.excess(frame, at, row);
             } else if is_lit[index] {
-                column.light_dn += dark.excess(frame, at, row);
+                column.light_dn += noise.straightened(dark.excess(frame, at, row)).0;
             }
         }
         column.dark_dn /= f64::max(count, 1.0);

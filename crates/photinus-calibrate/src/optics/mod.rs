@@ -216,7 +216,7 @@ pub fn learn(collection: &Collection) -> Result<Learned, LearnError> {
         return Err(LearnError::TooFew { found: used, needed: FEWEST_SPOTS });
     }
     let spill = pile.and_then(|pile| spill::learn(&full, &field, &light.noise, &pile));
-    let column_smear = dark_frame.as_ref().and_then(|dark| column_smear::learn(dark, full_from));
+    let column_smear = dark_frame.as_ref().and_then(|dark| column_smear::learn(dark, &noise, full_from));
     let vignetting = collection.camera.as_ref().and_then(|camera| {
         let mut spots = all;
         place(&mut spots, &field, &light.noise, 5);

@@ -190,8 +190,7 @@ mod tests {
     fn a_locator_that_another_thread_uses_is_busy() {
         let camera = "model = \"equidistant\"\nwidth_px = 64\nheight_px = 48\ncentre_px = [31.5, 23.5]\nfocal_px = [30.0, 30.0]\n";
         let airframe = "name = \"one\"\n[[led]]\nposition_m = [0.0, 0.0, 0.0]\naxis = [1.0, 0.0, 0.0]\nlobe = \"lambertian\"\n";
-        let camera =
-            photinus_io::camera::parse_camera(camera.as_bytes(), "camera").expect("a camera");
+        let camera = photinus_io::camera::parse_camera(camera.as_bytes(), "camera").expect("a camera");
         let airframe = photinus_io::airframe::parse_airframe(airframe, "airframe").expect("an airframe");
         let (camera, airframe) = (Camera::open(camera), Airframe::open(airframe));
         let mut locator = Locator::default();

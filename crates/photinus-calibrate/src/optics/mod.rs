@@ -11,6 +11,7 @@
 //! light        noise against light, and how wrong the table is
 //! response     whether bright spots are flatter than faint ones
 //! spill        what the excess of full pixels does to their neighbours
+//! choice       which spots are fit to learn from
 //! dark_frame   frames kept whole -> what each pixel reads without light
 //! hot          pixels that are bright without any
 //! column_smear what dark pixels get of the light in their column
@@ -19,6 +20,7 @@
 //! ```
 //! What a recording does not excite stays what is believed beforehand and is named in [`Learned::unseen`].
 
+mod choice;
 mod collect;
 mod column_smear;
 mod correction;
@@ -26,6 +28,7 @@ mod dark_frame;
 mod evidence;
 mod field;
 mod hot;
+mod learned;
 mod light;
 mod noise;
 mod phases;
@@ -45,11 +48,13 @@ mod window;
 use photinus::camera::Pixel;
 use photinus::optics::{HotPixels, Measured, Optics, OpticsError, Response, Saturation, Sensor, SpreadField};
 
+use choice::{choose, clear_of_full, leave_out};
 pub use collect::Collection;
 use dark_frame::DarkFrame;
 pub use evidence::{Evidence, NoiseBin};
 use field::Field;
 use hot::Candidate;
+pub use learned::{LearnError, Learned, Unseen};
 use light::LightNoise;
 use noise::{Darkness, Noise, ROUNDING};
 pub use prediction::{Prediction, predict};
@@ -58,105 +63,20 @@ use spill::Spill;
 use spot::Spot;
 use table::Shares;
 
-/// What frames did not tell of a camera.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Unseen {
-    /// No pixel was dark and not clipped.
-    Darkness,
-    /// Darkness reads the same everywhere, and little light is left over.
-    ReadNoise,
-    /// No light strong enough that its noise stands out.
-    ShotNoise,
-    /// No pixel was full.
-    Saturation,
-    /// Too few pixels were full to see what their excess does.
-    Spill,
-    /// Too few spots to see how the point spread changes over the image.
-    Field,
-    /// No LED that moved far over the image, or none that kept its light meanwhile.
-    Vignetting,
-    /// No light that moved from column to column.
-    ColumnSmear,
-    /// Spots that are too much alike in light.
-    Response,
-    /// Too few frames to see what stays.
-    HotPixels,
-}
-
-impl Unseen {
-    /// Its name, as it stands in files.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Darkness => "darkness",
-            Self::ReadNoise => "read_noise",
-            Self::ShotNoise => "shot_noise",
-            Self::Saturation => "saturation",
-            Self::Spill => "spill",
-            Self::Field => "field",
-            Self::Vignetting => "vignetting",
-            Self::ColumnSmear => "column_smear",
-            Self::Response => "response",
-            Self::HotPixels => "hot_pixels",
-        }
-    }
-}
-
-/// Why frames make no optics.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum LearnError {
-    /// Too few spots.
-    #[error("{found} spots stand alone and are not full, {needed} are needed")]
-    TooFew {
-        /// Spots found.
-        found: usize,
-        /// Spots needed.
-        needed: usize,
-    },
-    /// Numbers that no optics have: the spots are none of one point spread.
-    #[error("the spots have no point spread in common: {0}")]
-    NoOptics(#[from] OpticsError),
-}
-
-/// What was learned of a camera.
-#[derive(Clone, Debug)]
-pub struct Learned {
-    /// Lens and sensor.
-    pub optics: Optics,
-    /// Standard deviation of the mean level of full pixels, grey levels; `None` where none was full.
-    pub saturation_sigma_dn: Option<f64>,
-    /// Standard deviation of the error of the point spread, as that is a share of the light.
-    pub shape_error_sigma: f64,
-    /// What the frames did not tell, in the order of [`Unseen`].
-    pub unseen: Vec<Unseen>,
-    /// Frames looked at.
-    pub frames: u64,
-    /// Spots that the point spread rests on.
-    pub spots: usize,
-    /// What the numbers rest on.
-    pub evidence: Evidence,
-}
-
 /// Fewest spots that make a point spread.
 pub const FEWEST_SPOTS: usize = 40;
 /// Spots of a node of the grid over which the point spread may change.
 const SPOTS_PER_NODE: usize = 40;
-/// Most spots that the table is made of.
-const MOST_SPOTS: usize = 3000;
 const ROUNDS_WHOLE: usize = 5;
 const ROUNDS_BY_NODE: usize = 8;
 /// Rounds in which tables of half of the spots are learned.
 const ROUNDS_OF_HALVES: usize = 6;
-/// So far below what a full pixel reads none is full by chance.
-const CLEAR_SIGMAS: f64 = 3.0;
 /// Rounds after which noise is explained anew: what the table cannot follow yet must not be taken for noise.
 const NOISE_AFTER: [usize; 2] = [8, 10];
 /// Rounds after which a bend of the response is taken out of grey levels: the table follows it otherwise.
 const BEND_AFTER: [usize; 4] = [3, 5, 8, 10];
 /// How far from a spot its place is told, px.
 const PLACE_REACH: usize = 8;
-/// What stands out all the time so near to a spot is in its light, px.
-const STANDING_PX: usize = 4;
 /// What is believed of a sensor that nobody measured.
 const READ_NOISE_BELIEVED: Measured = Measured { value: 1.0, sigma: 1.0 };
 const SPILL_BELIEVED: Measured = Measured { value: 0.0, sigma: 0.5 };
@@ -253,18 +173,6 @@ pub fn learn(collection: &Collection) -> Result<Learned, LearnError> {
     })
 }
 
-/// Takes out spots at pixels that stand out all the time, where enough are left without: they may be hot pixels.
-fn leave_out(spots: &mut Vec<Spot<'_>>, standing: &[Candidate]) {
-    let is_moving = |spot: &Spot<'_>| {
-        let near = |at: usize, hot: u32| at.abs_diff(hot as usize) <= STANDING_PX;
-        let window = spot.window;
-        !standing.iter().any(|hot| near(window.column, hot.pixel.column) && near(window.row, hot.pixel.row))
-    };
-    if spots.iter().filter(|spot| is_moving(spot)).count() >= 3 * FEWEST_SPOTS {
-        spots.retain(is_moving);
-    }
-}
-
 /// The pixels that are no LEDs behind this lens.
 fn hot_pixels(standing: &[Candidate], spread: &SpreadField) -> Result<HotPixels, OpticsError> {
     let is_hot = |candidate: &&Candidate| {
@@ -281,19 +189,6 @@ fn hot_pixels(standing: &[Candidate], spread: &SpreadField) -> Result<HotPixels,
 fn bend(spots: &[Spot<'_>], field: &Field, noise: &Noise) -> f64 {
     let told = response::learn(spots, field, noise).map(|bend_per_dn| Response { bend_per_dn });
     told.filter(Response::is_bent).map_or(0.0, |response| response.bend_per_dn.value)
-}
-
-/// Keeps the spots that a table can be made of: those without full pixels, the brighter the better, spread over the image.
-fn choose(spots: &mut Vec<Spot<'_>>) {
-    let linear = spots.iter().filter(|spot| spot.is_linear()).count();
-    if linear >= 3 * FEWEST_SPOTS {
-        spots.retain(Spot::is_linear);
-    }
-    spots.retain(|spot| spot.window.reach >= 4 && spot.light > 0.0);
-    if spots.len() > MOST_SPOTS {
-        spots.sort_by(|a, b| b.light.total_cmp(&a.light));
-        spots.truncate(MOST_SPOTS);
-    }
 }
 
 fn first_noise(darkness: &Darkness) -> Noise {
@@ -336,20 +231,6 @@ fn field_of_half(spots: &[Spot<'_>], start: Field, noise: &Noise, half: usize) -
         place(&mut spots, &field, noise, 1);
     }
     field
-}
-
-/// Spots of which no pixel would be full by chance: were those left out that are, the rest would be darker than they are on average.
-fn clear_of_full<'a>(spots: &[Spot<'a>], field: &Field, noise: &Noise, full_from: u8) -> Vec<Spot<'a>> {
-    let is_clear = |spot: &&Spot<'_>| {
-        let table = field.at(spot.place_px());
-        let (full, slope) = noise.straightened(f64::from(full_from) - spot.level);
-        let mut brightest = 0.0_f64;
-        spot.each_pixel(table, noise, 1, &mut Shares::default(), |pixel| {
-            brightest = brightest.max(pixel.light)
-        });
-        brightest + CLEAR_SIGMAS * slope * noise.variance(brightest).sqrt() < full
-    };
-    spots.iter().filter(is_clear).cloned().collect()
 }
 
 /// The sensor, and what was not seen of it.

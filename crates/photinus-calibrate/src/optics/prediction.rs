@@ -2,12 +2,13 @@
 
 use photinus::optics::{Optics, SpreadField};
 
+use super::choice::choose;
 use super::collect::Collection;
 use super::field::Field;
 use super::noise::{Noise, ROUNDING};
 use super::spot::Spot;
 use super::table::{Shares, Table};
-use super::{PLACE_REACH, choose, place};
+use super::{PLACE_REACH, place};
 
 /// Pixels of spots against what optics expect of them.
 #[derive(Clone, Copy, Debug, PartialEq)]

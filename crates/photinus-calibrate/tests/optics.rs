@@ -4,7 +4,9 @@
 mod rendered_leds;
 
 use photinus::camera::Pixel;
+use photinus::optics::Measured;
 use photinus_calibrate::optics::{Collection, LearnError, Learned, Unseen, learn};
+use photinus_sim::sensor::{ColumnSmear, Response};
 use rendered_leds::{Eye, difference};
 
 const SIZE: (usize, usize) = (320, 240);
@@ -57,4 +59,70 @@ fn too_few_spots_are_refused() {
     let eye = eye("gaussian-0.6");
     assert!(matches!(learn(&eye.recorded(2, 5, 1)), Err(LearnError::TooFew { needed: 40, .. })));
     assert!(matches!(learn(&Collection::default()), Err(LearnError::TooFew { found: 0, .. })));
+}
+
+/// A sensor with hot pixels, smear along columns and a soft response.
+fn faulty() -> Eye {
+    let mut eye = eye("gaussian-0.6");
+    let sensor = &mut eye.preset.sensor;
+    sensor.smear = ColumnSmear { share: 3e-4 };
+    sensor.response = Response::Soft { ceiling_dn: 400.0 };
+    // whatever a response does to so little charge is far below a sigma
+    eye.hot = (0..10).map(|k| (20 + 27 * k, 15 + 20 * k, 8.0 + k as f64)).collect();
+    eye
+}
+
+/// Mean of squared errors over squared claims.
+fn squares(claims: &[(Measured, f64)]) -> f64 {
+    claims.iter().map(|(found, truth)| ((found.value - truth) / found.sigma).powi(2)).sum::<f64>()
+        / claims.len() as f64
+}
+
+#[test]
+fn hot_pixels_smear_and_response_are_as_wrong_as_they_say() {
+    const SEEDS: u64 = 5;
+    let eye = faulty();
+    let (mut levels, mut smears, mut bends) = (Vec::new(), Vec::new(), Vec::new());
+    for seed in 0..SEEDS {
+        let optics = learned(&eye, 60, seed).optics;
+        let hot = &optics.hot_pixels;
+        assert_eq!(hot.iter().len(), eye.hot.len(), "no more and no fewer than there are: {hot:?}");
+        for &(column, row, level_dn) in &eye.hot {
+            let found = hot.at(column as u32, row as u32).expect("listed").level_dn;
+            let read_dn = -400.0 * libm::expm1(-level_dn / 400.0);
+            levels.push((found, read_dn));
+        }
+        smears.push((optics.sensor.column_smear.expect("light moved"), 3e-4));
+        bends.push((optics.sensor.response.expect("lights differ").bend_per_dn, 1.0 / 400.0));
+    }
+    let [of_levels, of_smears, of_bends] = [&levels, &smears, &bends].map(|claims| squares(claims));
+    assert!((0.3..2.0).contains(&of_levels), "{of_levels}: {levels:?}");
+    assert!(of_smears < 3.5, "{of_smears}: {smears:?}");
+    assert!(of_bends < 3.5, "{of_bends}: {bends:?}");
+    let sure = |claims: &[(Measured, f64)], share: f64| {
+        claims.iter().all(|(found, truth)| found.sigma < share * truth)
+    };
+    assert!(
+        sure(&levels, 0.1) && sure(&smears, 0.3) && sure(&bends, 0.05),
+        "{levels:?} {smears:?} {bends:?}"
+    );
+}
+
+#[test]
+fn a_camera_that_is_turned_learns_what_its_lens_passes() {
+    let eye = Eye::named("vignette").small_and_wide();
+    let learned = learn(&eye.turned(160, 24, 0.005, 7)).expect("spots enough");
+    let vignetting = learned.optics.vignetting.expect("LEDs moved over the image");
+    for deg in [20.0_f64, 40.0, 55.0] {
+        let (share, sigma) = vignetting.share(deg.to_radians());
+        let truth = eye.preset.lens.illumination(deg.to_radians());
+        assert!(
+            (share - truth).abs() < 3.5 * sigma && sigma < 0.05,
+            "{share} ± {sigma} for {truth} at {deg}"
+        );
+    }
+    // LEDs that are elsewhere in each frame say nothing
+    assert!(learned.unseen.iter().all(|unseen| *unseen != Unseen::Vignetting));
+    let elsewhere = learn(&eye.recorded(60, 5, 1)).expect("spots enough");
+    assert!(elsewhere.optics.vignetting.is_none() && elsewhere.unseen.contains(&Unseen::Vignetting));
 }

@@ -5,7 +5,7 @@
 
 use photinus::camera::Camera;
 
-use crate::optics::{Lens, PointSpread, SampledSpread, ZonedSpread};
+use crate::optics::{Falloff, Lens, PointSpread, SampledSpread, ZonedSpread};
 use crate::sensor::{ColumnSmear, Overflow, Pattern, Response, Sensor};
 
 /// Electrons that make a grey level are within what sensors have.
@@ -21,15 +21,24 @@ pub fn as_measured(camera: &Camera, lens: &mut Lens, sensor: &mut Sensor) {
     if let Some(zones) = zones {
         lens.spread = PointSpread::zoned(zones);
     }
+    if let Some(vignetting) = &optics.vignetting {
+        let (angles_rad, shares, _) = vignetting.table();
+        lens.falloff =
+            Falloff::new(angles_rad.iter().zip(shares).map(|(angle, share)| [*angle, *share]).collect());
+    }
     let measured = &optics.sensor;
     let (fewest, most) = ELECTRONS_PER_DN;
     let electrons_per_dn = (1.0 / measured.shot.value.max(1.0 / most)).max(fewest);
     let more = electrons_per_dn / sensor.electrons_per_dn;
     lens.pupil_m2 *= more;
     sensor.dark_current_e_per_s *= more;
-    sensor.hot_pixel_e_per_s *= more;
+    // those of this very camera are drawn by the renderer, one by one
+    sensor.hot_pixel_share = 0.0;
     sensor.electrons_per_dn = electrons_per_dn;
-    sensor.response = Response::Linear;
+    sensor.response = match measured.bent() {
+        Some(response) => Response::Soft { ceiling_dn: 1.0 / response.bend_per_dn.value },
+        None => Response::Linear,
+    };
     sensor.read_noise_e = measured.read_noise_dn.value * electrons_per_dn;
     if let Some(dark) = measured.dark_dn {
         (sensor.dark_offset_dn, sensor.corner_offset_dn) = (dark.value, 0.0);
@@ -70,7 +79,9 @@ fn sampled(samples: &[f64]) -> Option<SampledSpread> {
 #[cfg(test)]
 mod tests {
     use photinus::camera::{Ideal, IdealLaw, Model, Pixel};
-    use photinus::optics::{Gaussian, Measured, Optics, PointSpread as Learned, Saturation, SpreadField};
+    use photinus::optics::{
+        Gaussian, HotPixels, Measured, Optics, PointSpread as Learned, Saturation, SpreadField,
+    };
 
     use super::*;
     use crate::optics::PointLight;
@@ -86,12 +97,14 @@ mod tests {
                 dark_dn: Some(known(7.0)),
                 read_noise_dn: known(0.8),
                 shot: known(0.02),
+                response: None,
                 saturation: Saturation { level_dn: 240.0, spread_dn: 1.5 },
                 spill: known(0.4),
                 full_well_dn: None,
                 column_smear: None,
             },
             vignetting: None,
+            hot_pixels: HotPixels::default(),
         }
     }
 

@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 use photinus::camera::Pixel;
 use photinus::frame::FrameView;
-use photinus::optics::{Measured, Optics, PointSpread, Saturation, Sensor, SpreadField};
+use photinus::optics::{HotPixels, Measured, Optics, PointSpread, Saturation, Sensor, SpreadField};
 use photinus::spots::{Detector, Settings, Spot};
 use rand_distr::{Distribution, StandardNormal, Uniform};
 use rand_pcg::Pcg64;
@@ -113,12 +113,13 @@ fn knowing(width_px: f64) -> Detector {
         dark_dn: Some(exactly(5.0)),
         read_noise_dn: exactly(0.45),
         shot: exactly(0.03),
+        response: None,
         saturation: Saturation { level_dn: 255.0, spread_dn: 0.0 },
         spill: exactly(0.0),
         full_well_dn: None,
         column_smear: None,
     };
-    let optics = Optics { spread, sensor, vignetting: None };
+    let optics = Optics { spread, sensor, vignetting: None, hot_pixels: HotPixels::default() };
     Detector::with_optics(Settings::default(), Some(Arc::new(optics))).unwrap()
 }
 

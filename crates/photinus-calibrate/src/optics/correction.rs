@@ -160,13 +160,6 @@ impl<'a, const N: usize> Correction<'a, N> {
         (squares / f64::max(told, 1.0)).sqrt()
     }
 
-    /// Variance of each coefficient, as far as its neighbours leave it alone.
-    pub(super) fn variances(&self, node: usize) -> Vec<f64> {
-        let diagonal = &self.diagonal[node * COUNT..][..COUNT];
-        let prior = self.apart + 20.0 * self.bent;
-        diagonal.iter().zip(self.scale).map(|(data, scale)| scale * scale / (data + prior)).collect()
-    }
-
     /// What pixels pull at the coefficients.
     fn pulled(&self) -> Vec<f64> {
         let mut pulled = vec![0.0; self.tables * COUNT];
@@ -242,20 +235,6 @@ fn gathered<const N: usize>(table: &[f64], first: usize, rows: &Rows<N>) -> f64 
         four.iter().zip(&rows.across).map(|(share, across)| share * across).sum()
     };
     rows.down.iter().enumerate().map(|(b, down)| down * line(b)).sum()
-}
-
-/// Variance of a share at an offset from the variances of coefficients.
-pub(super) fn variance(variances: &[f64], x_px: f64, y_px: f64) -> f64 {
-    let ((column, across), (row, down)) = (first(x_px), first(y_px));
-    let inside = |at: isize| at >= 0 && at + 3 < SIDE as isize;
-    if !(inside(column) && inside(row)) {
-        return 0.0;
-    }
-    let mut sum = 0.0;
-    each_of_16(row as usize * SIDE + column as usize, &across, &down, |sample, part| {
-        sum += part * part * variances[sample];
-    });
-    sum
 }
 
 /// The first of four coefficients for an offset along an axis, and their weights.

@@ -6,7 +6,7 @@
 
 use photinus::optics::{OpticsError, PointSpread, SpreadField};
 
-use super::correction::{self, Belief, Correction};
+use super::correction::{Belief, Correction};
 use super::noise::Noise;
 use super::profile;
 use super::spot::Spot;
@@ -37,8 +37,6 @@ pub(super) struct Field {
     belief: Belief,
     zones: [usize; 2],
     of_zones: Vec<Table>,
-    /// Variances of the coefficients of the table of the whole image, and of what nodes add, for the noise that they take from pixels.
-    variances: [Vec<f64>; 2],
 }
 
 impl Field {
@@ -52,7 +50,6 @@ impl Field {
             zones: [1, 1],
             of_zones: vec![start.clone()],
             whole: start,
-            variances: [vec![0.0; COUNT], vec![0.0; COUNT]],
         }
     }
 
@@ -72,14 +69,6 @@ impl Field {
         &self.of_zones[zone(v, 1) * self.zones[0] + zone(u, 0)]
     }
 
-    /// Variance of the share that a table says a pixel at this offset gets.
-    pub(super) fn variance(&self, x_px: f64, y_px: f64) -> f64 {
-        // between nodes the mean of their squared shares is left of it
-        const BETWEEN: f64 = 4.0 / 9.0;
-        let [whole, node] = self.variances.each_ref().map(|of| correction::variance(of, x_px, y_px));
-        whole + BETWEEN * node
-    }
-
     /// Learns what is the same all over the image from what the fits of spots leave.
     pub(super) fn learn_whole(&mut self, spots: &[Spot<'_>], noise: &Noise) {
         let mut whole = self.whole.clone();
@@ -92,12 +81,19 @@ impl Field {
         correction.gather(spots, self, noise, 0.1 * summit(&self.whole), all);
         correction.solve(&[&self.whole], &round);
         correction.apply(0, &mut self.whole);
-        self.variances[0] = correction.variances(0);
         self.become_whole(self.whole.clone());
     }
 
+    /// Learns what the fits of spots leave, node by node where there are several.
+    pub(super) fn learn(&mut self, spots: &[Spot<'_>], noise: &Noise) {
+        match self.nodes {
+            [1, 1] => self.learn_whole(spots, noise),
+            _ => self.learn_nodes(spots, noise),
+        }
+    }
+
     /// Learns how the nodes differ.
-    pub(super) fn learn_nodes(&mut self, spots: &[Spot<'_>], noise: &Noise) {
+    fn learn_nodes(&mut self, spots: &[Spot<'_>], noise: &Noise) {
         let scale = scale(&round(&self.whole));
         let mut correction = Correction::new(&scale, &self.belief, self.of_nodes.len());
         correction.gather(spots, self, noise, 0.03 * summit(&self.whole), |place| self.corners(place));
@@ -115,7 +111,6 @@ impl Field {
         }
         self.whole = Table::new(samples);
         self.whole.settle();
-        self.variances[1] = correction.variances(self.of_nodes.len() / 2);
         self.blend();
     }
 

@@ -1,4 +1,8 @@
 //! Noise against light: what fits leave of pixels, squared, explained by darkness, light, and the error of the point spread.
+//!
+//! A table follows the noise of the pixels that it is made of, so that they are left with too little. A table of the other half of the
+//! spots follows none of it, but is wrong by its own noise, twice as much: two thirds of the one and a third of the other are left with
+//! what there is.
 
 use nalgebra::{SMatrix, SVector};
 use photinus::optics::Measured;
@@ -38,36 +42,87 @@ const ROUNDS: usize = 6;
 /// A pixel whose fit takes more of its noise than this tells too little.
 const MOST_TAKEN: f64 = 0.7;
 /// Pixels farther off than this many sigmas are something else.
-const CLIP: f64 = 5.0;
+const CLIP: f64 = 6.0;
+/// Steps to the place of a spot by another table.
+const PLACE_STEPS: usize = 3;
 /// Pixels with less light say no more than patches without, and round alike, grey levels.
 const LEAST_DN: f64 = 0.7;
 
-/// What is left of the pixels of spots.
+/// What is left of the pixels of spots by a table that was made of them.
 pub(super) fn residuals(spots: &[Spot<'_>], field: &Field, noise: &Noise) -> Vec<Residual> {
+    residuals_by(spots, |_, spot| of_spot(spot, field, noise))
+}
+
+/// What is left of them by a table that was made of them and by one of the other half of the spots, mixed so that neither error
+/// stays: `halves` are the tables of spots of even and of odd number.
+pub(super) fn free_residuals(
+    spots: &[Spot<'_>],
+    field: &Field,
+    halves: [&Field; 2],
+    noise: &Noise,
+) -> Vec<Residual> {
     let mut shares = Shares::default();
+    residuals_by(spots, |number, spot| {
+        let within = of_spot(spot, field, noise);
+        let other = halves[(number + 1) % 2];
+        let mut aside = spot.clone();
+        aside.fit(other.at(spot.place_px()), noise, super::PLACE_REACH, PLACE_STEPS, &mut shares);
+        let aside = of_spot(&aside, other, noise);
+        if aside.len() != within.len() {
+            return Vec::new();
+        }
+        let mix = |(within, aside): (&Left, &Left)| Left {
+            square: (2.0 * within.square + aside.square) / 3.0,
+            ..*within
+        };
+        within.iter().zip(&aside).map(mix).collect()
+    })
+}
+
+/// What is left of a pixel, what its own fit took of it put back.
+#[derive(Clone, Copy)]
+struct Left {
+    light: f64,
+    square: f64,
+    /// Share of its noise that the fit took.
+    taken: f64,
+    variance: f64,
+}
+
+fn residuals_by(spots: &[Spot<'_>], mut left: impl FnMut(usize, &Spot<'_>) -> Vec<Left>) -> Vec<Residual> {
     let mut residuals = Vec::new();
     for (number, spot) in spots.iter().enumerate().filter(|(_, spot)| spot.is_used && spot.is_linear()) {
-        let table = field.at(spot.place_px());
-        let taken = spot.leverages(table, noise, usize::MAX, &mut shares);
-        let mut taken = taken.iter();
-        spot.each_pixel(table, noise, usize::MAX, &mut shares, |pixel| {
-            let fit = taken.next().copied().unwrap_or(1.0);
-            let (x_px, y_px) = (pixel.column as f64 - spot.u, pixel.row as f64 - spot.v);
-            let learned = field.variance(x_px, y_px) * pixel.weight * spot.light * spot.light;
-            let taken = fit + learned;
-            let off = pixel.left * pixel.left * pixel.weight;
-            if taken < MOST_TAKEN && pixel.light > LEAST_DN && off < CLIP * CLIP {
-                let square = pixel.left * pixel.left / (1.0 - taken);
-                residuals.push(Residual { light: pixel.light, square, part: number % PARTS });
-            }
-        });
+        let tells = |left: &&Left| {
+            left.taken < MOST_TAKEN && left.light > LEAST_DN && left.square < CLIP * CLIP * left.variance
+        };
+        let part = number % PARTS;
+        let of = |left: &Left| Residual { light: left.light, square: left.square, part };
+        residuals.extend(left(number, spot).iter().filter(tells).map(of));
     }
     residuals
 }
 
+fn of_spot(spot: &Spot<'_>, field: &Field, noise: &Noise) -> Vec<Left> {
+    let mut shares = Shares::default();
+    let table = field.at(spot.place_px());
+    let taken = spot.leverages(table, noise, usize::MAX, &mut shares);
+    let mut taken = taken.iter();
+    let mut left = Vec::with_capacity(taken.len());
+    spot.each_pixel(table, noise, usize::MAX, &mut shares, |pixel| {
+        let taken = taken.next().copied().unwrap_or(1.0);
+        let square = pixel.left * pixel.left / (1.0 - taken.min(MOST_TAKEN));
+        left.push(Left { light: pixel.light, square, taken, variance: 1.0 / pixel.weight });
+    });
+    left
+}
+
 /// Explains residuals; `dark_dn` is the noise of patches without light, where it is known.
 pub(super) fn explain(residuals: &[Residual], dark_dn: Option<Measured>, before: &Noise) -> LightNoise {
-    let dark = dark_dn.map(|measured| measured.value * measured.value + ROUNDING);
+    // patches know darkness only so well, and where there is little light every error of it is one of shot noise
+    let dark = dark_dn.map(|Measured { value, sigma }| Measured {
+        value: value * value + ROUNDING,
+        sigma: 2.0 * value * sigma.max(1e-4),
+    });
     let free = split(residuals, dark, None, before);
     let is_shot_seen = free.noise.shot > 3.0 * free.shot_sigma && free.noise.shot < MOST_SHOT;
     if is_shot_seen {
@@ -78,7 +133,7 @@ pub(super) fn explain(residuals: &[Residual], dark_dn: Option<Measured>, before:
 }
 
 /// The noise of all spots, and how it scatters when tenths of them are left out.
-fn split(residuals: &[Residual], dark: Option<f64>, shot: Option<f64>, before: &Noise) -> LightNoise {
+fn split(residuals: &[Residual], dark: Option<Measured>, shot: Option<f64>, before: &Noise) -> LightNoise {
     let solve = |is_used: &dyn Fn(&Residual) -> bool| solve(residuals, (dark, shot), before, is_used);
     let whole = solve(&|_| true);
     let mut squares = [0.0; 3];
@@ -92,11 +147,10 @@ fn split(residuals: &[Residual], dark: Option<f64>, shot: Option<f64>, before: &
     LightNoise { noise: whole, dark_sigma, shot_sigma, shape_sigma, is_shot_seen: true }
 }
 
-/// Least squares of squared residuals on 1, light and its square, none below 0; a normal residual's square has twice its variance
-/// squared.
+/// Least squares of squared residuals on 1, light and its square; a normal residual's square has twice its variance squared.
 fn solve(
     residuals: &[Residual],
-    (dark, shot): (Option<f64>, Option<f64>),
+    (dark, shot): (Option<Measured>, Option<f64>),
     before: &Noise,
     is_used: impl Fn(&Residual) -> bool,
 ) -> Noise {
@@ -104,24 +158,39 @@ fn solve(
     for _ in 0..ROUNDS {
         let mut normal = SMatrix::<f64, 3, 3>::zeros();
         let mut right = SVector::<f64, 3>::zeros();
+        if let Some(Measured { value, sigma }) = dark {
+            normal[(0, 0)] = 1.0 / (sigma * sigma);
+            right[0] = value / (sigma * sigma);
+        }
         for residual in residuals.iter().filter(|residual| is_used(residual)) {
             let variance = noise.variance(residual.light);
             let weight = 0.5 / (variance * variance);
-            let constant = if dark.is_some() { 0.0 } else { 1.0 };
             let linear = if shot.is_some() { 0.0 } else { residual.light };
-            let row = SVector::from([constant, linear, residual.light * residual.light]);
-            let known = dark.unwrap_or(0.0) + shot.unwrap_or(0.0) * residual.light;
+            let row = SVector::from([1.0, linear, residual.light * residual.light]);
+            let known = shot.unwrap_or(0.0) * residual.light;
             normal += row * row.transpose() * weight;
             right += row * ((residual.square - known) * weight);
         }
-        let found = non_negative(&normal, &right);
+        let found = least_squares(&normal, &right);
         noise = Noise {
-            dark: dark.unwrap_or(found[0].max(ROUNDING)),
+            dark: found[0].max(ROUNDING),
             shot: shot.unwrap_or(found[1].max(1e-5)),
             shape: found[2].max(0.0).sqrt(),
+            bend: before.bend,
         };
     }
     noise
+}
+
+/// The least squares, where darkness and shot noise come out as what can be. The square of the shape may then be below 0: were it held at 0
+/// there, shot noise would be too low on average.
+fn least_squares(normal: &SMatrix<f64, 3, 3>, right: &SVector<f64, 3>) -> SVector<f64, 3> {
+    let mut matrix = *normal;
+    if normal[(1, 1)] <= 0.0 {
+        matrix[(1, 1)] = 1.0; // shot noise is known
+    }
+    let free = matrix.lu().solve(right).filter(|found| found[0] >= 0.0 && found[1] >= 0.0);
+    free.filter(|found| found[2].is_finite()).unwrap_or_else(|| non_negative(normal, right))
 }
 
 /// The least squares among numbers not below 0: of all choices of those that are 0, the best.

@@ -9,32 +9,52 @@
 //! start        the round core and halo that explain the spots best
 //! spot, field  places and light of spots by the table, the table by what they leave, in turn (phases: kept even)
 //! light        noise against light, and how wrong the table is
+//! response     whether bright spots are flatter than faint ones
 //! spill        what the excess of full pixels does to their neighbours
+//! choice       which spots are fit to learn from
+//! dark_frame   frames kept whole -> what each pixel reads without light
+//! hot          pixels that are bright without any
+//! column_smear what dark pixels get of the light in their column
+//! trail, vignetting  one LED at many places of the image -> how much light passes there
 //! prediction   what was learned against other frames
 //! ```
 //! What a recording does not excite stays what is believed beforehand and is named in [`Learned::unseen`].
 
+mod choice;
 mod collect;
+mod column_smear;
 mod correction;
+mod dark_frame;
 mod evidence;
 mod field;
+mod hot;
+mod learned;
 mod light;
 mod noise;
 mod phases;
 mod prediction;
 mod profile;
+mod response;
 mod saturation;
 mod spill;
 mod spot;
 mod start;
+mod summits;
 mod table;
+mod trail;
+mod vignetting;
 mod window;
 
-use photinus::optics::{Measured, Optics, OpticsError, Saturation, Sensor};
+use photinus::camera::Pixel;
+use photinus::optics::{HotPixels, Measured, Optics, OpticsError, Response, Saturation, Sensor, SpreadField};
 
+use choice::{choose, clear_of_full, leave_out};
 pub use collect::Collection;
+use dark_frame::DarkFrame;
 pub use evidence::{Evidence, NoiseBin};
 use field::Field;
+use hot::Candidate;
+pub use learned::{LearnError, Learned, Unseen};
 use light::LightNoise;
 use noise::{Darkness, Noise, ROUNDING};
 pub use prediction::{Prediction, predict};
@@ -43,89 +63,18 @@ use spill::Spill;
 use spot::Spot;
 use table::Shares;
 
-/// What frames did not tell of a camera.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Unseen {
-    /// No pixel was dark and not clipped.
-    Darkness,
-    /// Darkness reads the same everywhere, and little light is left over.
-    ReadNoise,
-    /// No light strong enough that its noise stands out.
-    ShotNoise,
-    /// No pixel was full.
-    Saturation,
-    /// Too few pixels were full to see what their excess does.
-    Spill,
-    /// Too few spots to see how the point spread changes over the image.
-    Field,
-    /// LEDs at distances and directions that nobody told.
-    Vignetting,
-    /// Light that rows pick up on their way out.
-    ColumnSmear,
-}
-
-impl Unseen {
-    /// Its name, as it stands in files.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Darkness => "darkness",
-            Self::ReadNoise => "read_noise",
-            Self::ShotNoise => "shot_noise",
-            Self::Saturation => "saturation",
-            Self::Spill => "spill",
-            Self::Field => "field",
-            Self::Vignetting => "vignetting",
-            Self::ColumnSmear => "column_smear",
-        }
-    }
-}
-
-/// Why optics cannot be learned from frames.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum LearnError {
-    /// Too few spots.
-    #[error("{found} spots stand alone and are not full, {needed} are needed")]
-    TooFew {
-        /// Spots found.
-        found: usize,
-        /// Spots needed.
-        needed: usize,
-    },
-    /// Numbers that no optics have: the spots do not share one point spread.
-    #[error("the spots have no point spread in common: {0}")]
-    NoOptics(#[from] OpticsError),
-}
-
-/// What was learned of a camera.
-#[derive(Clone, Debug)]
-pub struct Learned {
-    /// Lens and sensor.
-    pub optics: Optics,
-    /// Standard deviation of the mean level of full pixels, grey levels; `None` where none was full.
-    pub saturation_sigma_dn: Option<f64>,
-    /// Standard deviation of the error of the point spread, as that is a share of the light.
-    pub shape_error_sigma: f64,
-    /// What the frames did not tell, in the order of [`Unseen`].
-    pub unseen: Vec<Unseen>,
-    /// Frames looked at.
-    pub frames: u64,
-    /// Spots that the point spread rests on.
-    pub spots: usize,
-    /// What the numbers rest on.
-    pub evidence: Evidence,
-}
-
 /// Fewest spots that make a point spread.
 pub const FEWEST_SPOTS: usize = 40;
 /// Spots of a node of the grid over which the point spread may change.
 const SPOTS_PER_NODE: usize = 40;
-/// Most spots that the table is made of.
-const MOST_SPOTS: usize = 3000;
 const ROUNDS_WHOLE: usize = 5;
 const ROUNDS_BY_NODE: usize = 8;
+/// Rounds in which tables of half of the spots are learned.
+const ROUNDS_OF_HALVES: usize = 6;
 /// Rounds after which noise is explained anew: what the table cannot follow yet must not be taken for noise.
 const NOISE_AFTER: [usize; 2] = [8, 10];
+/// Rounds after which a bend of the response is taken out of grey levels: the table follows it otherwise.
+const BEND_AFTER: [usize; 4] = [3, 5, 8, 10];
 /// How far from a spot its place is told, px.
 const PLACE_REACH: usize = 8;
 /// What is believed of a sensor that nobody measured.
@@ -140,9 +89,13 @@ pub fn learn(collection: &Collection) -> Result<Learned, LearnError> {
     let windows = &collection.windows.kept;
     let summits = saturation::summits(windows);
     let pile = saturation::find(&summits);
+    let dark_frame = DarkFrame::of(collection);
+    let standing = dark_frame.as_ref().map(|dark| hot::candidates(dark, collection.mask.as_ref()));
     let full_from = pile.map_or(255, |pile| pile.least_dn());
     let darkness = noise::darkness(&collection.patches.kept);
     let mut spots: Vec<Spot<'_>> = windows.iter().map(|window| Spot::new(window, full_from)).collect();
+    leave_out(&mut spots, standing.as_deref().unwrap_or_default());
+    let all = spots.clone();
     let full: Vec<Spot<'_>> = spots.iter().filter(|spot| !spot.is_linear()).cloned().collect();
     choose(&mut spots);
     let size_px = collection.size_px.unwrap_or([1, 1]);
@@ -156,30 +109,55 @@ pub fn learn(collection: &Collection) -> Result<Learned, LearnError> {
     for round in 0..ROUNDS_WHOLE + ROUNDS_BY_NODE {
         place(&mut spots, &field, &noise, if round == 0 { 6 } else { 1 });
         phases::even_out(&mut spots);
-        if round < ROUNDS_WHOLE || nodes == [1, 1] {
+        if round < ROUNDS_WHOLE {
             field.learn_whole(&spots, &noise);
         } else {
-            field.learn_nodes(&spots, &noise);
+            field.learn(&spots, &noise);
         }
         if NOISE_AFTER.contains(&round) {
-            noise = explain(&spots, &field, &noise, &darkness).noise;
+            noise =
+                light::explain(&light::residuals(&spots, &field, &noise), darkness.noise_dn, &noise).noise;
+        }
+        if BEND_AFTER.contains(&round) {
+            noise.bend = bend(&clear_of_full(&spots, &field, &noise, full_from), &field, &noise);
         }
     }
     place(&mut spots, &field, &noise, 2);
-    let light = explain(&spots, &field, &noise, &darkness);
+    let clear = clear_of_full(&spots, &field, &noise, full_from);
+    let response = response::learn(&clear, &field, &noise).map(|bend_per_dn| Response { bend_per_dn });
+    let halves = [0, 1].map(|half| {
+        let start = Field::new(start.table(), size_px, nodes);
+        field_of_half(&clear, start, &noise, half)
+    });
+    let residuals = light::free_residuals(&clear, &field, halves.each_ref(), &noise);
+    let light = light::explain(&residuals, darkness.noise_dn, &noise);
     let used = spots.iter().filter(|spot| spot.is_used).count();
     if used < FEWEST_SPOTS {
         return Err(LearnError::TooFew { found: used, needed: FEWEST_SPOTS });
     }
     let spill = pile.and_then(|pile| spill::learn(&full, &field, &light.noise, &pile));
+    let column_smear = dark_frame.as_ref().and_then(|dark| column_smear::learn(dark, &noise, full_from));
+    let vignetting = collection.camera.as_ref().and_then(|camera| {
+        let mut spots = all;
+        place(&mut spots, &field, &light.noise, 5);
+        let clear = clear_of_full(&spots, &field, &light.noise, full_from);
+        vignetting::learn(&clear, &field, &light.noise, camera)
+    });
+    let spread = field.spread(light.noise.shape.min(1.0))?;
+    let hot_pixels = standing.as_ref().map(|standing| hot_pixels(standing, &spread)).transpose()?;
     let (sensor, mut unseen) = sensor(&darkness, &light, pile.as_ref(), spill);
-    if nodes == [1, 1] {
-        unseen.push(Unseen::Field);
-    }
-    unseen.extend([Unseen::Vignetting, Unseen::ColumnSmear]);
+    let missing = [
+        (nodes == [1, 1], Unseen::Field),
+        (vignetting.is_none(), Unseen::Vignetting),
+        (column_smear.is_none(), Unseen::ColumnSmear),
+        (response.is_none(), Unseen::Response),
+        (hot_pixels.is_none(), Unseen::HotPixels),
+    ];
+    unseen.extend(missing.into_iter().filter_map(|(is_missing, unseen)| is_missing.then_some(unseen)));
     unseen.sort_unstable();
+    let sensor = Sensor { response, column_smear, ..sensor };
     sensor.check()?;
-    let optics = Optics { spread: field.spread(light.noise.shape.min(1.0))?, sensor, vignetting: None };
+    let optics = Optics { spread, sensor, vignetting, hot_pixels: hot_pixels.unwrap_or_default() };
     Ok(Learned {
         optics,
         saturation_sigma_dn: pile.map(|pile| pile.sigma_dn),
@@ -189,28 +167,33 @@ pub fn learn(collection: &Collection) -> Result<Learned, LearnError> {
         spots: used,
         evidence: Evidence {
             summits,
-            noise: evidence::noise(&light::residuals(&spots, &field, &light.noise)),
+            noise: evidence::noise(&residuals),
             phases: evidence::phases(&spots, &field, &light.noise),
         },
     })
 }
 
-/// Keeps the spots that a table can be made of: those without full pixels, the brighter the better, spread over the image.
-fn choose(spots: &mut Vec<Spot<'_>>) {
-    let linear = spots.iter().filter(|spot| spot.is_linear()).count();
-    if linear >= 3 * FEWEST_SPOTS {
-        spots.retain(Spot::is_linear);
-    }
-    spots.retain(|spot| spot.window.reach >= 4 && spot.light > 0.0);
-    if spots.len() > MOST_SPOTS {
-        spots.sort_by(|a, b| b.light.total_cmp(&a.light));
-        spots.truncate(MOST_SPOTS);
-    }
+/// The pixels that are no LEDs behind this lens.
+fn hot_pixels(standing: &[Candidate], spread: &SpreadField) -> Result<HotPixels, OpticsError> {
+    let is_hot = |candidate: &&Candidate| {
+        let place = Pixel::new(f64::from(candidate.pixel.column), f64::from(candidate.pixel.row));
+        let spread = spread.at(place);
+        let around = (0..9).filter(|at| *at != 4).map(|at| [f64::from(at % 3 - 1), f64::from(at / 3 - 1)]);
+        let around: f64 = around.map(|[x, y]| spread.share(x, y)).sum();
+        candidate.is_hot(around / spread.share(0.0, 0.0))
+    };
+    HotPixels::new(standing.iter().filter(is_hot).map(|candidate| candidate.pixel).collect())
+}
+
+/// The bend of the response that spots tell; none where it may be chance.
+fn bend(spots: &[Spot<'_>], field: &Field, noise: &Noise) -> f64 {
+    let told = response::learn(spots, field, noise).map(|bend_per_dn| Response { bend_per_dn });
+    told.filter(Response::is_bent).map_or(0.0, |response| response.bend_per_dn.value)
 }
 
 fn first_noise(darkness: &Darkness) -> Noise {
     let read = darkness.noise_dn.map_or(READ_NOISE_BELIEVED.value, |noise| noise.value);
-    Noise { dark: read * read + ROUNDING, shot: light::SHOT_BELIEVED.value, shape: 0.02 }
+    Noise { dark: read * read + ROUNDING, shot: light::SHOT_BELIEVED.value, shape: 0.02, bend: 0.0 }
 }
 
 /// Nodes along columns and rows that this many spots allow.
@@ -235,8 +218,19 @@ fn place(spots: &mut [Spot<'_>], field: &Field, noise: &Noise, steps: usize) {
     spots.iter_mut().for_each(|spot| spot.is_used &= spot.misfit < 2.5 * middle + 0.5);
 }
 
-fn explain(spots: &[Spot<'_>], field: &Field, noise: &Noise, darkness: &Darkness) -> LightNoise {
-    light::explain(&light::residuals(spots, field, noise), darkness.noise_dn, noise)
+/// Tables of the spots of even or of odd number, from a start that knows none of them.
+fn field_of_half(spots: &[Spot<'_>], start: Field, noise: &Noise, half: usize) -> Field {
+    let mut spots: Vec<Spot<'_>> = spots.iter().skip(half).step_by(2).cloned().collect();
+    let mut field = start;
+    for round in 0..ROUNDS_OF_HALVES {
+        if round < ROUNDS_OF_HALVES / 2 {
+            field.learn_whole(&spots, noise);
+        } else {
+            field.learn(&spots, noise);
+        }
+        place(&mut spots, &field, noise, 1);
+    }
+    field
 }
 
 /// The sensor, and what was not seen of it.
@@ -283,6 +277,7 @@ fn sensor(
         spill: spill.share,
         full_well_dn: spill.well_dn,
         column_smear: None,
+        response: None,
     };
     (sensor, unseen)
 }

@@ -3,14 +3,14 @@
 //! A pixel that is rounded and clipped says only between which levels it was: with normal noise a patch of one level has a
 //! likelihood in closed form, also where rounding hides most of the noise or black is clipped at 0.
 
-use photinus::optics::Measured;
+use photinus::optics::{Measured, Response};
 
 use super::window::Patch;
 
 /// Variance of rounding, grey levels^2.
 pub(super) const ROUNDING: f64 = 1.0 / 12.0;
 
-/// The noise of a pixel: variance = darkness + shot * light + (shape * light)^2.
+/// What a pixel makes of light: variance = darkness + shot * light + (shape * light)^2, and how its response bends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Noise {
     /// Variance without light, that of rounding included.
@@ -19,6 +19,8 @@ pub(super) struct Noise {
     pub(super) shot: f64,
     /// Error of the point spread, as a share of the light.
     pub(super) shape: f64,
+    /// Bend of the response, per grey level; 0 where levels grow in proportion to light.
+    pub(super) bend: f64,
 }
 
 impl Noise {
@@ -26,6 +28,11 @@ impl Noise {
     pub(super) fn variance(&self, light: f64) -> f64 {
         let light = light.max(0.0);
         self.dark + self.shot * light + self.shape * self.shape * light * light
+    }
+
+    /// The light that a level above darkness stands for, and how it grows with that.
+    pub(super) fn straightened(&self, above_dn: f64) -> (f64, f64) {
+        Response { bend_per_dn: Measured { value: self.bend, sigma: 0.0 } }.straightened(above_dn)
     }
 }
 

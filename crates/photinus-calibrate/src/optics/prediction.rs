@@ -2,12 +2,13 @@
 
 use photinus::optics::{Optics, SpreadField};
 
+use super::choice::choose;
 use super::collect::Collection;
 use super::field::Field;
 use super::noise::{Noise, ROUNDING};
 use super::spot::Spot;
 use super::table::{Shares, Table};
-use super::{PLACE_REACH, choose, place};
+use super::{PLACE_REACH, place};
 
 /// Pixels of spots against what optics expect of them.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,6 +31,7 @@ pub fn predict(optics: &Optics, collection: &Collection) -> Option<Prediction> {
         dark: sensor.read_noise_dn.value * sensor.read_noise_dn.value + ROUNDING,
         shot: sensor.shot.value,
         shape: optics.spread.shape_error(),
+        bend: sensor.bent().map_or(0.0, |response| response.bend_per_dn.value),
     };
     let full_from = sensor.full_from_dn();
     let mut spots: Vec<Spot<'_>> =

@@ -36,7 +36,8 @@ pub(super) struct Pixel {
     pub(super) left: f64,
     /// One over its variance.
     pub(super) weight: f64,
-    jacobian: SVector<f64, 4>,
+    /// How its value changes with place, light and level of the spot.
+    pub(super) jacobian: SVector<f64, 4>,
 }
 
 /// A pixel farther off than this many sigmas counts as so far off.
@@ -130,15 +131,31 @@ impl<'a> Spot<'a> {
             if value == 0 && expected < 0.5 {
                 continue; // darkness below the clip
             }
+            let (seen, slope) = noise.straightened(f64::from(value) - self.level);
+            let steeper = noise.dark * (slope * slope - 1.0);
             take(&Pixel {
                 column,
                 row,
                 light,
-                left: f64::from(value) - expected,
-                weight: 1.0 / noise.variance(light),
-                jacobian: SVector::from([self.light * share.by_u, self.light * share.by_v, share.value, 1.0]),
+                left: seen - light,
+                weight: 1.0 / (noise.variance(light) + steeper),
+                jacobian: SVector::from([
+                    self.light * share.by_u,
+                    self.light * share.by_v,
+                    share.value,
+                    slope,
+                ]),
             });
         }
+    }
+
+    /// Standard deviation of its light, grey levels; `None` where pixels do not tell all that is fitted.
+    pub(super) fn light_sigma(&self, table: &Table, noise: &Noise) -> Option<f64> {
+        let mut normal = SMatrix::<f64, 4, 4>::zeros();
+        self.each_pixel(table, noise, usize::MAX, &mut Shares::default(), |pixel| {
+            normal += pixel.jacobian * pixel.jacobian.transpose() * pixel.weight;
+        });
+        Some(normal.try_inverse()?[(2, 2)].max(0.0).sqrt())
     }
 
     /// The share of each pixel's noise that the fit of this spot takes away, by the order of [`Self::each_pixel`].

@@ -16,8 +16,19 @@ pub(super) struct Window {
     pub(super) row: usize,
     /// Pixels to every side that no other spot lights.
     pub(super) reach: usize,
+    /// Where in the recording it was seen.
+    pub(super) seen: Seen,
     /// Row by row.
     pub(super) pixels: Box<[u8]>,
+}
+
+/// Where in a recording a spot was seen.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Seen {
+    /// Spots of one trail are one LED, as far as frames tell that follow each other.
+    pub(super) trail: u64,
+    /// Number of the frame.
+    pub(super) frame: u64,
 }
 
 impl Window {

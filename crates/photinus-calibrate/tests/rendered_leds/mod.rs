@@ -3,7 +3,8 @@
 
 #![allow(dead_code, reason = "each test looks at a part")]
 
-use photinus::camera::{Camera, Ideal, Model, Pixel};
+use nalgebra::{UnitQuaternion, Vector3};
+use photinus::camera::{Bearing, Camera, Ideal, IdealLaw, Model, Pixel};
 use photinus::frame::FrameView;
 use photinus::optics::PointSpread;
 use photinus_calibrate::optics::Collection;
@@ -20,7 +21,12 @@ pub(crate) struct Eye {
     pub(crate) preset: Preset,
     /// Summit of the brightest LED in the middle of a pixel, were it never full, grey levels.
     pub(crate) brightest_dn: f64,
+    /// Pixels that gather charge without light: column, row, grey levels.
+    pub(crate) hot: Vec<(usize, usize, f64)>,
 }
+
+/// An LED in a frame: column and row, and its light against that of the faintest.
+type Led = (f64, f64, f64);
 
 /// Lights of the faintest LEDs, likewise.
 const FAINTEST_DN: f64 = 15.0;
@@ -28,7 +34,7 @@ const FAINTEST_DN: f64 = 15.0;
 impl Eye {
     /// A camera of the list.
     pub(crate) fn of(world: World) -> Self {
-        Self { camera: world.camera, preset: world.preset, brightest_dn: 600.0 }
+        Self { camera: world.camera, preset: world.preset, brightest_dn: 600.0, hot: Vec::new() }
     }
 
     /// A camera of the list by its name.
@@ -46,6 +52,12 @@ impl Eye {
         Self { camera, ..self }
     }
 
+    /// The same behind a lens that sees 160 deg across a small image.
+    pub(crate) fn small_and_wide(self) -> Self {
+        let lens = Ideal::new(IdealLaw::Equidistant, [140.0; 2], Pixel::new(199.5, 149.5)).expect("a lens");
+        Self { camera: Camera::new(Model::Ideal(lens), 400, 300, None).expect("a small image"), ..self }
+    }
+
     fn size(&self) -> (usize, usize) {
         (self.camera.width(), self.camera.height())
     }
@@ -59,27 +71,62 @@ impl Eye {
         Some(PointLight { u_px, v_px, electrons, off_axis_rad, outward, among: 1.0, ..Default::default() })
     }
 
-    /// What a recording of so many frames shows, with so many LEDs in each.
+    /// What a recording of so many frames shows, with so many LEDs in each, at places and of lights drawn anew.
     pub(crate) fn recorded(&self, frames: u64, leds: usize, seed: u64) -> Collection {
+        let (width, height) = self.size();
+        let mut uniform = uniform(seed, 0x1ed5);
+        self.rendered(frames, seed, |_| {
+            let mut draw = || {
+                let (u_px, v_px) = (uniform() * width as f64, uniform() * height as f64);
+                (u_px, v_px, libm::pow(self.brightest_dn / FAINTEST_DN, uniform()))
+            };
+            (0..leds).map(|_| draw()).collect()
+        })
+    }
+
+    /// What a camera records that is turned before LEDs that stand still, as its lens dims them off its axis; their lights
+    /// wander by `drift` of themselves from frame to frame.
+    pub(crate) fn turned(&self, frames: u64, leds: usize, drift: f64, seed: u64) -> Collection {
+        let mut uniform = uniform(seed, 0x7a3d);
+        let mut normal = move || (0..12).map(|_| uniform()).sum::<f64>() - 6.0;
+        let mut log_lights: Vec<f64> = (0..leds).map(|_| 1.5 + 0.5 * normal()).collect();
+        let directions: Vec<Vector3<f64>> =
+            (0..leds).map(|_| Vector3::new(normal(), normal(), normal()).normalize()).collect();
+        let (mut turn, mut rate) = (UnitQuaternion::identity(), Vector3::zeros());
+        self.rendered(frames, seed, |_| {
+            rate = 0.98 * rate + 0.006 * Vector3::new(normal(), normal(), normal());
+            turn *= UnitQuaternion::from_scaled_axis(rate);
+            log_lights.iter_mut().for_each(|light| *light += drift * normal());
+            let seen = directions.iter().zip(&log_lights).filter_map(|(direction, log_light)| {
+                let bearing = Bearing::new(turn * direction)?;
+                let pixel = self.camera.pixel(&bearing)?;
+                let passes = self.preset.lens.illumination(bearing.off_axis_rad());
+                Some((pixel.u, pixel.v, passes * libm::exp(*log_light)))
+            });
+            seen.collect()
+        })
+    }
+
+    /// Frames of LEDs.
+    fn rendered(&self, frames: u64, seed: u64, mut leds: impl FnMut(u64) -> Vec<Led>) -> Collection {
         let (width, height) = self.size();
         let sensor = &self.preset.sensor;
         let mut readout = Readout::of_unit(sensor, (width, height), 1);
         let (mut charge, mut background) = (Charge::new(width, height), Background::new(width, height));
         background.fill(|_, _| 0.0);
-        let mut random = Pcg64::new(u128::from(seed), 0x1ed5);
-        let mut uniform = move || (random.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
-        let mut collection = Collection::default();
+        let mut collection = Collection::of(&self.camera);
         let mut pixels = vec![0; width * height];
         let summit = self.truth([0.5 * width as f64, 0.5 * height as f64]).share(0.0, 0.0);
         for frame in 0..frames {
             charge.clear();
-            for _ in 0..leds {
-                let (u_px, v_px) = (uniform() * width as f64, uniform() * height as f64);
-                let brighter = libm::pow(self.brightest_dn / FAINTEST_DN, uniform());
+            for (u_px, v_px, brighter) in leds(frame) {
                 let levels = FAINTEST_DN * brighter / summit;
                 if let Some(light) = self.light(u_px, v_px, levels * sensor.electrons_per_dn) {
                     self.preset.lens.spread.draw(&light, &mut charge);
                 }
+            }
+            for &(column, row, level_dn) in &self.hot {
+                charge.add(column, row, (level_dn * sensor.electrons_per_dn) as f32);
             }
             let key = seed << 20 | frame;
             readout.expose(&mut charge, key);
@@ -138,6 +185,12 @@ impl Eye {
         }
         PointSpread::new(samples).expect("a point spread")
     }
+}
+
+/// Even numbers from 0 to 1.
+fn uniform(seed: u64, stream: u128) -> impl FnMut() -> f64 {
+    let mut random = Pcg64::new(u128::from(seed), stream);
+    move || (random.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
 }
 
 /// How a table differs from the truth: rms over its summit, within so many px; and its width over the true one, less 1.

@@ -36,6 +36,17 @@ pub(super) fn report(optics: &Optics, summary: Option<&OpticsSummary>, report: &
             report.fact("vignetting", format!("{:.0} % of the light passes at {deg:.0}°", 100.0 * share));
         }
     }
+    if let Some(response) = &sensor.response {
+        let Measured { value, sigma } = response.missing_share(200.0);
+        let shape = if response.is_bent() { "bent" } else { "straight" };
+        let missing = format!("{:.2} ± {:.2} % less than in proportion at 200", 100.0 * value, 100.0 * sigma);
+        report.fact("response", format!("{shape}: {missing}"));
+    }
+    let hot = optics.hot_pixels.iter();
+    if hot.len() > 0 {
+        let (count, brightest) = (hot.len(), hot.map(|hot| hot.level_dn.value).fold(0.0, f64::max));
+        report.fact("hot pixels", format!("{count}, up to {brightest:.0} grey levels"));
+    }
     let Some(summary) = summary else { return };
     if summary.spots > 0 {
         report.fact("optics rest on", format!("{} spots of {} frames", summary.spots, summary.frames));

@@ -10,12 +10,17 @@ fn the_example_is_planned_told_and_drawn() {
     stage.file("set-up.toml", &example.out);
     let done = stage.run("plan set-up.toml --out plan");
     assert_eq!(done.code, 0, "{}", done.err);
-    for told in ["A distance (two spots)", "modulo 60 deg", "6 arms, one LED each", "% of hovering", "IEC 62471:2006"] {
+    for told in
+        ["A distance (two spots)", "modulo 60 deg", "6 arms, one LED each", "% of hovering", "IEC 62471:2006"]
+    {
         assert!(done.out.contains(told), "{told}: {}", done.out);
     }
     let page = stage.read("plan/index.html");
     assert_eq!(page.matches("<figure>").count(), 4);
-    assert!(done.out.lines().all(|line| page.contains(&line.replace('<', "&lt;")) || line.is_empty()), "{page}");
+    assert!(
+        done.out.lines().all(|line| page.contains(&line.replace('<', "&lt;")) || line.is_empty()),
+        "{page}"
+    );
     let json = stage.run("plan set-up.toml --json");
     assert_eq!(json.out, stage.read("plan/plan.json"), "the same plan, as JSON");
     let kept = stage.run("plan set-up.toml --out plan");

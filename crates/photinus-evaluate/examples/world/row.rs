@@ -172,7 +172,7 @@ impl<'a> Studio<'a> {
         if frames == 0 {
             return None;
         }
-        let mut collection = Collection::default();
+        let mut collection = Collection::of(&self.row.eye.camera);
         for number in OTHER_FRAMES..OTHER_FRAMES + frames {
             let (shot, _) = self.shoot(number);
             assert!(collection.add(&shot.frame.image.view(), None), "frames of one size");

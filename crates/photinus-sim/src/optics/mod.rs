@@ -15,7 +15,7 @@ pub use aberration::Aberrations;
 pub use gaussian::Gaussian;
 pub use sampled::SampledSpread;
 pub use spread::{PointLight, PointSpread};
-pub use vignette::Vignette;
+pub use vignette::{Falloff, Vignette};
 pub use zones::ZonedSpread;
 
 /// A lens and filter in front of the sensor.
@@ -29,6 +29,8 @@ pub struct Lens {
     pub side_illumination: f64,
     /// What the rims of the lens cut off besides.
     pub vignette: Option<Vignette>,
+    /// Relative illumination as it was measured: in place of both.
+    pub falloff: Option<Falloff>,
     /// How a point of light spreads over pixels.
     pub spread: PointSpread,
     /// Share of all light in the image that is scattered evenly over it (veiling glare index, ISO 9358).
@@ -39,6 +41,9 @@ impl Lens {
     /// Relative illumination at an angle off the axis: falls with its square to [`Lens::side_illumination`] at 90 deg, and
     /// on to nothing. A fisheye's pupil turns and grows with the angle, so the cos^4 of a plain lens does not hold.
     pub fn illumination(&self, off_axis_rad: f64) -> f64 {
+        if let Some(falloff) = &self.falloff {
+            return falloff.share(off_axis_rad);
+        }
         let share = off_axis_rad / core::f64::consts::FRAC_PI_2;
         let open = self.vignette.map_or(1.0, |vignette| vignette.open(off_axis_rad));
         (1.0 - (1.0 - self.side_illumination) * share * share).max(0.0) * open
@@ -62,6 +67,7 @@ mod tests {
             transmission: 0.1,
             side_illumination: 0.6,
             vignette: None,
+            falloff: None,
             spread,
             veiling_glare: 0.0,
         };

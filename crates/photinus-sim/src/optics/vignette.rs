@@ -1,4 +1,5 @@
-//! Light that the rims of a lens cut off: the pupil, seen from the side, is the part that two circles share.
+//! Light that the rims of a lens cut off: the pupil, seen from the side, is the part that two circles share; and relative
+//! illumination as it was measured of a real lens.
 
 use core::f64::consts::FRAC_2_PI;
 
@@ -24,9 +25,44 @@ impl Vignette {
     }
 }
 
+/// Relative illumination as it was measured of a lens: straight lines between angles, past the last as there.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Falloff {
+    /// Angle off the axis, rad, and the share of light that passes there.
+    points: Vec<[f64; 2]>,
+}
+
+impl Falloff {
+    /// From pairs of an angle off the axis, rad, and the share that passes; `None` unless angles rise and shares are not below 0.
+    pub fn new(points: Vec<[f64; 2]>) -> Option<Self> {
+        let rises = points.windows(2).all(|pair| pair[1][0] > pair[0][0]);
+        let legal =
+            points.iter().all(|[angle, share]| angle.is_finite() && *share >= 0.0 && share.is_finite());
+        (rises && legal && !points.is_empty()).then_some(Self { points })
+    }
+
+    /// Share of light that passes at an angle off the axis.
+    pub fn share(&self, off_axis_rad: f64) -> f64 {
+        let between = |pair: &[[f64; 2]]| {
+            let [[from, low], [to, high]] = [pair[0], pair[1]];
+            low + (high - low) * ((off_axis_rad - from) / (to - from)).clamp(0.0, 1.0)
+        };
+        let here = self.points.windows(2).find(|pair| off_axis_rad <= pair[1][0]);
+        here.map_or(self.points[self.points.len() - 1][1], between)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_measured_falloff_is_straight_between_its_angles_and_even_beyond() {
+        let falloff = Falloff::new(vec![[0.0, 1.0], [0.5, 0.8], [1.0, 0.2]]).unwrap();
+        let shares = [0.0, 0.25, 0.5, 0.9, 1.0, 2.0].map(|rad| (100.0 * falloff.share(rad)).round());
+        assert_eq!(shares, [100.0, 90.0, 80.0, 32.0, 20.0, 20.0]);
+        assert_eq!((Falloff::new(vec![]), Falloff::new(vec![[0.1, 1.0], [0.1, 0.9]])), (None, None));
+    }
 
     #[test]
     fn the_open_pupil_is_what_both_circles_hold() {

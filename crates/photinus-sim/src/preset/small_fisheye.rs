@@ -45,6 +45,7 @@ pub fn small_fisheye(fit: &SmallFisheyeFit) -> Preset {
             transmission: fit.transmission,
             side_illumination: 0.6,
             vignette: None,
+            falloff: None,
             spread: PointSpread::new(vec![core, skirt], 0.1).expect("shares of a fit sum to 1"),
             veiling_glare: 0.0,
         },

@@ -18,7 +18,7 @@ use nalgebra::{Unit, Vector3};
 use photinus_io::dataset::TruthFrame;
 use photinus_io::image::GreyImage;
 
-use crate::sensor::{Background, Charge, Readout, hash};
+use crate::sensor::{Background, Charge, Readout, Sensor, hash};
 use crate::snapshot::Snapshot;
 use backdrop::Backdrop;
 use own::Own;
@@ -54,7 +54,29 @@ pub struct Renderer {
 struct HotPixel {
     u: usize,
     v: usize,
-    dark_e_per_s: f64,
+    dark: Dark,
+}
+
+/// What a hot pixel gathers without light.
+#[derive(Clone, Copy, Debug)]
+enum Dark {
+    ElectronsPerSecond(f64),
+    /// As measured, whatever the exposure.
+    Electrons(f64),
+}
+
+impl Dark {
+    fn electrons(self, exposure_s: f64) -> f64 {
+        match self {
+            Self::ElectronsPerSecond(rate) => rate * exposure_s,
+            Self::Electrons(charge) => charge,
+        }
+    }
+}
+
+/// Charge of a hot pixel that reads so much above darkness; a full one holds twice its well.
+fn measured_electrons(sensor: &Sensor, level_dn: f64) -> f64 {
+    sensor.electrons_at(level_dn + sensor.dark_offset_dn).min(2.0 * sensor.full_well_e)
 }
 
 impl Renderer {
@@ -65,14 +87,21 @@ impl Renderer {
         let hot = |index: u64| {
             let draw = hash(seed ^ hash(index));
             let uniform = ((hash(draw) >> 11) as f64 + 1.0) / (1_u64 << 53) as f64;
-            let dark_e_per_s = -libm::log(uniform) * view.sensor.hot_pixel_e_per_s;
-            HotPixel { u: draw as usize % width, v: (draw >> 20) as usize % height, dark_e_per_s }
+            let rate = -libm::log(uniform) * view.sensor.hot_pixel_e_per_s;
+            let (u, v) = (draw as usize % width, (draw >> 20) as usize % height);
+            HotPixel { u, v, dark: Dark::ElectronsPerSecond(rate) }
         };
+        let measured = view.camera.optics().map(|optics| optics.hot_pixels.iter().copied());
+        let measured = measured.into_iter().flatten().map(|hot| HotPixel {
+            u: (hot.column as usize).min(width - 1),
+            v: (hot.row as usize).min(height - 1),
+            dark: Dark::Electrons(measured_electrons(&view.sensor, hot.level_dn.value)),
+        });
         let axis = view.camera.model().centre();
         Self {
             seed,
             axis_px: [axis.u, axis.v],
-            hot_pixels: (0..count).map(hot).collect(),
+            hot_pixels: (0..count).map(hot).chain(measured).collect(),
             charge: Charge::new(width, height),
             background: Background::new(width, height),
             backdrop: Backdrop::new(&view.camera, &view.lens),
@@ -98,7 +127,7 @@ impl Renderer {
         electrons += self.draw_lamps(snapshot);
         electrons += self.draw_own_edges(&snapshot.emitter, exposure.length_s);
         for hot in &self.hot_pixels {
-            self.charge.add(hot.u, hot.v, (hot.dark_e_per_s * exposure.length_s) as f32);
+            self.charge.add(hot.u, hot.v, hot.dark.electrons(exposure.length_s) as f32);
         }
         self.readout.expose(&mut self.charge, key);
         self.lay_background(snapshot, &world_from_camera, electrons);

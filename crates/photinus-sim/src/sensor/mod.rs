@@ -50,7 +50,7 @@ pub enum Response {
     Linear,
     /// In proportion when dark, towards a ceiling when bright: C (1 - exp(-x / C)), the tone curve of a camera driver.
     Soft {
-        /// The ceiling C above the dark offset, grey levels.
+        /// The ceiling C above the dark offset, grey levels; below 0 levels grow faster the brighter it is.
         ceiling_dn: f64,
     },
 }
@@ -103,7 +103,7 @@ impl Sensor {
         let above_dn = level_dn - self.dark_offset_dn;
         let linear_dn = match self.response {
             Response::Linear => above_dn,
-            Response::Soft { ceiling_dn } if above_dn < ceiling_dn => {
+            Response::Soft { ceiling_dn } if ceiling_dn < 0.0 || above_dn < ceiling_dn => {
                 -ceiling_dn * libm::log1p(-above_dn / ceiling_dn)
             }
             Response::Soft { .. } => f64::INFINITY,

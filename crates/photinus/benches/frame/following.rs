@@ -96,6 +96,7 @@ fn sighting(camera: &Camera, centre: Pixel) -> Sighting {
         covariance_rad2,
         spot_covariance_rad2: covariance_rad2,
         rad_per_px: 3.8e-3,
+        resolution_rad: 9.5e-3,
         bound_rad: 0.01,
         range: None,
     }

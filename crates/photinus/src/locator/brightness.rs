@@ -11,6 +11,7 @@ use super::Sighting;
 use super::cells::{ByCell, Cells};
 #[cfg(not(feature = "std"))]
 use crate::float::Float as _;
+use crate::optics::Vignetting;
 use crate::pose::LogLight;
 use crate::spots::Spot;
 
@@ -31,11 +32,23 @@ const NARROWED_PX: f64 = 4.2;
 const HIDDEN_LOG: f64 = 0.3;
 const HIDDEN_SIGMA: f64 = 0.6;
 
-/// Tells the light of all sightings in an image of `size` (width, height) px; of more than `most` the brightest come first, and of the others no
-/// more is told than by themselves. `by_cell` is room to work in.
-pub(super) fn tell(sightings: &mut [Sighting], most: usize, size: [usize; 2], by_cell: &mut ByCell) {
+/// Tells the light of all sightings in an image of `size` (width, height) px, as bright as they were on the axis where the
+/// lens's vignetting is known; of more than `most` the brightest come first, and of the others no more is told than by
+/// themselves. `by_cell` is room to work in.
+pub(super) fn tell(
+    sightings: &mut [Sighting],
+    vignetting: Option<&Vignetting>,
+    most: usize,
+    size: [usize; 2],
+    by_cell: &mut ByCell,
+) {
     for sighting in sightings.iter_mut() {
         sighting.log_light = alone(&sighting.spot);
+        if let (Some(light), Some(vignetting)) = (&mut sighting.log_light, vignetting) {
+            let (share, sigma) = vignetting.share(sighting.bearing.off_axis_rad());
+            light.value -= libm::log(share);
+            light.sigma = libm::hypot(light.sigma, sigma / share);
+        }
     }
     if sightings.len() > most {
         sightings.sort_unstable_by(brightest_first);

@@ -50,7 +50,7 @@ pub use input::Input;
 use input::Seen;
 pub use kinds::Kind;
 pub use neighbour::{Distance, Located, Neighbour, Orientation, Position, RunnerUp};
-pub(crate) use posing::{RESOLUTION_PX, faintest_light, of_mean_calibration};
+pub(crate) use posing::{faintest_light, of_mean_calibration};
 pub use settings::Settings;
 pub use sighting::Sighting;
 
@@ -177,7 +177,9 @@ impl Locator {
             }
         }
         let size = [self.camera.width(), self.camera.height()];
-        brightness::tell(&mut self.located.sightings, self.inference.most(), size, &mut self.by_cell);
+        let vignetting = self.camera.optics().and_then(|optics| optics.vignetting.as_ref());
+        let most = self.inference.most();
+        brightness::tell(&mut self.located.sightings, vignetting, most, size, &mut self.by_cell);
         input.tell(Stage::Bearings);
         let watched = Watched::new(&self.camera, self.mask.as_ref());
         self.inference.explain(&mut self.located, watched, &mut input);

@@ -31,8 +31,6 @@ use crate::spots::{self, Brightness};
 pub(super) const LOG_RANGE: f64 = 4.6;
 /// Light of the wrong power does not rule out what geometry is sure of, nats.
 const MOST_POWER_NATS: f64 = 12.0;
-/// Two markers so far apart are told apart half of the time, px (rendered frames).
-pub(crate) const RESOLUTION_PX: f64 = 2.5;
 /// Light of a spot that is found half of the time over the step that makes a pixel bright, px (rendered frames).
 const FAINTEST_PX: f64 = 2.5;
 
@@ -239,8 +237,8 @@ fn power_agreement(context: &Context<'_>, group: &[usize], log_power: Option<f64
 /// The distances within strict bounds from which the two outermost markers of an airframe are further apart than half of what is one spot: beyond, they
 /// would hardly be seen as two.
 fn told_apart(sightings: &[Sighting], group: &[usize], reach_m: f64, bounds: &Interval) -> Interval {
-    let finest = group.iter().map(|&spot| sightings[spot].rad_per_px).fold(f64::INFINITY, f64::min);
-    let farthest_m = 2.0 * reach_m / (0.5 * RESOLUTION_PX * finest);
+    let finest_rad = group.iter().map(|&spot| sightings[spot].resolution_rad).fold(f64::INFINITY, f64::min);
+    let farthest_m = 2.0 * reach_m / (0.5 * finest_rad);
     let believed = Interval::new(0.0, farthest_m).filter(|_| group.len() > 1);
     believed.and_then(|believed| bounds.intersect(&believed)).unwrap_or(*bounds)
 }
@@ -279,7 +277,7 @@ fn observe(sighting: &Sighting, clutter_log_density: f64) -> Observation {
         bearing: sighting.bearing,
         covariance_rad2: sighting.spot_covariance_rad2,
         log_light: sighting.log_light,
-        resolution_rad: RESOLUTION_PX * sighting.rad_per_px,
+        resolution_rad: sighting.resolution_rad,
         signal: sighting.signal,
         clutter_log_density,
     }

@@ -26,6 +26,8 @@ pub struct Sighting {
     pub spot_covariance_rad2: Matrix3<f64>,
     /// How far the direction turns per pixel there, where it turns most, rad/px.
     pub rad_per_px: f64,
+    /// Two markers so far apart are told apart half of the time there, rad.
+    pub resolution_rad: f64,
     /// The marker's true direction is no further from the bearing, rad: its light falls within the box of pixels that its
     /// spot spans. The camera's calibration is taken as exact.
     pub bound_rad: f64,
@@ -33,6 +35,8 @@ pub struct Sighting {
     pub range: Option<Interval>,
 }
 
+/// Two markers so far apart are told apart half of the time where points spread no wider than pixels are, px (rendered frames).
+const LEAST_RESOLUTION_PX: f64 = 2.5;
 /// How much the scale of the image may grow across half a spot: what a bound is widened by.
 const SCALE_CHANGE: f64 = 1.05;
 
@@ -47,12 +51,14 @@ pub(super) fn sight(
     let (bearing, jacobian) = camera.bearing_with_jacobian(spot.centre)?;
     let rad_per_px = largest_rad_per_px(&jacobian);
     let spot_covariance_rad2 = jacobian * spot.covariance_px2 * jacobian.transpose();
+    let spread_px = camera.optics().map_or(0.0, |optics| optics.spread.at(spot.centre).resolution_px());
     let calibration = camera.calibration_covariance(spot.centre).unwrap_or_default();
     Some(Sighting {
         spot: spot.clone(),
         signal,
         log_light: None,
         rad_per_px,
+        resolution_rad: spread_px.max(LEAST_RESOLUTION_PX) * rad_per_px,
         bearing,
         covariance_rad2: spot_covariance_rad2 + calibration,
         spot_covariance_rad2,

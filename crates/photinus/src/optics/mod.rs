@@ -2,10 +2,13 @@
 //!
 //! In: what a calibration measured of a lens and its sensor, or what is believed of one that nobody measured. Out: the share
 //! of a point's light that each pixel around it gets, with its slopes ([`PointSpread`], for every part of the image in
-//! [`SpreadField`]); noise, saturation and overflow of a pixel ([`Sensor`]); how much light the lens lets through off its axis
-//! ([`Vignetting`]). Centres, light and their errors follow from these in [`crate::spots`].
+//! [`SpreadField`]); noise, saturation and overflow of a pixel ([`Sensor`]), how its grey levels grow with light ([`Response`]), and
+//! which are bright without any ([`HotPixels`]); how much light the lens lets through off its axis ([`Vignetting`]). Centres, light and
+//! their errors follow from these in [`crate::spots`].
 
 mod field;
+mod hot_pixels;
+mod response;
 mod sensor;
 mod spline;
 mod spread;
@@ -14,6 +17,8 @@ mod vignetting;
 pub(crate) use spread::{Placed, Profile, Shares};
 
 pub use field::SpreadField;
+pub use hot_pixels::{HotPixel, HotPixels};
+pub use response::Response;
 pub use sensor::{Measured, Saturation, Sensor};
 pub use spread::{Gaussian, PointSpread};
 pub use vignetting::Vignetting;
@@ -56,4 +61,6 @@ pub struct Optics {
     pub sensor: Sensor,
     /// How much light passes off the axis; `None` where it was not to be seen.
     pub vignetting: Option<Vignetting>,
+    /// Pixels that are bright without light.
+    pub hot_pixels: HotPixels,
 }

@@ -1,6 +1,6 @@
 //! What a pixel makes of light: noise, where it is full, and where the excess goes.
 
-use super::{OpticsError, check};
+use super::{OpticsError, Response, check};
 #[cfg(not(feature = "std"))]
 use crate::float::Float as _;
 
@@ -32,6 +32,8 @@ pub struct Sensor {
     pub read_noise_dn: Measured,
     /// Variance that light adds, grey levels^2 per grey level: one over the electrons per level.
     pub shot: Measured,
+    /// How grey levels grow with light; `None` where nobody looked: in proportion.
+    pub response: Option<Response>,
     /// Where a pixel is full.
     pub saturation: Saturation,
     /// Share of the charge above the full well that spills into the four neighbours; the rest is drained.
@@ -67,10 +69,18 @@ impl Sensor {
         if let Some(well) = &self.full_well_dn {
             known("the full well", well, 1.0, 1e6, "1 grey level or more")?;
         }
+        if let Some(response) = &self.response {
+            response.check()?;
+        }
         if let Some(smear) = &self.column_smear {
             known("the column smear", smear, 0.0, 1.0, "a share, 0 to 1")?;
         }
         Ok(())
+    }
+
+    /// The response, where it is no straight line as far as can be told.
+    pub fn bent(&self) -> Option<&Response> {
+        self.response.as_ref().filter(|response| response.is_bent())
     }
 
     /// Lowest grey level that may be that of a full pixel: three of its spreads below the mean, never more than 255.

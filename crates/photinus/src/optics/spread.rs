@@ -151,6 +151,31 @@ impl PointSpread {
         f64::from(placed.shifted(column as isize, row as isize).four(0, 0).share.to_array()[0])
     }
 
+    /// How far apart two points of the same light must be that the middle between them is darker than both by an eighth, px: the
+    /// mean of that along columns and along rows. [`Self::REACH_PX`] for a spread without a summit.
+    pub fn resolution_px(&self) -> f64 {
+        const DIP: f64 = 0.125;
+        let middle = Self::SIDE / 2;
+        let along = |step: usize| -> f64 {
+            let at = |quarters: usize| {
+                let [before, after] = [-1, 1].map(|side: isize| {
+                    let index = (middle * Self::SIDE + middle) as isize + side * (quarters * step) as isize;
+                    self.samples[index as usize]
+                });
+                0.5 * (before + after)
+            };
+            // how much darker the middle is than an eighth below the summits, of points 2 k quarters of a pixel apart
+            let lacks = |k: usize| (1.0 - DIP) * (at(0) + at(2 * k)) - 2.0 * at(k);
+            let apart_px = |k: f64| 2.0 * k / PER_PX as f64;
+            let first = (1..=middle / 2).find(|&k| lacks(k) > 0.0);
+            first.map_or(Self::REACH_PX as f64, |k| {
+                let (here, before) = (lacks(k), lacks(k - 1));
+                apart_px(k as f64 - here / (here - before))
+            })
+        };
+        0.5 * (along(1) + along(Self::SIDE))
+    }
+
     /// Makes the planes of coefficients from the samples.
     pub(crate) fn sort_coefficients(&mut self) {
         let side = Self::SIDE;

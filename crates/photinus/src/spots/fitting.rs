@@ -183,6 +183,13 @@ impl Fitter {
         let window_px = radius_px(part).min(room_px.max(part.radius_px + 0.8).max(1.9));
         let around = surroundings(frame, part, window_px);
         self.window.read(frame, part.guess, window_px, &around, full_from);
+        if let Some(optics) = &self.optics {
+            self.window.leave_out(&optics.hot_pixels);
+            if let Some(response) = optics.sensor.bent() {
+                let read_dn = optics.sensor.read_noise_dn.value;
+                self.window.straighten(response, (read_dn * read_dn + 1.0 / 12.0) as f32);
+            }
+        }
         (window_px, around)
     }
 
@@ -215,7 +222,9 @@ impl Fitter {
         let Some(optics) = &self.optics else { return self.lone_pixels.odds((u, v)) };
         let place = Pixel::new(f64::from(u), f64::from(v));
         let dark = Surroundings { level: 0.0, slope: [0.0; 2], variance: 0.0 };
-        hot_pixel::odds(own, around, optics.spread.at(place), self.pixel_noise(dark))
+        let beforehand =
+            if optics.hot_pixels.at(u, v).is_some() { hot_pixel::KNOWN } else { hot_pixel::BEFOREHAND };
+        beforehand * hot_pixel::odds(own, around, optics.spread.at(place), self.pixel_noise(dark))
     }
 
     /// What becomes of charge above a full well.

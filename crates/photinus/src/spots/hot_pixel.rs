@@ -10,7 +10,9 @@ use super::fit::PixelNoise;
 use crate::optics::PointSpread;
 
 /// Hot pixels over markers among what is bright, beforehand.
-const BEFOREHAND: f64 = 0.05;
+pub(super) const BEFOREHAND: f64 = 0.05;
+/// The same where a calibration found the pixel hot.
+pub(super) const KNOWN: f64 = 1e3;
 /// No look makes a pixel more certainly hot than this.
 const MOST_ODDS: f64 = 1e4;
 /// How much likelier a hot pixel stands alone in a frame than a marker, where the point spread is not known; how much less likely it is not
@@ -20,8 +22,7 @@ const MISSED: f64 = 0.1;
 /// Pixels that are remembered, at most.
 const MOST_PIXELS: usize = 4096;
 
-/// Odds that a pixel of signal `own` with `around` in the eight around it is hot: the likelihood of so little around it over that around a
-/// point of light.
+/// How much likelier a hot pixel is to have the signal `own` with `around` in the eight around it than a point of light.
 pub(super) fn odds(own: f32, around: f32, spread: &PointSpread, noise: PixelNoise) -> f64 {
     let [own, around] = [own, around].map(f64::from);
     let [dark, shot, shape] = [noise.dark, noise.shot, noise.shape].map(f64::from);
@@ -33,7 +34,7 @@ pub(super) fn odds(own: f32, around: f32, spread: &PointSpread, noise: PixelNois
     let of_point = of_hot + shot * least.max(0.0) + wrong * wrong;
     let lacks = (least - around).max(0.0);
     let log_odds = 0.5 * (lacks * lacks / of_point - around * around / of_hot + libm::log(of_point / of_hot));
-    BEFOREHAND * libm::exp(log_odds).min(MOST_ODDS)
+    libm::exp(log_odds).min(MOST_ODDS)
 }
 
 /// Pixels that stood alone in the frames so far.
@@ -102,13 +103,14 @@ mod tests {
         for sigma_px in [0.4, 0.6, 1.0] {
             let spread = PointSpread::gaussians(&[Gaussian { share: 1.0, sigma_px }]).unwrap();
             for own in [30.0, 200.0] {
-                assert!(odds(own, 0.5, &spread, NOISE) > 5.0, "{sigma_px} px, {own}");
+                assert!(BEFOREHAND * odds(own, 0.5, &spread, NOISE) > 5.0, "{sigma_px} px, {own}");
                 for phase in [0.0, 0.25, 0.5] {
                     let share =
                         |x: i32, y: i32| spread.share(f64::from(x) - phase, f64::from(y) - phase / 2.0);
                     let eight: f64 = (0..9).filter(|&i| i != 4).map(|i| share(i % 3 - 1, i / 3 - 1)).sum();
                     let around = f64::from(own) * eight / share(0, 0);
-                    assert!(odds(own, around as f32, &spread, NOISE) < 0.02, "{sigma_px} px, {own}, {phase}");
+                    let odds = odds(own, around as f32, &spread, NOISE);
+                    assert!(BEFOREHAND * odds < 0.02, "{sigma_px} px, {own}, {phase}");
                 }
             }
         }
@@ -118,7 +120,7 @@ mod tests {
     fn a_point_spread_within_a_pixel_tells_nothing() {
         let spread = PointSpread::gaussians(&[Gaussian { share: 1.0, sigma_px: 0.1 }]).unwrap();
         let odds = odds(100.0, 0.0, &spread, NOISE);
-        assert!((0.1..10.0).contains(&(odds / BEFOREHAND)), "{odds}");
+        assert!((0.1..10.0).contains(&odds), "{odds}");
     }
 
     #[test]

@@ -12,7 +12,7 @@ use crate::camera::Pixel;
 use crate::float::Float as _;
 use crate::frame::FrameView;
 use crate::lanes::{self, LANES, Lanes};
-use crate::optics::PointSpread;
+use crate::optics::{HotPixels, PointSpread, Response};
 
 /// Farthest pixels of a window from its middle, along rows and columns.
 pub(super) const WIDEST_PX: usize = 10;
@@ -134,6 +134,38 @@ impl Window {
                 self.fours.push(four);
             }
         }
+    }
+
+    /// Takes pixels out that are bright without light.
+    pub(super) fn leave_out(&mut self, hot_pixels: &HotPixels) {
+        for four in &mut self.fours {
+            let at = |offset: usize, middle: i32| middle + offset as i32 - self.reach as i32;
+            let first = at(four.column, self.middle.0);
+            let Ok(row) = u32::try_from(at(four.row, self.middle.1)) else { continue };
+            for hot in hot_pixels.of_row(row) {
+                let lane = i64::from(hot.column) - i64::from(first);
+                if (0..LANES as i64).contains(&lane) {
+                    let (mut counts, mut full) = (four.counts.to_array(), four.full.to_array());
+                    self.full_px -= full[lane as usize] as u32;
+                    (counts[lane as usize], full[lane as usize]) = (0.0, 0.0);
+                    (four.counts, four.full) = (Lanes::new(counts), Lanes::new(full));
+                }
+            }
+        }
+    }
+
+    /// Makes of grey levels the light that they stand for; the noise of darkness, `dark` grey levels^2, grows with the slope.
+    pub(super) fn straighten(&mut self, response: &Response, dark: f32) {
+        for four in &mut self.fours {
+            let (mut light, mut more) = (four.signal.to_array(), [0.0; LANES]);
+            for (light, more) in light.iter_mut().zip(&mut more) {
+                let (straight, slope) = response.straightened(f64::from(*light));
+                (*light, *more) = (straight as f32, dark * (slope * slope - 1.0) as f32);
+            }
+            four.signal = Lanes::new(light);
+            four.others_variance += Lanes::new(more);
+        }
+        self.full_dn = response.straightened(f64::from(self.full_dn)).0 as f32;
     }
 
     /// Lets charge above a full well spill: a share of it into the four neighbours and the rest away, until no pixel has more; `model` is

@@ -7,7 +7,7 @@ use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 use super::error::TrackError;
 use super::motion::Turn;
 use crate::camera::Bearing;
-use crate::locator::{Located, RESOLUTION_PX, Sighting};
+use crate::locator::{Located, Sighting};
 use crate::pose::{Mode, Observation, POWER_RANGE};
 
 /// Most ways in which a neighbour can be its airframe that are taken over.
@@ -230,7 +230,7 @@ fn observe(sighting: &Sighting) -> Observation {
         bearing: sighting.bearing,
         covariance_rad2: sighting.spot_covariance_rad2,
         log_light: sighting.log_light,
-        resolution_rad: RESOLUTION_PX * sighting.rad_per_px,
+        resolution_rad: sighting.resolution_rad,
         signal: None,
         clutter_log_density: -of_light - sighting.spot.marker_log_odds.min(0.0),
     }

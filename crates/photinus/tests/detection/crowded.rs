@@ -1,6 +1,7 @@
 //! Markers close to one another, of different brightness, and many of them.
 
 use photinus::camera::Pixel;
+use photinus::optics::PointSpread;
 use photinus::spots::Brightness;
 use rand_distr::{Distribution, Uniform};
 use rand_pcg::Pcg64;
@@ -69,6 +70,26 @@ fn pairs(apart_px: f64, width_px: f64, heights: [f64; 2], noise: f64, rule: Brig
         result.beyond,
     );
     result
+}
+
+/// The point spread of such markers: the scene takes the light in the middle of a pixel for that of the pixel.
+fn spread(width_px: f64) -> PointSpread {
+    let place = |at: usize| at as f64 / PointSpread::SAMPLES_PER_PX as f64 - PointSpread::REACH_PX as f64;
+    let share = |index: usize| {
+        let (x, y) = (place(index % PointSpread::SIDE), place(index / PointSpread::SIDE));
+        libm::exp(-(x * x + y * y) / (2.0 * width_px * width_px))
+    };
+    PointSpread::new((0..PointSpread::SIDE * PointSpread::SIDE).map(share).collect()).unwrap()
+}
+
+#[test]
+fn pairs_as_far_apart_as_a_point_spread_resolves_are_told_apart_half_of_the_time() {
+    for width_px in [1.0, 1.3, 1.6] {
+        let resolution_px = spread(width_px).resolution_px();
+        let told = |times: f64| pairs(times * resolution_px, width_px, [220.0, 220.0], 1.0, RULES[1]).both;
+        let [nearer, farther] = [0.85, 1.2].map(told);
+        assert!(nearer < 40 && farther > 110, "{nearer} and {farther} of 150 about {resolution_px} px");
+    }
 }
 
 /// Measured: all pairs up to a width of 0.7 px; wider ones, whose light overlaps more, are lost first when one is fainter.

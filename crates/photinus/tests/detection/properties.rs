@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::fmt;
 
 use photinus::frame::{FrameView, Mask};
-use photinus::optics::{Gaussian, Measured, Optics, PointSpread, Saturation, Sensor, SpreadField};
+use photinus::optics::{Gaussian, HotPixels, Measured, Optics, PointSpread, Saturation, Sensor, SpreadField};
 use photinus::spots::{Brightness, Detections, Detector, Noise, Settings, Shape};
 use proptest::prelude::*;
 
@@ -72,13 +72,14 @@ fn optics() -> Arc<Optics> {
         dark_dn: None,
         read_noise_dn: measured(0.5),
         shot: measured(0.04),
+        response: None,
         saturation: Saturation { level_dn: 250.0, spread_dn: 1.0 },
         spill: measured(0.4),
         full_well_dn: None,
         column_smear: None,
     };
     let spread = SpreadField::even(PointSpread::gaussians(&parts).unwrap(), 0.02).unwrap();
-    Arc::new(Optics { spread, sensor, vignetting: None })
+    Arc::new(Optics { spread, sensor, vignetting: None, hot_pixels: HotPixels::default() })
 }
 
 fn areas(found: &Detections) -> u64 {

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use photinus::camera::Pixel;
 use photinus::frame::FrameView;
-use photinus::optics::{Gaussian, Measured, Optics, PointSpread, Saturation, Sensor, SpreadField};
+use photinus::optics::{Gaussian, HotPixels, Measured, Optics, PointSpread, Saturation, Sensor, SpreadField};
 use photinus::spots::{Detector, Settings};
 use rand_distr::{Distribution, Uniform};
 use rand_pcg::Pcg64;
@@ -25,12 +25,18 @@ fn optics() -> Arc<Optics> {
         dark_dn: None,
         read_noise_dn: measured(NOISE_DN),
         shot: Measured { value: 1e-4, sigma: 1e-4 },
+        response: None,
         saturation: Saturation { level_dn: 255.0, spread_dn: 0.0 },
         spill: Measured { value: 0.0, sigma: 0.01 },
         full_well_dn: None,
         column_smear: None,
     };
-    Arc::new(Optics { spread: SpreadField::even(spread, 0.02).unwrap(), sensor, vignetting: None })
+    Arc::new(Optics {
+        spread: SpreadField::even(spread, 0.02).unwrap(),
+        sensor,
+        vignetting: None,
+        hot_pixels: HotPixels::default(),
+    })
 }
 
 /// What became of the markers of all frames.

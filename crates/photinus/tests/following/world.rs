@@ -285,6 +285,7 @@ fn sighting(camera: &Camera, centre: Pixel, light: f64) -> Sighting {
         covariance_rad2,
         spot_covariance_rad2: covariance_rad2,
         rad_per_px: camera.rad_per_px(centre).unwrap(),
+        resolution_rad: 2.5 * camera.rad_per_px(centre).unwrap(),
         bound_rad: 0.01,
         range: None,
     }

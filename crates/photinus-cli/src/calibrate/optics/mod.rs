@@ -34,7 +34,8 @@ Examples:
 
 Any frames with LEDs will do, moving or not; where the LEDs are need not be
 known. Let there be a hundred spots or more that stand 10 px and more apart, all
-over the image, some so bright that pixels are full, most not. What the frames
+over the image, some so bright that pixels are full, most not. Turn the camera while
+LEDs stand still, and it learns how much light the lens passes off its axis. What the frames
 do not tell is said, and stays what is believed of any camera. Without --camera
 a dataset's own is taken.";
 
@@ -81,7 +82,7 @@ pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> Result<(), Failure> {
     let out = args.out.as_deref().map(|path| targets.file(path, Content::Toml)).transpose()?;
     let report = args.report.as_deref().map(|path| targets.folder(path)).transpose()?;
     let name = inputs.first().map_or(String::new(), |input| input.name.clone());
-    let mut collection = Collection::default();
+    let mut collection = Collection::of(&camera.camera);
     for input in inputs {
         let mask = frames::mask(&input, args.mask.as_deref(), terminal)?;
         frames::collect(input, &camera.camera, mask.as_ref(), &mut collection, terminal)?;

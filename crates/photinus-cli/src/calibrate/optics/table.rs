@@ -7,6 +7,9 @@ use photinus_calibrate::optics::{Learned, Unseen};
 
 use super::Width;
 
+/// Light at which a bend of the response is told, grey levels.
+const BRIGHT_DN: f64 = 200.0;
+
 /// The text for the terminal.
 pub(super) struct Told<'a>(pub(super) &'a Learned);
 
@@ -37,6 +40,20 @@ impl fmt::Display for Told<'_> {
         }
         line(f, "read noise", sensor.read_noise_dn, "grey levels", seen(Unseen::ReadNoise))?;
         line(f, "shot noise", sensor.shot, "grey levels^2 per grey level", seen(Unseen::ShotNoise))?;
+        match sensor.response.map(|response| (response, response.missing_share(BRIGHT_DN))) {
+            Some((response, Measured { value, sigma })) => {
+                let shape = if response.is_bent() { "bent" } else { "straight" };
+                let missing = Measured { value: 100.0 * value, sigma: 100.0 * sigma };
+                line(
+                    f,
+                    "response",
+                    missing,
+                    &format!("% less than in proportion at {BRIGHT_DN:.0}: {shape}"),
+                    "",
+                )?;
+            }
+            None => writeln!(f, "  response          not measured: taken for straight")?,
+        }
         let full = Measured {
             value: sensor.saturation.level_dn,
             sigma: learned.saturation_sigma_dn.unwrap_or_default(),
@@ -46,12 +63,28 @@ impl fmt::Display for Told<'_> {
         if learned.saturation_sigma_dn.is_some() {
             writeln!(f, "                    with a spread of {spread_dn:.2} grey levels")?;
         }
-        line(f, "spill of excess", sensor.spill, "of it", seen(Unseen::Spill))?;
+        line(f, "spill of excess", sensor.spill, "of it, the rest is drained", seen(Unseen::Spill))?;
         if let Some(well) = sensor.full_well_dn {
             line(f, "full well", well, "grey levels", "")?;
         }
         if let Some(smear) = sensor.column_smear {
-            line(f, "column smear", smear, "of a pixel's light", "")?;
+            writeln!(f, "  column smear      {:.1e} ± {:.1e} of a column's light", smear.value, smear.sigma)?;
+        }
+        if let Some(vignetting) = &learned.optics.vignetting {
+            let (angles_rad, shares, sigmas) = vignetting.table();
+            if let ([.., rad], [.., share], [.., sigma]) = (angles_rad, shares, sigmas) {
+                let passes = Measured { value: 100.0 * share, sigma: 100.0 * sigma };
+                let unit = format!("% of the light passes {:.0}° off the axis", rad.to_degrees());
+                line(f, "vignetting", passes, &unit, "")?;
+            }
+        }
+        if !learned.unseen.contains(&Unseen::HotPixels) {
+            let hot = learned.optics.hot_pixels.iter();
+            let count = hot.len();
+            let brightest = hot.map(|hot| hot.level_dn.value).fold(0.0, f64::max);
+            let so_bright =
+                if count > 0 { format!(", up to {brightest:.0} grey levels") } else { String::new() };
+            writeln!(f, "  hot pixels        {count}{so_bright}")?;
         }
         let unseen: Vec<&str> = learned.unseen.iter().map(|unseen| unseen.name()).collect();
         write!(f, "  not measured      {}", unseen.join(", "))

@@ -8,7 +8,9 @@ mod samples;
 use std::path::Path;
 
 use photinus::camera::Camera;
-use photinus::optics::{Measured, Optics, OpticsError, Saturation, Sensor, SpreadField, Vignetting};
+use photinus::optics::{
+    HotPixel, HotPixels, Measured, Optics, OpticsError, Response, Saturation, Sensor, SpreadField, Vignetting,
+};
 use serde::{Deserialize, Serialize};
 
 use super::OpticsSummary;
@@ -25,12 +27,15 @@ pub(super) struct OpticsTable {
     dark_dn: Option<[Finite; 2]>,
     read_noise_dn: [Finite; 2],
     shot: [Finite; 2],
+    response_bend: Option<[Finite; 2]>,
     saturation_dn: Finite,
     saturation_sigma_dn: Option<Finite>,
     saturation_spread_dn: Finite,
     spill: [Finite; 2],
     full_well_dn: Option<[Finite; 2]>,
     column_smear: Option<[Finite; 2]>,
+    /// Column, row, level and its sigma; absent where there is none.
+    hot_pixels: Option<Vec<(u32, u32, Finite, Finite)>>,
     vignetting: Option<VignettingTable>,
     point_spread: PointSpreadTable,
 }
@@ -67,12 +72,14 @@ impl OpticsTable {
             dark_dn: sensor.dark_dn.map(pair),
             read_noise_dn: pair(sensor.read_noise_dn),
             shot: pair(sensor.shot),
+            response_bend: sensor.response.map(|response| pair(response.bend_per_dn)),
             saturation_dn: Finite(sensor.saturation.level_dn),
             saturation_sigma_dn: finite(summary.and_then(|summary| summary.saturation_sigma_dn)),
             saturation_spread_dn: Finite(sensor.saturation.spread_dn),
             spill: pair(sensor.spill),
             full_well_dn: sensor.full_well_dn.map(pair),
             column_smear: sensor.column_smear.map(pair),
+            hot_pixels: (optics.hot_pixels.iter().len() > 0).then(|| listed(&optics.hot_pixels)),
             vignetting: optics.vignetting.as_ref().map(VignettingTable::of),
             point_spread: PointSpreadTable {
                 shape_error: Finite(optics.spread.shape_error()),
@@ -95,11 +102,15 @@ impl OpticsTable {
         let size = [camera.width(), camera.height()];
         let sensor = self.sensor();
         sensor.check().map_err(|error| wrong(path, "optics", &error))?;
+        let hot_pixels = self.hot_pixels.as_deref().unwrap_or_default();
+        let hot_pixels =
+            read_hot_pixels(hot_pixels, size).map_err(|error| wrong(path, "optics.hot_pixels", &error))?;
         let vignetting = self.vignetting.map(VignettingTable::read).transpose();
         let optics = Optics {
             spread: self.point_spread.read(size, path)?,
             sensor,
             vignetting: vignetting.map_err(|error| wrong(path, "optics.vignetting", &error))?,
+            hot_pixels,
         };
         Ok((camera.with_optics(optics), summary))
     }
@@ -110,12 +121,37 @@ impl OpticsTable {
             dark_dn: self.dark_dn.map(measured),
             read_noise_dn: measured(self.read_noise_dn),
             shot: measured(self.shot),
+            response: self.response_bend.map(|bend| Response { bend_per_dn: measured(bend) }),
             saturation: Saturation { level_dn: self.saturation_dn.0, spread_dn: self.saturation_spread_dn.0 },
             spill: measured(self.spill),
             full_well_dn: self.full_well_dn.map(measured),
             column_smear: self.column_smear.map(measured),
         }
     }
+}
+
+fn listed(hot_pixels: &HotPixels) -> Vec<(u32, u32, Finite, Finite)> {
+    let one = |hot: &HotPixel| (hot.column, hot.row, Finite(hot.level_dn.value), Finite(hot.level_dn.sigma));
+    hot_pixels.iter().map(one).collect()
+}
+
+/// Hot pixels within an image of this size.
+fn read_hot_pixels(
+    listed: &[(u32, u32, Finite, Finite)],
+    [width, height]: [usize; 2],
+) -> std::result::Result<HotPixels, OpticsError> {
+    let outside =
+        listed.iter().find(|(column, row, ..)| *column as usize >= width || *row as usize >= height);
+    if let Some((column, ..)) = outside {
+        let (name, must) = ("the column or row of a hot pixel", "within the image");
+        return Err(OpticsError::Number { name, value: f64::from(*column), must });
+    }
+    let one = |&(column, row, ref level, ref sigma): &(u32, u32, Finite, Finite)| HotPixel {
+        column,
+        row,
+        level_dn: Measured { value: level.0, sigma: sigma.0 },
+    };
+    HotPixels::new(listed.iter().map(one).collect())
 }
 
 impl VignettingTable {
@@ -190,10 +226,11 @@ mod tests {
 
     fn optics() -> impl Strategy<Value = Optics> {
         let numbers = prop::array::uniform4(measured());
-        let options = prop::array::uniform3(prop::option::of(measured()));
+        let options = prop::array::uniform4(prop::option::of(measured()));
+        let hot = prop::collection::btree_map((0..752_u32, 0..480_u32), measured(), 0..5);
         let zones = prop::collection::vec((0.3..2.0_f64, 0.1..0.9_f64), 1..7);
-        (numbers, options, zones, prop::bool::ANY, 0.0..0.1_f64).prop_map(
-            |([noise, shot, spill, full], [dark, well, smear], zones, is_dim, error)| {
+        (numbers, options, zones, (prop::bool::ANY, hot), 0.0..0.1_f64).prop_map(
+            |([noise, shot, spill, full], [dark, well, smear, bend], zones, (is_dim, hot), error)| {
                 let spread = |(sigma_px, share): (f64, f64)| {
                     kept(&[
                         Gaussian { share, sigma_px },
@@ -214,12 +251,16 @@ mod tests {
                     dark_dn: dark,
                     read_noise_dn: noise,
                     shot,
+                    response: bend
+                        .map(|bend| Response { bend_per_dn: Measured { value: 0.05 * bend.value, ..bend } }),
                     saturation: Saturation { level_dn: 230.0 + full.value, spread_dn: full.sigma },
                     spill,
                     full_well_dn: well,
                     column_smear: smear,
                 };
-                Optics { spread, sensor, vignetting }
+                let hot = hot.into_iter().map(|((column, row), level_dn)| HotPixel { column, row, level_dn });
+                let hot_pixels = HotPixels::new(hot.collect()).unwrap();
+                Optics { spread, sensor, vignetting, hot_pixels }
             },
         )
     }

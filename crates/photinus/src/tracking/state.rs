@@ -15,6 +15,8 @@ const CLUTTER_BEFOREHAND: f64 = 0.5;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Target {
     pub(super) id: u64,
+    /// Who it was heard to be when it appeared.
+    pub(super) vehicle: Option<u32>,
     /// How likely it exists.
     pub(super) existence: f64,
     /// How likely it is hidden, if it exists.

@@ -183,6 +183,7 @@ impl Stepper {
         after.components.extend_from_slice(reduced);
         after.targets.push(Target {
             id: before.id,
+            vehicle: before.vehicle,
             existence: with.total().min(1.0),
             hidden: with.hidden / with.total(),
             seen_s,

@@ -27,6 +27,10 @@ use screening::Screens;
 const FIELD_SR: f64 = core::f64::consts::TAU;
 /// A wrong signal costs no more than this, nats: one in a hundred and fifty is wrong.
 const WRONG_SIGNAL_NATS: f64 = 5.0;
+/// Of the markers of a fleet that blink differently one that was not heard is a given one so likely: those of a vehicle that is followed mostly were.
+const ANY_MARKER: f64 = 1e-3;
+/// What was followed and heard is another light so seldom.
+const WRONG_MARKER: f64 = 1e-4;
 /// Spots within so many radii of a vehicle may hide its markers.
 const NEAR_RADII: f64 = 3.0;
 
@@ -71,6 +75,8 @@ pub(super) struct Ways {
     per_frame: pose::Settings,
     correlated: f64,
     whitened: Vec<Whitened>,
+    /// Who the vehicle is, where it was heard.
+    who: Option<u32>,
     /// How likely each marker of a vehicle is lit as told, and as a pose has it.
     told_lit: Vec<f64>,
     lit: Vec<f64>,
@@ -102,6 +108,7 @@ impl Ways {
             per_frame: pose::Settings::default(),
             correlated: 1.0,
             whitened: Vec::new(),
+            who: None,
             told_lit: Vec::with_capacity(markers),
             lit: Vec::with_capacity(markers),
             blinking: Blinking::default(),
@@ -191,11 +198,11 @@ impl Ways {
             let log_weight = log_shown + libm::log(component.weight);
             let way = Origin { vehicle, from, log_weight, prior: &prior };
             self.grow(scene, &way);
-            for appearance in &moment.appearances {
+            for appearance in moment.appearances.iter().filter(|own| own.may_be(target.vehicle)) {
                 self.begin_at_neighbour(scene, &way, appearance);
             }
         }
-        for appearance in &moment.appearances {
+        for appearance in moment.appearances.iter().filter(|own| own.may_be(target.vehicle)) {
             self.begin_anew(scene, vehicle, log_shown, appearance);
         }
         self.unseen_if_shown.push(unseen_if_shown);
@@ -210,6 +217,7 @@ impl Ways {
         let extra_rad2 = self.correlated * angle_rad * angle_rad;
         self.whitened.clear();
         self.whitened.extend(self.observations.iter().map(|seen| Whitened::of(seen, extra_rad2)));
+        self.who = target.vehicle;
         self.told_lit.clear();
         self.told_lit.resize(model.airframe.markers().len(), 1.0);
         for told in moment.lit.iter().filter(|told| told.track == target.id) {
@@ -259,7 +267,8 @@ impl Ways {
             lit: &self.lit,
             missed: model.pose.missed,
         };
-        let signal_nats = |spot, marker| signal_nats(model, moment, spot, marker);
+        let who = self.who;
+        let signal_nats = |spot, marker| signal_nats(model, moment, who, spot, marker);
         let grown = self.branches.grow(&around, &origin.prior.component, signal_nats);
         self.tried.clear();
         self.tried
@@ -279,7 +288,7 @@ impl Ways {
             self.markers[usize::from(spot)] = Some(marker);
             let Some(bit) = self.bit(usize::from(spot)) else { return };
             spots |= 1 << bit;
-            signals += signal_nats(model, moment, usize::from(spot), usize::from(marker));
+            signals += signal_nats(model, moment, self.who, usize::from(spot), usize::from(marker));
         }
         self.gather_others(scene, &start);
         self.light(scene, origin.vehicle, &origin.prior.component, &start.pose);
@@ -361,11 +370,22 @@ fn is_known_aside(component: &Component, radius_m: f64) -> bool {
     across_m2 < radius_m * radius_m
 }
 
-/// What it costs that a spot is a marker, for the signal that it blinks.
-fn signal_nats(model: &Model, moment: &Moment, spot: usize, marker: usize) -> f64 {
-    let Some(told) = moment.signals[spot] else { return 0.0 };
-    let carries = model.symmetry.carries(marker as u16, told.signal);
-    let probability = if carries { told.probability } else { 1.0 - told.probability };
+/// What it costs that a spot is a marker of `who`, for what it blinks.
+fn signal_nats(model: &Model, moment: &Moment, who: Option<u32>, spot: usize, marker: usize) -> f64 {
+    let told = moment.signals[spot];
+    let carries =
+        |signal: Option<u32>| signal.is_none_or(|signal| model.symmetry.carries(marker as u16, signal));
+    if who.is_some() || told.is_some_and(|told| told.vehicle.is_some()) {
+        let heard = told.map_or(0.0, |told| told.probability);
+        let own = told.map_or(0.0, |told| {
+            if told.vehicle == who && carries(told.signal) { told.probability } else { 0.0 }
+        });
+        // Where vehicles blink different words, a spot that was not heard is any marker of any of them.
+        let unheard = (1.0 - heard) * if who.is_some() { ANY_MARKER } else { 1.0 };
+        return -libm::log((own + unheard).max(WRONG_MARKER));
+    }
+    let Some(told) = told else { return 0.0 };
+    let probability = if carries(told.signal) { told.probability } else { 1.0 - told.probability };
     (-libm::log(probability.max(1e-9))).clamp(0.0, WRONG_SIGNAL_NATS)
 }
 

@@ -17,9 +17,7 @@ use crate::airframe::Airframe;
 use crate::camera::Watched;
 use crate::following::MarkerTrack;
 use crate::locator::{RESOLUTION_PX, Settings, faintest_light};
-use crate::pose::{
-    Estimator, Hypotheses, Known, LogLight, Observation, POWER_RANGE, SettingsError, Visible,
-};
+use crate::pose::{Estimator, Hypotheses, Known, LogLight, Observation, POWER_RANGE, SettingsError, Visible};
 use crate::ranging::Interval;
 use crate::tracking::Called;
 
@@ -85,7 +83,8 @@ impl Calling {
         self.heard.clear();
         for (place, marker) in markers.iter().enumerate() {
             let entry = marker.identity.filter(|own| own.probability > HEARD);
-            if let Some(entry) = entry.and_then(|own| directory.entry(own.who)).filter(|own| !is_followed(own.vehicle))
+            if let Some(entry) =
+                entry.and_then(|own| directory.entry(own.who)).filter(|own| !is_followed(own.vehicle))
             {
                 self.heard.push((entry.vehicle, entry.signal, place));
             }
@@ -169,7 +168,8 @@ fn add(own: &mut Vec<Heard>, one: Heard, markers: &[MarkerTrack]) {
 
 /// A marker that is followed, as one frame would show it.
 fn observe(marker: &MarkerTrack, signal: Option<u32>) -> Observation {
-    let light = |level: crate::identity::Level| LogLight { value: libm::log(level.full()), sigma: level.spread() };
+    let light =
+        |level: crate::identity::Level| LogLight { value: libm::log(level.full()), sigma: level.spread() };
     let log_light = marker.level.map(light);
     Observation {
         bearing: marker.bearing,

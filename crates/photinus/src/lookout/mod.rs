@@ -165,7 +165,8 @@ impl Lookout {
         look.check()?;
         if let Some(blinking) = &mut self.blinking {
             let watched = Watched::new(&self.camera, self.mask.as_ref());
-            (look.blinking, look.signals) = blinking.hear(glance, self.faintest_light, watched, &self.tracked);
+            (look.blinking, look.signals) =
+                blinking.hear(glance, self.faintest_light, watched, &self.tracked);
         }
         self.tracked.take_over(self.tracker.track(&look)?);
         if let Some(blinking) = &mut self.blinking {
@@ -206,7 +207,9 @@ impl Blinking {
         let decoder = Decoder::new(fleet.book(), settings)?;
         let naming = Naming::new(fleet, airframe, decoder.word_beforehand());
         let of_markers = match fleet.has_several_signals() {
-            true => following::Settings { listen_anew_s: decoder.round_s(), ..following::Settings::default() },
+            true => {
+                following::Settings { listen_anew_s: decoder.round_s(), ..following::Settings::default() }
+            }
             false => following::Settings::default(),
         };
         let follower = Follower::new(camera, Some(decoder), of_markers)?;

@@ -121,8 +121,9 @@ impl Starts {
         let grid_rad = GRID * self.airframe.max_radius_m() / pose.position_m.norm();
         let of_spot = |(seen, marker): (&Observation, &Option<u16>)| {
             let Some(marker) = marker.map(usize::from) else { return DARK_NATS };
-            let ahead =
-                (pose.camera_from_body * self.airframe.markers()[marker].position_m + pose.position_m).normalize();
+            let ahead = (pose.camera_from_body * self.airframe.markers()[marker].position_m
+                + pose.position_m)
+                .normalize();
             let variance_rad2 = 0.5 * seen.covariance_rad2.trace() + grid_rad * grid_rad;
             let off = (seen.bearing.vector() - ahead).norm_squared() / variance_rad2;
             let shows = self.airframe.intensity(marker, &camera_m) > SHOWS;
@@ -134,7 +135,8 @@ impl Starts {
 
 /// The two that are the farthest apart.
 fn farthest_apart(observations: &[Observation]) -> Option<[usize; 2]> {
-    let pairs = (0..observations.len()).flat_map(|one| (one + 1..observations.len()).map(move |other| [one, other]));
+    let pairs =
+        (0..observations.len()).flat_map(|one| (one + 1..observations.len()).map(move |other| [one, other]));
     let along = |[one, other]: &[usize; 2]| {
         observations[*one].bearing.vector().dot(observations[*other].bearing.vector())
     };
@@ -146,8 +148,75 @@ fn upright(observations: &[Observation], up: Option<Unit<Vector3<f64>>>) -> Rota
     let up = up.map_or(-Vector3::y(), Unit::into_inner);
     let ahead: Vector3<f64> = observations.iter().map(|seen| *seen.bearing.vector()).sum();
     let level = |towards: Vector3<f64>| (towards - up * towards.dot(&up)).try_normalize(1e-3);
-    let towards = level(ahead).or_else(|| level(Vector3::z())).unwrap_or_else(|| {
-        (Vector3::x() - up * up.x).normalize()
-    });
+    let towards = level(ahead)
+        .or_else(|| level(Vector3::z()))
+        .unwrap_or_else(|| (Vector3::x() - up * up.x).normalize());
     Rotation3::from_basis_unchecked(&[towards, up.cross(&towards), up])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::airframe::{Led, Lobe};
+    use crate::camera::Bearing;
+    use proptest::prelude::*;
+
+    /// Four arms with a pair of LEDs each, which blink its signal.
+    fn pairs() -> Airframe {
+        let led = |number: u32| {
+            let arm = f64::from(number / 2) * TAU / 4.0 + TAU / 8.0;
+            let beside = if number % 2 == 0 { -0.03 } else { 0.03 };
+            let (outward, along) =
+                (Vector3::new(arm.cos(), arm.sin(), 0.0), Vector3::new(-arm.sin(), arm.cos(), 0.0));
+            Led {
+                position_m: outward * 0.3 + along * beside,
+                axis: Unit::new_normalize(outward),
+                lobe: Lobe::Lambertian,
+                power: 1.0,
+                signal: Some(number / 2),
+            }
+        };
+        Airframe::new("pairs", (0..8).map(led).collect()).unwrap()
+    }
+
+    fn seen(airframe: &Airframe, marker: usize, pose: &Pose) -> Observation {
+        let place_m = pose.camera_from_body * airframe.markers()[marker].position_m + pose.position_m;
+        Observation {
+            bearing: Bearing::new(place_m).unwrap(),
+            covariance_rad2: Matrix3::identity() * 1e-8,
+            log_light: None,
+            resolution_rad: 0.0,
+            signal: airframe.leds()[airframe.markers()[marker].leds[0]].signal,
+            clutter_log_density: 0.0,
+        }
+    }
+
+    proptest! {
+        /// All markers that show, and who they are: the cheapest assignment is the true one, and its start is as near as the grid.
+        #[test]
+        fn the_true_assignment_is_the_cheapest(yaw_rad in 0.0..TAU, x_m in -3.0..3.0_f64, y_m in -1.0..1.0_f64, z_m in 2.0..9.0_f64) {
+            let airframe = pairs();
+            let up = Unit::new_normalize(-Vector3::y());
+            let upright = Rotation3::from_basis_unchecked(&[Vector3::z(), up.cross(&Vector3::z()), up.into_inner()]);
+            let pose = Pose {
+                position_m: Vector3::new(x_m, y_m, z_m),
+                camera_from_body: upright * Rotation3::from_axis_angle(&Vector3::z_axis(), yaw_rad),
+            };
+            let camera_m = pose.camera_in_body_m();
+            let shown: Vec<usize> =
+                (0..8).filter(|&marker| airframe.intensity(marker, &camera_m) > 0.2).collect();
+            prop_assume!(shown.len() >= 4);
+            let observations: Vec<Observation> = shown.iter().map(|&marker| seen(&airframe, marker, &pose)).collect();
+            let mut starts = Starts::new(&airframe);
+            let mut hypotheses = Hypotheses::with_room(observations.len());
+            starts.offer(&observations, Some(up), &mut hypotheses);
+            prop_assert!(!hypotheses.is_empty());
+            let near = (0..hypotheses.len()).any(|index| {
+                let markers: Vec<_> = hypotheses.markers(index).iter().map(|own| own.map(usize::from)).collect();
+                let truth: Vec<_> = shown.iter().map(|&marker| Some(marker)).collect();
+                markers == truth
+            });
+            prop_assert!(near);
+        }
+    }
 }

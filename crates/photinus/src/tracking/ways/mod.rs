@@ -18,7 +18,9 @@ use super::step::Model;
 use super::update::Prior;
 use crate::airframe::Airframe;
 use crate::camera::{Bearing, Watched};
-use crate::pose::{self, Assignment, Known, Measurement, Observation, Pose, Seen, Visible, Whitened};
+use crate::pose::{
+    self, Assignment, Known, LogLight, Measurement, Observation, Pose, Seen, Visible, Whitened,
+};
 use crate::ranging::Interval;
 use blinking::Blinking;
 use screening::Screens;
@@ -31,6 +33,8 @@ const WRONG_SIGNAL_NATS: f64 = 5.0;
 const ANY_MARKER: f64 = 1e-3;
 /// What was followed and heard is another light so seldom.
 const WRONG_MARKER: f64 = 1e-4;
+/// LEDs of a fleet differ in power by so much from vehicle to vehicle, as a logarithm, with what distances leave of it.
+const POWER_SIGMA: f64 = 0.3;
 /// Spots within so many radii of a vehicle may hide its markers.
 const NEAR_RADII: f64 = 3.0;
 
@@ -73,6 +77,9 @@ pub(super) struct Ways {
     observations: Vec<Observation>,
     clutter_nats: f64,
     per_frame: pose::Settings,
+    /// The light of an LED of intensity 1 at 1 m, as one frame may count it, and where it counts.
+    power: Option<LogLight>,
+    own_power: Option<LogLight>,
     correlated: f64,
     whitened: Vec<Whitened>,
     /// Who the vehicle is, where it was heard.
@@ -106,6 +113,8 @@ impl Ways {
             observations: Vec::new(),
             clutter_nats: 0.0,
             per_frame: pose::Settings::default(),
+            power: None,
+            own_power: None,
             correlated: 1.0,
             whitened: Vec::new(),
             who: None,
@@ -144,8 +153,8 @@ impl Ways {
         self.screens.add(vehicle, components);
     }
 
-    /// Begins a frame with so many points of clutter.
-    pub(super) fn begin(&mut self, scene: &Scene<'_>, clutter: f64) {
+    /// Begins a frame with so many points of clutter, and LEDs of this power, where that is known.
+    pub(super) fn begin(&mut self, scene: &Scene<'_>, clutter: f64, log_power: Option<f64>) {
         let Scene { model, moment, interval_s, .. } = *scene;
         self.all.clear();
         self.screens.clear();
@@ -169,6 +178,8 @@ impl Ways {
         // An error that lasts for a time is as white noise of the density 2 time sigma^2.
         self.correlated = (2.0 * model.settings.correlation_s / interval_s).max(1.0);
         let widening = self.correlated.sqrt();
+        let sigma = POWER_SIGMA * widening;
+        self.power = log_power.map(|value| LogLight { value, sigma });
         self.per_frame = pose::Settings {
             unit_sigma: model.pose.unit_sigma * widening,
             lobe_sigma: model.pose.lobe_sigma * widening,
@@ -218,6 +229,7 @@ impl Ways {
         self.whitened.clear();
         self.whitened.extend(self.observations.iter().map(|seen| Whitened::of(seen, extra_rad2)));
         self.who = target.vehicle;
+        self.own_power = self.power.filter(|_| target.vehicle.is_some());
         self.told_lit.clear();
         self.told_lit.resize(model.airframe.markers().len(), 1.0);
         for told in moment.lit.iter().filter(|told| told.track == target.id) {
@@ -325,7 +337,7 @@ impl Ways {
             others: &self.others,
             lit: &self.lit,
         };
-        let known = Known { up: None, bounds: Interval::ANY, size: None, power: None, visible };
+        let known = Known { up: None, bounds: Interval::ANY, size: None, power: self.own_power, visible };
         let seen = Seen {
             airframe: &model.airframe,
             settings: &model.pose,

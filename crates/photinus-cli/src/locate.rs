@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 use nalgebra::{Unit, Vector3};
 use photinus::camera::Bearing;
 use photinus::locator::{Kind, Settings};
-use photinus::lookout::Fleet;
 use photinus::ranging::SpotCurve;
 use photinus_io::calibration::read_mounting;
 use photinus_io::dataset::{Dataset, DatasetCamera};
@@ -46,8 +45,7 @@ standard deviation, bounds that truth never leaves, and where it is seen from
 the camera; of a vehicle that blinks words of the dataset, who it is.
 
 Frames that have times are followed: results have tracks with velocities, also
-of who is hidden or dark, and ids where the dataset says who blinks what. Fleets
-whose vehicles carry several signals each are not followed yet.
+of who is hidden or dark, and ids where the dataset says who blinks what.
 
 Exit codes: 0 done, 1 some frames failed or writing did, 2 bad usage or input,
 or no frame could be used.";
@@ -95,9 +93,9 @@ pub(crate) struct Args {
     /// Every frame by itself: no tracks, no velocities, no ids
     #[arg(long)]
     no_time: bool,
-    /// Follow also fleets whose vehicles carry several signals each: slow, and who is who is often wrong
-    #[arg(long, conflicts_with = "no_time")]
-    track: bool,
+    /// Follow neighbours from frame to frame, which is the default
+    #[arg(long = "track", hide = true, conflicts_with = "no_time")]
+    _track: bool,
     /// Write a table with a row per neighbour; - is standard output
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
@@ -165,14 +163,6 @@ impl Args {
         let warn = |text: String| terminal.warning(format_args!("{}: {text}", input.name));
         let dataset = input.dataset.as_ref().filter(|_| !self.no_time);
         let fleets = watch::fleets(dataset, kinds, warn).map_err(Failure::input)?;
-        let several = fleets.iter().flatten().any(Fleet::has_several_signals) && !self.track;
-        if several {
-            terminal.warning(format_args!(
-                "{}: its vehicles carry several signals each, and are not followed: every frame is located by itself (--no-time says so at once, --track follows all the same)",
-                input.name
-            ));
-        }
-        let no_time = self.no_time || several;
         let view = |(of_dataset, mask): (Option<&DatasetCamera>, Option<MaskFile>)| {
             let named = of_dataset.zip(input.dataset.as_ref());
             let path = needed(self.camera.as_deref(), "camera", named.map(|(c, d)| d.path(&c.camera)))?;
@@ -190,7 +180,7 @@ impl Args {
                 .map_err(|error| Failure::Input(error.to_string()))?
                 .mounted(mounting)
                 .level(self.gravity);
-            if no_time {
+            if self.no_time {
                 return Ok(view);
             }
             let is_rig = of_dataset.is_some_and(|camera| camera.name.is_some());

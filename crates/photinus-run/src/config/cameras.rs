@@ -187,8 +187,7 @@ impl Config {
             .level(self.gravity()?);
         let exposure_us =
             keys.exposure_us.or_else(|| named.of_dataset().map(|(_, camera)| camera.exposure_us));
-        let several = fleets.iter().flatten().any(Fleet::has_several_signals);
-        if self.keys.locate.time.unwrap_or(!several) {
+        if self.keys.locate.time.unwrap_or(true) {
             let turns = match named.of_dataset() {
                 Some((dataset, camera)) => Turns::of(dataset, camera.name.is_some(), mounting.as_ref())?,
                 None => mounting.map_or(Turns::Unknown, |mounting| Turns::Live {
@@ -200,8 +199,6 @@ impl Config {
             let watch = Watch::new(&camera, kinds, &settings, mask.as_ref(), beside)
                 .map_err(|error| refuse(error.to_string()))?;
             view = view.following(watch);
-        } else if several && self.keys.locate.time.is_none() {
-            note("vehicles carry several signals each, and are not followed: every frame is located by itself (time = true in [locate] follows all the same)".to_owned());
         }
         let source = self.opener(named, exposure_us, (clock, start_s));
         let exposure = self.wanted_exposure().map(Exposure::new);

@@ -259,6 +259,7 @@ impl Follower {
             let (candidates, association) = (&self.candidates[own[0]..own[1]], &self.association);
             let evidence = track.learn(&self.seen, candidates, |pair| association.free(own[0] + pair));
             self.listeners.hear(&mut track.hearing, frame.time_s, frame.exposure_s, evidence);
+            self.listeners.doubt(&mut track.hearing, frame.time_s, self.settings.listen_anew_s);
             if track.may_listen() {
                 self.listeners.give(&mut track.hearing);
             }

@@ -6,7 +6,7 @@
 use alloc::vec::Vec;
 
 use crate::identity::Evidence;
-use crate::identity::decoder::{Decoder, Listener};
+use crate::identity::decoder::{Decoder, Listener, Who};
 
 /// Frames that are kept for a listener at most.
 const KEPT: usize = 8;
@@ -23,6 +23,8 @@ pub(super) struct Listeners {
 pub(super) struct Hearing {
     kept: [Option<Heard>; KEPT],
     listener: Option<Listener>,
+    /// Since when it surely blinks what nobody knows, s.
+    stranger_since_s: Option<f64>,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -32,6 +34,8 @@ struct Heard {
     evidence: Evidence,
 }
 
+/// A marker surely blinks what nobody knows from this probability on.
+const STRANGER: f64 = 0.8;
 /// How likely a marker shines of which nothing is known yet: half of the time.
 const UNKNOWN: f64 = 0.5;
 /// How likely one shines that is steady.
@@ -69,6 +73,20 @@ impl Listeners {
         }
     }
 
+    /// Listens anew to a marker that blinked for so long what nobody knows.
+    pub(super) fn doubt(&self, hearing: &mut Hearing, time_s: f64, after_s: f64) {
+        let Hearing { listener: Some(listener), stranger_since_s, .. } = hearing else { return };
+        let Some(decoder) = &self.decoder else { return };
+        if decoder.probability(listener, Who::Unknown) < STRANGER {
+            *stranger_since_s = None;
+            return;
+        }
+        if time_s - *stranger_since_s.get_or_insert(time_s) > after_s {
+            decoder.restart(listener);
+            *stranger_since_s = None;
+        }
+    }
+
     /// Gives a listener to a track that has none, and tells it what was kept.
     pub(super) fn give(&mut self, hearing: &mut Hearing) {
         let Some(decoder) = self.decoder.as_ref().filter(|_| hearing.listener.is_none()) else { return };
@@ -82,7 +100,7 @@ impl Listeners {
         for Heard { time_s, exposure_s, evidence } in hearing.kept.iter_mut().filter_map(Option::take) {
             let _ = decoder.hear(&mut listener, time_s, exposure_s, &evidence);
         }
-        hearing.listener = Some(listener);
+        (hearing.listener, hearing.stranger_since_s) = (Some(listener), None);
     }
 
     /// Takes the listener of a track that ends.

@@ -13,6 +13,7 @@ pub(super) struct Seen {
     /// How much more likely it looks as it does if it is a marker than if it is clutter.
     pub(super) looks: f64,
     pub(super) rad_per_px: f64,
+    pub(super) resolution_rad: f64,
 }
 
 impl Seen {
@@ -22,6 +23,6 @@ impl Seen {
             (light, light * log_light.sigma)
         });
         let looks = libm::exp(sighting.spot.marker_log_odds.clamp(-MOST_LOOKS, MOST_LOOKS));
-        Self { light, looks, rad_per_px: sighting.rad_per_px }
+        Self { light, looks, rad_per_px: sighting.rad_per_px, resolution_rad: sighting.resolution_rad }
     }
 }

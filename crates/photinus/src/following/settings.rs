@@ -23,6 +23,9 @@ pub struct Settings {
     pub returns_per_s: f64,
     /// How soon a marker that is hidden, or beyond the border, is gone for good, 1/s.
     pub goes_per_s: f64,
+    /// A marker that surely blinks what nobody knows is listened to anew after so long, s; never where it is infinite. While two LEDs came so near that
+    /// they were one spot, their tracks heard both, and each remembers a word that nobody has.
+    pub listen_anew_s: f64,
 }
 
 impl Default for Settings {
@@ -38,6 +41,7 @@ impl Default for Settings {
             hides_per_s: 0.2,
             returns_per_s: 1.0,
             goes_per_s: 1.0,
+            listen_anew_s: f64::INFINITY,
         }
     }
 }
@@ -65,6 +69,9 @@ impl Settings {
             if !(number > 0.0 && number < below) {
                 return Err(SettingsError(name));
             }
+        }
+        if self.listen_anew_s.is_nan() || self.listen_anew_s <= 0.0 {
+            return Err(SettingsError("listen_anew_s"));
         }
         Ok(())
     }

@@ -24,6 +24,8 @@ pub struct MarkerTrack {
     pub covariance: Matrix4<f64>,
     /// The light that it shows when it shines all the time; `None` where no sighting had a light.
     pub level: Option<Level>,
+    /// Another marker nearer than this is one spot with it, rad.
+    pub resolution_rad: f64,
     /// Which sighting of the frame it is, by index; `None` where it is most probably none, dark or hidden.
     pub sighting: Option<usize>,
     /// The probability of the most probable sighting.
@@ -58,6 +60,7 @@ impl MarkerTrack {
             axes: motion.axes(),
             covariance,
             level: track.level,
+            resolution_rad: track.resolution_rad,
             sighting: sighting.filter(|_| sighting_probability > 0.5),
             sighting_probability,
             lit: track.told.lit,

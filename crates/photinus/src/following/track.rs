@@ -41,6 +41,7 @@ pub(super) struct Track {
     pub(super) level: Option<Level>,
     pub(super) hearing: Hearing,
     pub(super) rad_per_px: f64,
+    pub(super) resolution_rad: f64,
     /// It ends when its existence is less probable.
     least: f64,
     pub(super) frame: Expected,
@@ -95,6 +96,7 @@ impl Track {
             level: seen.light.and_then(|(light, _)| Level::of_first(light)),
             hearing: Hearing::default(),
             rad_per_px: sighting.rad_per_px,
+            resolution_rad: sighting.resolution_rad,
             least: LEAST.min(LEAST_OF_FIRST * probability),
             frame: Expected { lit, absence: [1.0; SHARES], melted: (0.0, 0.0) },
             told: Told { sighting: Some((index, probability)), lit },
@@ -199,6 +201,7 @@ impl Track {
         let seen = &sightings[index];
         if probability > 0.5 {
             self.rad_per_px = seen.rad_per_px;
+            self.resolution_rad = seen.resolution_rad;
         }
         let Some((light, sigma)) = seen.light else { return };
         match &mut self.level {

@@ -46,6 +46,11 @@ impl Level {
         self.full
     }
 
+    /// Standard deviation of that, as a share of it.
+    pub fn spread(&self) -> f64 {
+        self.spread
+    }
+
     /// Time passes: `passed_s` seconds.
     pub fn wait(&mut self, passed_s: f64) {
         let change = Self::CHANGE_PER_S * passed_s.max(0.0);

@@ -55,10 +55,11 @@ pub enum FleetError {
 }
 
 impl Fleet {
-    /// Whether a vehicle carries several signals, each with a word of its own.
+    /// Whether the LEDs of a vehicle blink different words: a frame then shows parts of it.
     #[must_use]
     pub fn has_several_signals(&self) -> bool {
-        self.vehicles.iter().any(|vehicle| vehicle.words.len() > 1)
+        let differ = |vehicle: &Vehicle| vehicle.words.iter().any(|word| *word != vehicle.words[0]);
+        self.vehicles.iter().any(differ)
     }
 
     /// A fleet whose vehicles each blink so many bits per second.

@@ -3,6 +3,7 @@
 //! ```text
 //! frame, when and how turned   -> Glance
 //! sightings -> marker tracks   through their dark frames, each with its word        crate::following, crate::identity
+//! words -> who appears         where the LEDs of a vehicle blink differently        calling (directory, starts)
 //! which of them will shine     what is dark is not held against a vehicle
 //! sightings -> vehicles        where, how fast, how turned                          crate::tracking
 //! marker tracks -> vehicles    whose marker each is                                 belonging
@@ -26,8 +27,11 @@
 //! ```
 
 mod belonging;
+mod calling;
+mod directory;
 mod fleet;
 mod naming;
+mod starts;
 #[cfg(test)]
 mod tests;
 
@@ -41,14 +45,21 @@ use crate::following::{self, Follower, Frame, MarkerTrack};
 use crate::frame::Mask;
 use crate::identity::decoder::{self, Decoder, DecoderError};
 use crate::locator::{self, Located};
-use crate::tracking::{self, Followed, Look, Placed, TrackError, Tracked, Tracker, TrackerError, Turned};
+use crate::pose::SettingsError;
+use crate::tracking::{
+    self, Appearing, Followed, Look, Placed, Signalled, TrackError, Tracked, Tracker, TrackerError, Turned,
+};
 use belonging::Belongings;
+use calling::Calling;
+use directory::Directory;
 pub use fleet::{Fleet, FleetError, Vehicle};
 pub use naming::Name;
 use naming::Naming;
 
 /// A marker of which nothing is known is lit so likely: of the bits of a word about half are.
 const ANY_BIT: f64 = 0.5;
+/// A light is nobody's from this probability on.
+const SURE_STRANGER: f64 = 0.95;
 
 /// A frame that was located.
 #[derive(Clone, Copy, Debug)]
@@ -85,6 +96,18 @@ struct Blinking {
     naming: Naming,
     /// Where they are expected in a frame, and whether lit.
     followed: Vec<Followed>,
+    /// Where the LEDs of a vehicle blink differently.
+    parts: Option<Parts>,
+}
+
+/// What it takes where a frame shows parts of vehicles only.
+#[derive(Debug)]
+struct Parts {
+    directory: Directory,
+    calling: Calling,
+    /// By sighting: whose marker it was heard to be, and whether nobody's.
+    signals: Vec<Option<Signalled>>,
+    strangers: Vec<bool>,
 }
 
 /// Why there can be no lookout.
@@ -97,6 +120,9 @@ pub enum LookoutError {
     /// What is believed of words.
     #[error("{0}")]
     Decoder(#[from] DecoderError),
+    /// What is believed of poses.
+    #[error("{0}")]
+    Pose(#[from] SettingsError),
     /// What is believed of markers.
     #[error("{0}")]
     Following(#[from] following::SettingsError),
@@ -115,7 +141,7 @@ impl Lookout {
         fleet: Option<&Fleet>,
     ) -> Result<Self, LookoutError> {
         let tracker = Tracker::new(camera.clone(), airframe, locator, settings)?;
-        let blinking = fleet.map(|fleet| Blinking::new(&camera, airframe, fleet)).transpose()?;
+        let blinking = fleet.map(|fleet| Blinking::new(&camera, airframe, locator, fleet)).transpose()?;
         let faintest_light = locator::faintest_light(&locator.spots);
         Ok(Self { camera, mask: None, faintest_light, tracker, tracked: Tracked::default(), blinking })
     }
@@ -141,7 +167,8 @@ impl Lookout {
         look.check()?;
         if let Some(blinking) = &mut self.blinking {
             let watched = Watched::new(&self.camera, self.mask.as_ref());
-            look.blinking = Some(blinking.hear(glance, self.faintest_light, watched, self.tracked.time_s));
+            (look.blinking, look.signals) =
+                blinking.hear(glance, self.faintest_light, watched, &self.tracked);
         }
         self.tracked.take_over(self.tracker.track(&look)?);
         if let Some(blinking) = &mut self.blinking {
@@ -172,23 +199,35 @@ impl Lookout {
 }
 
 impl Blinking {
-    fn new(camera: &Camera, airframe: &Airframe, fleet: &Fleet) -> Result<Self, LookoutError> {
+    fn new(
+        camera: &Camera,
+        airframe: &Airframe,
+        locator: &locator::Settings,
+        fleet: &Fleet,
+    ) -> Result<Self, LookoutError> {
         let settings = decoder::Settings { bit_rate_hz: fleet.bit_rate_hz(), ..decoder::Settings::default() };
         let decoder = Decoder::new(fleet.book(), settings)?;
         let naming = Naming::new(fleet, airframe, decoder.word_beforehand());
-        let follower = Follower::new(camera, Some(decoder), following::Settings::default())?;
-        Ok(Self { follower, belongings: Belongings::default(), naming, followed: Vec::new() })
+        let of_markers = match fleet.has_several_signals() {
+            true => {
+                following::Settings { listen_anew_s: decoder.round_s(), ..following::Settings::default() }
+            }
+            false => following::Settings::default(),
+        };
+        let follower = Follower::new(camera, Some(decoder), of_markers)?;
+        let parts = fleet.has_several_signals().then(|| Parts::new(airframe, locator, fleet)).transpose()?;
+        Ok(Self { follower, belongings: Belongings::default(), naming, followed: Vec::new(), parts })
     }
 
-    /// Follows the markers, and says where each is and whether it must be lit in this frame.
+    /// Follows the markers, and says where each is and whether it must be lit in this frame, and what sightings blink.
     fn hear(
         &mut self,
         glance: &Glance<'_>,
         faintest_light: f64,
         watched: Watched<'_>,
-        last_s: f64,
-    ) -> tracking::Blinking<'_> {
-        if (glance.time_s - last_s).abs() > Tracker::JUMP_S {
+        tracked: &Tracked,
+    ) -> (Option<tracking::Blinking<'_>>, &[Option<Signalled>]) {
+        if (glance.time_s - tracked.time_s).abs() > Tracker::JUMP_S {
             self.follower.restart();
         }
         let frame = Frame {
@@ -201,15 +240,21 @@ impl Blinking {
         };
         self.followed.clear();
         // A late frame is not heard.
-        if let Ok(markers) = self.follower.follow(&frame) {
-            let signal = |number: u64| self.naming.signal(self.belongings.of_marker(number)?);
-            self.followed.extend(markers.iter().map(|marker| Followed {
-                bearing: marker.bearing,
-                lit: marker.lit,
-                signal: signal(marker.number),
-            }));
-        }
-        tracking::Blinking { followed: &self.followed, others: ANY_BIT }
+        let markers = self.follower.follow(&frame).unwrap_or_default();
+        let signal = |number: u64| self.naming.signal(self.belongings.of_marker(number)?);
+        self.followed.extend(markers.iter().map(|marker| Followed {
+            bearing: marker.bearing,
+            lit: marker.lit,
+            signal: signal(marker.number),
+        }));
+        let (appearing, signals) = match &mut self.parts {
+            Some(parts) => {
+                let (appearing, signals) = parts.hear(glance, markers, watched, tracked);
+                (Some(appearing), signals)
+            }
+            None => (None, &[][..]),
+        };
+        (Some(tracking::Blinking { followed: &self.followed, others: ANY_BIT, appearing }), signals)
     }
 
     /// Gives the markers to the vehicles, names these, and turns them as their signals say.
@@ -224,5 +269,44 @@ impl Blinking {
         }
         naming.name(tracked, belongings);
         tracked.turn(|track| naming.turn(track));
+    }
+}
+
+impl Parts {
+    fn new(airframe: &Airframe, locator: &locator::Settings, fleet: &Fleet) -> Result<Self, SettingsError> {
+        Ok(Self {
+            directory: Directory::of(fleet),
+            calling: Calling::new(airframe, locator)?,
+            signals: Vec::new(),
+            strangers: Vec::new(),
+        })
+    }
+
+    /// Says whose marker each sighting is, as far as the marker was heard, and who appears.
+    fn hear(
+        &mut self,
+        glance: &Glance<'_>,
+        markers: &[MarkerTrack],
+        watched: Watched<'_>,
+        tracked: &Tracked,
+    ) -> (Appearing<'_>, &[Option<Signalled>]) {
+        let Self { directory, calling, signals, strangers } = self;
+        let sightings = glance.located.sightings.len();
+        signals.clear();
+        signals.resize(sightings, None);
+        strangers.clear();
+        strangers.resize(sightings, false);
+        for marker in markers {
+            let (Some(identity), Some(sighting)) = (marker.identity, marker.sighting) else { continue };
+            let probability = identity.probability * marker.sighting_probability;
+            if let Some(entry) = directory.entry(identity.who) {
+                signals[sighting] =
+                    Some(Signalled { signal: entry.signal, probability, vehicle: Some(entry.vehicle) });
+            }
+            strangers[sighting] = probability > SURE_STRANGER && directory.is_stranger(identity.who);
+        }
+        let is_followed = |vehicle: u32| tracked.is_followed(vehicle);
+        let called = calling.listen(markers, directory, glance.gravity, watched, is_followed);
+        (Appearing { called, strangers }, signals)
     }
 }

@@ -289,3 +289,57 @@ fn fleets_without_a_meaning_are_refused() {
     assert_eq!(fleet(&[(1, &[0], 0.0)]), FleetError::BitRate(0.0));
     assert_eq!(fleet(&[(1, &[0], 60.0), (2, &[1], 62.0)]), FleetError::BitRates(60.0, 62.0));
 }
+
+/// Six arms with three words, of two vehicles that cross: each is one track with its own name, from three code lengths on, and no other.
+#[test]
+fn vehicles_with_several_signals_cross_as_one_track_each() {
+    let mut world = World::new(signalled([0, 1, 1, 2, 2, 2]), 2, 3);
+    let mut blinkers = [
+        Blinker::new([-1.6, 0.2, 4.5], [0.7, 0.0, 0.0], 0.3, vec![word(0), word(1), word(2)], 0.003),
+        Blinker::new([1.6, -0.4, 6.0], [-0.7, 0.0, 0.0], 1.0, vec![word(3), word(4), word(5)], 0.05),
+    ];
+    let (mut right, mut not, mut tracks) = (0, 0, std::collections::BTreeSet::new());
+    for frame in 0..240 {
+        let tracked = world.see(&mut blinkers);
+        if f64::from(frame) < 3.0 * LENGTH {
+            continue;
+        }
+        tracks.extend(tracked.tracks.iter().map(|track| track.id));
+        for (blinker, id) in blinkers.iter().zip(1..) {
+            match world.named(&tracked, blinker) {
+                Some(Some(told)) => {
+                    assert_eq!(told, id, "frame {frame}");
+                    right += 1;
+                }
+                _ => not += 1,
+            }
+        }
+    }
+    println!("several signals, crossing: {right} right, {not} not, tracks {tracks:?}");
+    assert_eq!(tracks.len(), 2);
+    assert!(not < 12, "{right} right, {not} not");
+}
+
+/// What blinks words of nobody is followed without a name beside who is known, and nobody takes its spots.
+#[test]
+fn strangers_fly_beside_vehicles_with_several_signals() {
+    let mut world = World::new(signalled([0, 1, 1, 2, 2, 2]), 2, 3);
+    let steady = Word::new(&[true]).unwrap();
+    let mut blinkers = [
+        Blinker::new([-1.2, 0.2, 4.5], [0.2, 0.0, 0.0], 0.3, vec![word(0), word(1), word(2)], 0.003),
+        Blinker::new(
+            [1.2, -0.2, 5.0],
+            [-0.1, 0.0, 0.0],
+            1.0,
+            vec![steady.clone(), steady.clone(), steady],
+            0.0,
+        ),
+    ];
+    for frame in 0..150 {
+        let tracked = world.see(&mut blinkers);
+        if frame > 75 {
+            assert_eq!(world.named(&tracked, &blinkers[0]), Some(Some(1)), "frame {frame}");
+            assert_eq!(world.named(&tracked, &blinkers[1]), Some(None), "frame {frame}");
+        }
+    }
+}

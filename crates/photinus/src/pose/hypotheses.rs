@@ -102,7 +102,7 @@ impl Hypotheses {
         &mut self.markers[index * self.spots..][..self.spots]
     }
 
-    pub(super) fn markers(&self, index: usize) -> &[Option<u16>] {
+    pub(crate) fn markers(&self, index: usize) -> &[Option<u16>] {
         &self.markers[index * self.spots..][..self.spots]
     }
 }

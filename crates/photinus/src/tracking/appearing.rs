@@ -1,6 +1,7 @@
 //! Located neighbours whose spots no vehicle claims -> new vehicles.
 //!
-//! A neighbour that is a vehicle's own spots, located again, is claimed and no news. The mixture of a neighbour's poses enters as it is.
+//! A neighbour that is a vehicle's own spots, located again, is claimed and no news. The mixture of a neighbour's poses enters as it is. A vehicle that is
+//! heard appears once.
 
 use alloc::vec::Vec;
 
@@ -30,11 +31,13 @@ pub(super) fn appear(
         let of_others = members.iter().map(|&spot| claimed[spot]).fold(0.0, f64::max);
         let existence = appearance.probability * (1.0 - of_others).max(0.0);
         unexplained -= existence * members.len() as f64;
-        if existence < LEAST || after.targets.len() == MOST_TARGETS {
+        let is_there = |own: &Target| appearance.vehicle.is_some() && own.vehicle == appearance.vehicle;
+        if existence < LEAST || after.targets.len() == MOST_TARGETS || after.targets.iter().any(is_there) {
             continue;
         }
         modes.clear();
-        let anonymous = members.iter().all(|&spot| moment.signals[spot].is_none());
+        let anonymous =
+            appearance.vehicle.is_none() && members.iter().all(|&spot| moment.signals[spot].is_none());
         let turns = if anonymous { model.symmetry.turns() } else { 1 };
         for mode in moment.modes(appearance) {
             let first = modes.first().copied();
@@ -51,12 +54,13 @@ pub(super) fn appear(
         after.markers.resize(after.members.len(), None);
         after.targets.push(Target {
             id: after.next_id,
+            vehicle: appearance.vehicle,
             existence,
             hidden: 0.0,
             seen_s: moment.time_s,
-            is_predicted: false,
+            is_predicted: members.is_empty(),
             log_power: None,
-            calibration_rad2: calibration / members.len() as f64,
+            calibration_rad2: calibration / members.len().max(1) as f64,
             first_component,
             components: modes.len(),
             first_member,

@@ -7,7 +7,7 @@ use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 use super::error::TrackError;
 use super::motion::Turn;
 use crate::camera::Bearing;
-use crate::locator::{Located, Sighting};
+use crate::locator::{Located, Neighbour, Sighting};
 use crate::pose::{Mode, Observation, POWER_RANGE};
 
 /// Most ways in which a neighbour can be its airframe that are taken over.
@@ -44,6 +44,31 @@ pub struct Blinking<'a> {
     pub followed: &'a [Followed],
     /// How likely any other marker is lit.
     pub others: f64,
+    /// Where the LEDs of a vehicle blink differently: who appears, by what is heard. A frame shows parts of such vehicles, and what looks like a neighbour in
+    /// it may be parts of several, so that nobody appears who is only seen. `None` where the LEDs of a vehicle blink alike.
+    pub appearing: Option<Appearing<'a>>,
+}
+
+/// Who appears in a fleet whose vehicles carry several signals each.
+#[derive(Clone, Copy, Debug)]
+pub struct Appearing<'a> {
+    /// Vehicles whose words are heard.
+    pub called: &'a [Called],
+    /// By sighting, whether it surely is a light of nobody in the fleet; those beyond its end are not.
+    pub strangers: &'a [bool],
+}
+
+/// A vehicle whose words are heard, with its pose from all markers that blink them, also those that are dark in the frame.
+#[derive(Clone, Debug, Default)]
+pub struct Called {
+    /// Who it is.
+    pub vehicle: u32,
+    /// How likely its markers are one vehicle with these words, 0 to 1.
+    pub probability: f64,
+    /// Those of its markers that are sightings of the frame, ascending.
+    pub members: Vec<usize>,
+    /// The ways in which its markers can be the airframe, the likeliest first; yaw is told as far as signals differ.
+    pub modes: Vec<Mode>,
 }
 
 /// A marker that is followed through its dark frames.
@@ -69,10 +94,12 @@ pub struct Turned {
 /// Whose light a sighting is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Signalled {
-    /// Which of the airframe's signals.
-    pub signal: u32,
+    /// Which of the airframe's signals; `None` where several are alike.
+    pub signal: Option<u32>,
     /// With what probability.
     pub probability: f64,
+    /// Whose it is, where vehicles blink different words.
+    pub vehicle: Option<u32>,
 }
 
 /// How likely a marker of a track is lit while a frame is exposed.
@@ -112,10 +139,19 @@ impl Look<'_> {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Appearance {
     pub(super) probability: f64,
+    /// Who it is, where that was heard.
+    pub(super) vehicle: Option<u32>,
     first_member: usize,
     members: usize,
     first_mode: usize,
     modes: usize,
+}
+
+impl Appearance {
+    /// Whether it may be a vehicle that was heard to be this one.
+    pub(super) fn may_be(&self, vehicle: Option<u32>) -> bool {
+        self.vehicle.is_none() || self.vehicle == vehicle
+    }
 }
 
 /// A frame, kept.
@@ -158,7 +194,11 @@ impl Moment {
         for (index, sighting) in located.sightings.iter().enumerate() {
             self.observations.push(observe(sighting));
             self.calibrations.push(sighting.covariance_rad2 - sighting.spot_covariance_rad2);
-            let told = sighting.signal.map(|signal| Signalled { signal, probability: SIGNAL_IS_RIGHT });
+            let told = sighting.signal.map(|signal| Signalled {
+                signal: Some(signal),
+                probability: SIGNAL_IS_RIGHT,
+                vehicle: None,
+            });
             self.signals.push(signals.get(index).copied().unwrap_or(told));
         }
         self.lit.clear();
@@ -169,19 +209,33 @@ impl Moment {
         self.appearances.clear();
         self.members.clear();
         self.modes.clear();
+        let appearing = blinking.and_then(|blinking| blinking.appearing);
+        let is_stranger = |spot: &usize| {
+            appearing.is_none_or(|Appearing { strangers, .. }| strangers.get(*spot).copied().unwrap_or(false))
+        };
         for neighbour in located.neighbours.iter().filter(|neighbour| neighbour.kind == kind) {
-            let (members, modes) = (&neighbour.sightings, &neighbour.modes);
-            let modes = &modes[..modes.len().min(MOST_MODES)];
-            self.appearances.push(Appearance {
-                probability: neighbour.probability * neighbour.kind_probability,
-                first_member: self.members.len(),
-                members: members.len(),
-                first_mode: self.modes.len(),
-                modes: modes.len(),
-            });
-            self.members.extend_from_slice(members);
-            self.modes.extend_from_slice(modes);
+            let Neighbour { probability, kind_probability, sightings, modes, .. } = neighbour;
+            if sightings.iter().all(is_stranger) {
+                self.keep_appearance(None, probability * kind_probability, sightings, modes);
+            }
         }
+        for called in appearing.map_or(&[][..], |appearing| appearing.called) {
+            self.keep_appearance(Some(called.vehicle), called.probability, &called.members, &called.modes);
+        }
+    }
+
+    fn keep_appearance(&mut self, vehicle: Option<u32>, probability: f64, members: &[usize], modes: &[Mode]) {
+        let modes = &modes[..modes.len().min(MOST_MODES)];
+        self.appearances.push(Appearance {
+            probability,
+            vehicle,
+            first_member: self.members.len(),
+            members: members.len(),
+            first_mode: self.modes.len(),
+            modes: modes.len(),
+        });
+        self.members.extend_from_slice(members);
+        self.modes.extend_from_slice(modes);
     }
 
     /// The sightings of an appearance.

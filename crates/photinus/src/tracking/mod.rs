@@ -46,7 +46,7 @@ use crate::pose::Symmetry;
 pub use error::{TrackError, TrackerError};
 pub use gyro::turned;
 use history::History;
-pub use look::{Blinking, Followed, Lit, Look, Signalled, Turned};
+pub use look::{Appearing, Blinking, Called, Followed, Lit, Look, Signalled, Turned};
 use motion::{Motion, Turn};
 pub use settings::{Association, Settings};
 use step::{Model, Stepper};

@@ -10,6 +10,8 @@ use super::component::Component;
 pub(super) const MOST_TARGETS: usize = 64;
 /// Most normal distributions of one vehicle.
 pub(super) const MOST_COMPONENTS: usize = 12;
+/// So many vehicles tell the power of their LEDs.
+const FEWEST_POWERS: usize = 3;
 /// Points of clutter in a frame before any was seen.
 const CLUTTER_BEFOREHAND: f64 = 0.5;
 
@@ -17,6 +19,8 @@ const CLUTTER_BEFOREHAND: f64 = 0.5;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Target {
     pub(super) id: u64,
+    /// Who it was heard to be when it appeared.
+    pub(super) vehicle: Option<u32>,
     /// How likely it exists.
     pub(super) existence: f64,
     /// How likely it is hidden, if it exists.
@@ -75,6 +79,15 @@ impl State {
         self.components.clear();
         self.members.clear();
         self.markers.clear();
+    }
+
+    /// The light of an LED of intensity 1 at 1 m, as a logarithm: what half of the vehicles say at most, so that one that is taken to be too near or too far
+    /// does not bend it. `None` of too few.
+    pub(super) fn log_power(&self, powers: &mut Vec<f64>) -> Option<f64> {
+        powers.clear();
+        powers.extend(self.targets.iter().filter_map(|target| target.log_power));
+        powers.sort_unstable_by(f64::total_cmp);
+        powers.get(powers.len() / 2).copied().filter(|_| powers.len() >= FEWEST_POWERS)
     }
 
     /// The normal distributions of a vehicle, the heaviest first.

@@ -64,6 +64,7 @@ pub(super) struct Stepper {
     /// How likely each sighting is a vehicle's.
     claimed: Vec<f64>,
     reduced: Vec<Component>,
+    powers: Vec<f64>,
 }
 
 impl Stepper {
@@ -75,6 +76,7 @@ impl Stepper {
             joint: Joint::default(),
             claimed: Vec::new(),
             reduced: Vec::with_capacity(512),
+            powers: Vec::with_capacity(MOST_TARGETS),
         }
     }
 
@@ -104,7 +106,7 @@ impl Stepper {
         }
         self.first_predicted.push(self.predicted.len());
         let scene = Scene { model, watched, moment, interval_s };
-        self.ways.begin(&scene, before.clutter);
+        self.ways.begin(&scene, before.clutter, before.log_power(&mut self.powers));
         for (vehicle, range) in self.first_predicted.windows(2).enumerate() {
             self.ways.may_screen(vehicle, &self.predicted[range[0]..range[1]]);
         }
@@ -185,6 +187,7 @@ impl Stepper {
         after.components.extend_from_slice(reduced);
         after.targets.push(Target {
             id: before.id,
+            vehicle: before.vehicle,
             existence: with.total().min(1.0),
             hidden: with.hidden / with.total(),
             seen_s,

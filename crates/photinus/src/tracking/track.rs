@@ -37,6 +37,8 @@ pub struct Track {
     pub existence: f64,
     /// Whether nothing of it was seen at the stamp: it coasts.
     pub is_predicted: bool,
+    /// Who it was heard to be when it appeared.
+    pub(crate) vehicle: Option<u32>,
     first_member: usize,
     members: usize,
 }
@@ -76,6 +78,11 @@ impl Tracked {
     /// the told attitude.
     pub fn markers(&self, track: &Track) -> &[Option<u16>] {
         own(&self.markers, track)
+    }
+
+    /// Whether a vehicle that was heard is followed.
+    pub(crate) fn is_followed(&self, vehicle: u32) -> bool {
+        self.tracks.iter().any(|track| track.vehicle == Some(vehicle))
     }
 
     /// The same as another, in the room that it has.
@@ -144,6 +151,7 @@ impl Tracked {
                 position_orientation_covariance_m_rad: one.covariance.fixed_view::<3, 3>(0, 6).into_owned(),
                 existence,
                 is_predicted: target.is_predicted || interval_s > 0.0,
+                vehicle: target.vehicle,
                 first_member,
                 members: self.members.len() - first_member,
             });

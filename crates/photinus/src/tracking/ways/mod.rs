@@ -22,7 +22,9 @@ use crate::airframe::Airframe;
 use crate::camera::{Bearing, Watched};
 #[cfg(not(feature = "std"))]
 use crate::float::Float as _;
-use crate::pose::{self, Assignment, Known, Measurement, Observation, Pose, Seen, Visible, Whitened};
+use crate::pose::{
+    self, Assignment, Known, LogLight, Measurement, Observation, Pose, Seen, Visible, Whitened,
+};
 use crate::ranging::Interval;
 use blinking::Blinking;
 use screening::Screens;
@@ -31,6 +33,12 @@ use screening::Screens;
 const FIELD_SR: f64 = core::f64::consts::TAU;
 /// A wrong signal costs no more than this, nats: one in a hundred and fifty is wrong.
 const WRONG_SIGNAL_NATS: f64 = 5.0;
+/// Of the markers of a fleet that blink differently one that was not heard is a given one so likely: those of a vehicle that is followed mostly were.
+const ANY_MARKER: f64 = 1e-3;
+/// What was followed and heard is another light so seldom.
+const WRONG_MARKER: f64 = 1e-4;
+/// LEDs of a fleet differ in power by so much from vehicle to vehicle, as a logarithm, with what distances leave of it.
+const POWER_SIGMA: f64 = 0.3;
 /// Spots within so many radii of a vehicle may hide its markers.
 const NEAR_RADII: f64 = 3.0;
 
@@ -73,8 +81,13 @@ pub(super) struct Ways {
     observations: Vec<Observation>,
     clutter_nats: f64,
     per_frame: pose::Settings,
+    /// The light of an LED of intensity 1 at 1 m, as one frame may count it, and where it counts.
+    power: Option<LogLight>,
+    own_power: Option<LogLight>,
     correlated: f64,
     whitened: Vec<Whitened>,
+    /// Who the vehicle is, where it was heard.
+    who: Option<u32>,
     /// How likely each marker of a vehicle is lit as told, and as a pose has it.
     told_lit: Vec<f64>,
     lit: Vec<f64>,
@@ -104,8 +117,11 @@ impl Ways {
             observations: Vec::new(),
             clutter_nats: 0.0,
             per_frame: pose::Settings::default(),
+            power: None,
+            own_power: None,
             correlated: 1.0,
             whitened: Vec::new(),
+            who: None,
             told_lit: Vec::with_capacity(markers),
             lit: Vec::with_capacity(markers),
             blinking: Blinking::default(),
@@ -141,8 +157,8 @@ impl Ways {
         self.screens.add(vehicle, components);
     }
 
-    /// Begins a frame with so many points of clutter.
-    pub(super) fn begin(&mut self, scene: &Scene<'_>, clutter: f64) {
+    /// Begins a frame with so many points of clutter, and LEDs of this power, where that is known.
+    pub(super) fn begin(&mut self, scene: &Scene<'_>, clutter: f64, log_power: Option<f64>) {
         let Scene { model, moment, interval_s, .. } = *scene;
         self.all.clear();
         self.screens.clear();
@@ -166,6 +182,8 @@ impl Ways {
         // An error that lasts for a time is as white noise of the density 2 time sigma^2.
         self.correlated = (2.0 * model.settings.correlation_s / interval_s).max(1.0);
         let widening = self.correlated.sqrt();
+        let sigma = POWER_SIGMA * widening;
+        self.power = log_power.map(|value| LogLight { value, sigma });
         self.per_frame = pose::Settings {
             unit_sigma: model.pose.unit_sigma * widening,
             lobe_sigma: model.pose.lobe_sigma * widening,
@@ -195,11 +213,11 @@ impl Ways {
             let log_weight = log_shown + libm::log(component.weight);
             let way = Origin { vehicle, from, log_weight, prior: &prior };
             self.grow(scene, &way);
-            for appearance in &moment.appearances {
+            for appearance in moment.appearances.iter().filter(|own| own.may_be(target.vehicle)) {
                 self.begin_at_neighbour(scene, &way, appearance);
             }
         }
-        for appearance in &moment.appearances {
+        for appearance in moment.appearances.iter().filter(|own| own.may_be(target.vehicle)) {
             self.begin_anew(scene, vehicle, log_shown, appearance);
         }
         self.unseen_if_shown.push(unseen_if_shown);
@@ -214,6 +232,8 @@ impl Ways {
         let extra_rad2 = self.correlated * angle_rad * angle_rad;
         self.whitened.clear();
         self.whitened.extend(self.observations.iter().map(|seen| Whitened::of(seen, extra_rad2)));
+        self.who = target.vehicle;
+        self.own_power = self.power.filter(|_| target.vehicle.is_some());
         self.told_lit.clear();
         self.told_lit.resize(model.airframe.markers().len(), 1.0);
         for told in moment.lit.iter().filter(|told| told.track == target.id) {
@@ -263,7 +283,8 @@ impl Ways {
             lit: &self.lit,
             missed: model.pose.missed,
         };
-        let signal_nats = |spot, marker| signal_nats(model, moment, spot, marker);
+        let who = self.who;
+        let signal_nats = |spot, marker| signal_nats(model, moment, who, spot, marker);
         let grown = self.branches.grow(&around, &origin.prior.component, signal_nats);
         self.tried.clear();
         self.tried
@@ -283,7 +304,7 @@ impl Ways {
             self.markers[usize::from(spot)] = Some(marker);
             let Some(bit) = self.bit(usize::from(spot)) else { return };
             spots |= 1 << bit;
-            signals += signal_nats(model, moment, usize::from(spot), usize::from(marker));
+            signals += signal_nats(model, moment, self.who, usize::from(spot), usize::from(marker));
         }
         self.gather_others(scene, &start);
         self.light(scene, origin.vehicle, &origin.prior.component, &start.pose);
@@ -320,7 +341,7 @@ impl Ways {
             others: &self.others,
             lit: &self.lit,
         };
-        let known = Known { up: None, bounds: Interval::ANY, size: None, power: None, visible };
+        let known = Known { up: None, bounds: Interval::ANY, size: None, power: self.own_power, visible };
         let seen = Seen {
             airframe: &model.airframe,
             settings: &model.pose,
@@ -365,11 +386,22 @@ fn is_known_aside(component: &Component, radius_m: f64) -> bool {
     across_m2 < radius_m * radius_m
 }
 
-/// What it costs that a spot is a marker, for the signal that it blinks.
-fn signal_nats(model: &Model, moment: &Moment, spot: usize, marker: usize) -> f64 {
-    let Some(told) = moment.signals[spot] else { return 0.0 };
-    let carries = model.symmetry.carries(marker as u16, told.signal);
-    let probability = if carries { told.probability } else { 1.0 - told.probability };
+/// What it costs that a spot is a marker of `who`, for what it blinks.
+fn signal_nats(model: &Model, moment: &Moment, who: Option<u32>, spot: usize, marker: usize) -> f64 {
+    let told = moment.signals[spot];
+    let carries =
+        |signal: Option<u32>| signal.is_none_or(|signal| model.symmetry.carries(marker as u16, signal));
+    if who.is_some() || told.is_some_and(|told| told.vehicle.is_some()) {
+        let heard = told.map_or(0.0, |told| told.probability);
+        let own = told.map_or(0.0, |told| {
+            if told.vehicle == who && carries(told.signal) { told.probability } else { 0.0 }
+        });
+        // Where vehicles blink different words, a spot that was not heard is any marker of any of them.
+        let unheard = (1.0 - heard) * if who.is_some() { ANY_MARKER } else { 1.0 };
+        return -libm::log((own + unheard).max(WRONG_MARKER));
+    }
+    let Some(told) = told else { return 0.0 };
+    let probability = if carries(told.signal) { told.probability } else { 1.0 - told.probability };
     (-libm::log(probability.max(1e-9))).clamp(0.0, WRONG_SIGNAL_NATS)
 }
 

@@ -1,0 +1,185 @@
+//! Markers whose words are one vehicle's -> that vehicle with its pose, from all of them, also those that are dark at the time.
+//!
+//! ```text
+//! words      which vehicle's marker each followed one surely is, as which signal          directory
+//! poses      upright at every yaw, which of the markers with that signal each may be,     starts
+//!            and the place that fits; crate::pose makes them modes with weights
+//! ```
+//!
+//! A frame shows about half of the markers of a vehicle whose signals differ, and what stands next to each other in it may be of several. Who is followed
+//! marker by marker and heard needs no group in any frame.
+
+use alloc::vec;
+use alloc::vec::Vec;
+
+use nalgebra::{Unit, Vector3};
+
+use super::directory::Directory;
+use super::starts::Starts;
+use crate::airframe::Airframe;
+use crate::camera::Watched;
+use crate::following::MarkerTrack;
+use crate::locator::{Settings, faintest_light};
+use crate::pose::{Estimator, Hypotheses, Known, LogLight, Observation, POWER_RANGE, SettingsError, Visible};
+use crate::ranging::Interval;
+use crate::tracking::Called;
+
+/// A marker tells whose it is from this probability on, ...
+const HEARD: f64 = 0.5;
+/// ... and those of a vehicle together from this one on: they are wrong when each of them is.
+const HEARD_TOGETHER: f64 = 0.95;
+/// Markers that are needed for a pose.
+const FEWEST: usize = 2;
+/// Markers of one vehicle at most.
+const MOST: usize = 16;
+/// A marker whose misfit is larger is no marker of the vehicle, sigma.
+const MOST_MISFIT_SIGMA: f64 = 6.0;
+/// A marker that was not heard is lit so likely.
+const UNHEARD_LIT: f64 = 0.5;
+
+/// Vehicle, signal, and place among the markers that are followed.
+type Heard = (u32, Option<u32>, usize);
+
+/// Vehicles that are heard. Keeps its room.
+#[derive(Debug)]
+pub(super) struct Calling {
+    starts: Starts,
+    estimator: Estimator,
+    hypotheses: Hypotheses,
+    faintest_light: f64,
+    lit: Vec<f64>,
+    /// By marker that is followed: vehicle, signal and place among the followed.
+    heard: Vec<Heard>,
+    own: Vec<Heard>,
+    observations: Vec<Observation>,
+    called: Vec<Called>,
+    count: usize,
+}
+
+impl Calling {
+    /// Of vehicles with this airframe, by a locator with these settings.
+    pub(super) fn new(airframe: &Airframe, settings: &Settings) -> Result<Self, SettingsError> {
+        Ok(Self {
+            starts: Starts::new(airframe),
+            estimator: Estimator::new(airframe, settings.pose)?,
+            hypotheses: Hypotheses::with_room(MOST),
+            faintest_light: faintest_light(&settings.spots),
+            lit: vec![UNHEARD_LIT; airframe.markers().len()],
+            heard: Vec::with_capacity(MOST),
+            own: Vec::with_capacity(MOST),
+            observations: Vec::with_capacity(MOST),
+            called: Vec::new(),
+            count: 0,
+        })
+    }
+
+    /// Those that call among the markers that are followed, but for vehicles that are followed already.
+    pub(super) fn listen(
+        &mut self,
+        markers: &[MarkerTrack],
+        directory: &Directory,
+        gravity: Option<Unit<Vector3<f64>>>,
+        watched: Watched<'_>,
+        is_followed: impl Fn(u32) -> bool,
+    ) -> &[Called] {
+        self.count = 0;
+        self.heard.clear();
+        for (place, marker) in markers.iter().enumerate() {
+            let entry = marker.identity.filter(|own| own.probability > HEARD);
+            if let Some(entry) =
+                entry.and_then(|own| directory.entry(own.who)).filter(|own| !is_followed(own.vehicle))
+            {
+                self.heard.push((entry.vehicle, entry.signal, place));
+            }
+        }
+        self.heard.sort_unstable_by_key(|&(vehicle, _, place)| (vehicle, place));
+        let heard = core::mem::take(&mut self.heard);
+        for own in heard.chunk_by(|a, b| a.0 == b.0) {
+            self.own.clear();
+            for &one in own {
+                add(&mut self.own, one, markers);
+            }
+            if (FEWEST..=MOST).contains(&self.own.len()) {
+                let own = core::mem::take(&mut self.own);
+                self.call(markers, &own, gravity.map(|down| -down), watched);
+                self.own = own;
+            }
+        }
+        self.heard = heard;
+        &self.called[..self.count]
+    }
+
+    /// Adds a vehicle that has these markers, if they have a pose.
+    fn call(
+        &mut self,
+        markers: &[MarkerTrack],
+        own: &[Heard],
+        up: Option<Unit<Vector3<f64>>>,
+        watched: Watched<'_>,
+    ) {
+        let of = |&(.., place): &Heard| &markers[place];
+        let wrong = |own: &Heard| of(own).identity.map_or(1.0, |identity| 1.0 - identity.probability);
+        let probability = 1.0 - own.iter().map(wrong).product::<f64>();
+        if probability < HEARD_TOGETHER {
+            return;
+        }
+        self.observations.clear();
+        self.observations.extend(own.iter().map(|&(_, signal, place)| observe(&markers[place], signal)));
+        self.starts.offer(&self.observations, up, &mut self.hypotheses);
+        let visible = Visible {
+            faintest_light: self.faintest_light,
+            watched: Some(watched),
+            others: &[],
+            lit: &self.lit,
+        };
+        let known = Known { up, bounds: Interval::ANY, size: None, power: None, visible };
+        let posterior = self.estimator.estimate(&self.observations, &mut self.hypotheses, &known);
+        if posterior.summary.is_none() || posterior.worst_sigma > MOST_MISFIT_SIGMA {
+            return;
+        }
+        if self.count == self.called.len() {
+            self.called.push(Called::default());
+        }
+        let called = &mut self.called[self.count];
+        self.count += 1;
+        called.vehicle = own[0].0;
+        called.probability = probability;
+        called.members.clear();
+        called.members.extend(own.iter().filter_map(|own| of(own).sighting));
+        called.members.sort_unstable();
+        called.members.dedup();
+        called.modes.clone_from(&posterior.modes);
+    }
+}
+
+/// Adds a marker, unless it is the light of one that is there: where two LEDs came so near that they are one spot, both are followed for a while. The
+/// surer of the two stays.
+fn add(own: &mut Vec<Heard>, one: Heard, markers: &[MarkerTrack]) {
+    let of = |heard: &Heard| &markers[heard.2];
+    let reach_rad = of(&one).resolution_rad;
+    let spread = |heard: &Heard| of(heard).covariance.fixed_view::<2, 2>(0, 0).trace();
+    let is_same = |other: &Heard| {
+        let off_rad2 = (of(other).bearing.vector() - of(&one).bearing.vector()).norm_squared();
+        other.1 == one.1 && off_rad2 < reach_rad * reach_rad + spread(other) + spread(&one)
+    };
+    match own.iter_mut().find(|other| is_same(other)) {
+        Some(other) if spread(&one) < spread(other) => *other = one,
+        Some(_) => {}
+        None => own.push(one),
+    }
+}
+
+/// A marker that is followed, as one frame would show it.
+fn observe(marker: &MarkerTrack, signal: Option<u32>) -> Observation {
+    let light =
+        |level: crate::identity::Level| LogLight { value: libm::log(level.full()), sigma: level.spread() };
+    let log_light = marker.level.map(light);
+    Observation {
+        bearing: marker.bearing,
+        covariance_rad2: marker.bearing_covariance_rad2(),
+        log_light,
+        resolution_rad: marker.resolution_rad,
+        signal,
+        clutter_log_density: log_light.map_or(0.0, |_| -libm::log(POWER_RANGE)),
+    }
+}

@@ -1,6 +1,5 @@
 //! A code word: the bits that an LED repeats without an end.
 
-use alloc::vec::Vec;
 use core::fmt;
 
 /// 1 to 64 bits in a circle; bit 0 is sent first, 1 is on.

@@ -1,5 +1,7 @@
 //! Pixels that are bright without light: a list, as a calibration found them.
 
+use alloc::vec::Vec;
+
 use super::{Measured, OpticsError, check};
 
 /// A pixel that reads more than those around it in every frame, whatever falls on it.

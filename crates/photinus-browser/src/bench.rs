@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 use photinus::airframe::{Airframe, Ring};
 use photinus::camera::{Camera, Ideal, IdealLaw, Model, Pixel};
 use photinus::frame::FrameView;
-use photinus::locator::{Locator, Settings};
+use photinus::locator::{Input, Locator, Settings};
 
 use crate::told;
 
@@ -51,9 +51,8 @@ impl Bench {
         self.told.clear();
         let Ok(view) = FrameView::packed(&self.pixels, width, height) else { return 0 };
         let down = Vector3::y_axis();
-        let Ok(located) = self.locator.locate(&view, is_level.then_some(&down), &mut |_| ()) else {
-            return 0;
-        };
+        let input = Input::frame(&view).gravity(is_level.then_some(&down));
+        let Ok(located) = self.locator.locate(input) else { return 0 };
         told::write(located, &mut self.told);
         self.told.len()
     }

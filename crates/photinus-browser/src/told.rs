@@ -26,14 +26,14 @@ fn frame(located: &Located, onto: &mut String) -> fmt::Result {
         if index > 0 {
             onto.push(',');
         }
-        of_neighbour(located, neighbour, onto)?;
+        of_neighbour(neighbour, onto)?;
     }
     onto.push_str("]}");
     Ok(())
 }
 
-fn of_neighbour(located: &Located, neighbour: &Neighbour, onto: &mut String) -> fmt::Result {
-    let members: Vec<String> = located.members(neighbour).iter().map(ToString::to_string).collect();
+fn of_neighbour(neighbour: &Neighbour, onto: &mut String) -> fmt::Result {
+    let members: Vec<String> = neighbour.sightings.iter().map(ToString::to_string).collect();
     let b = neighbour.bearing.vector();
     write!(
         onto,

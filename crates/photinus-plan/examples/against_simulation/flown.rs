@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use nalgebra::{Isometry3, Rotation3, Translation3, Unit, UnitQuaternion, Vector3};
 use photinus::airframe::{Airframe, Led};
-use photinus::locator::{Locator, Settings, Sighting};
+use photinus::locator::{Input, Locator, Settings, Sighting};
 use photinus_io::dataset::TruthLed;
 use photinus_plan::Setup;
 use photinus_sim::snapshot::{LedLight, Lit, Moving, Snapshot, Vehicle};
@@ -80,7 +80,7 @@ impl<'a> Flight<'a> {
         let rendered = self.renderer.render(&snapshot, self.frame);
         let truth = &rendered.truth.neighbours[0];
         let down = Unit::new_unchecked(Vector3::y());
-        let located = self.locator.locate(&rendered.image.view(), Some(&down), &mut |_| ());
+        let located = self.locator.locate(Input::frame(&rendered.image.view()).gravity(&down));
         let located = located.expect("the camera's size");
         let is_of_an_led = |spot: &&Sighting| {
             let gap_px =

@@ -9,6 +9,7 @@ use photinus_io::kind::{self, Kind};
 use photinus_io::video::Y4mFrames;
 use photinus_io::whole::open_regular;
 use photinus_io::{Error, Result};
+use photinus_link::recording::{Frames, Recording, image_topics};
 
 use super::Findings;
 
@@ -62,6 +63,11 @@ fn frames(path: &Path, kind: Kind) -> Result<Box<dyn Iterator<Item = Result<Fram
     Ok(match kind {
         Kind::Dataset => Box::new(FrameSource::dataset(Dataset::read(path)?)),
         Kind::ImageFolder => Box::new(FrameSource::images(spread(kind::images_in(path)?))),
+        // Of several cameras the first, as of a dataset.
+        Kind::Recording => {
+            let first = image_topics(&Recording::open(path)?).into_iter().next();
+            Box::new(Frames::open(path, first.as_ref().map(|topic| topic.name.as_str()))?)
+        }
         Kind::Video => {
             let file = open_regular(path)?;
             // A header that is wrong is told with its file.

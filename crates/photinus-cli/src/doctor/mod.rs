@@ -22,6 +22,8 @@ const EXAMPLES: &str = "\
 Examples:
   photinus doctor camera.toml quad.toml mask.png recording
   photinus doctor camera.toml frames/
+  # what a run recorded
+  photinus doctor camera.toml flight.mcap
 
 A recording of a minute on the ground, with a neighbour in sight, tells most.
 Exits with 0 whatever is doubtful, with 2 when a file cannot be read.";
@@ -35,7 +37,7 @@ const STEP_DEG: u32 = 5;
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Args {
-    /// A camera, an airframe, a mask, a dataset, a video or images
+    /// A camera, an airframe, a mask, a dataset, an MCAP recording, a video or images
     #[arg(value_name = "FILE", required = true)]
     files: Vec<PathBuf>,
 }

@@ -24,6 +24,15 @@ fn what_is_doubtful_is_said_and_what_is_fine_too() {
         assert!(done.out.contains(said), "lacks `{said}`:\n{}", done.out);
     }
 
+    assert_eq!(stage.run("convert rec rec.mcap").code, 0);
+    let of_mcap = stage.run("doctor camera.toml hexa.toml rec.mcap");
+    assert_eq!(
+        (of_mcap.code, of_mcap.out),
+        (0, done.out.replace("\nrec\n", "\nrec.mcap\n")),
+        "{}",
+        of_mcap.err
+    );
+
     let (width, height) = SIZE;
     let bright = |level: u8| GreyImage::new(vec![level; width * height], width, height).unwrap();
     std::fs::create_dir(stage.path("day")).unwrap();

@@ -1,6 +1,6 @@
 //! `locate` of frames with times: who is followed, where it is going, and who it is.
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 use photinus_io::dataset::Dataset;
 use photinus_io::results::{FrameRecord, NeighbourRecord, TrackRecord, read_results};
 
@@ -176,24 +176,45 @@ fn a_wrong_book_names_nobody() {
     assert!(told.len() > 170 && told.iter().all(|(_, id)| id.is_none()), "{told:?}");
 }
 
+/// Three quadrotors of whose arms each blinks a word of its own: each is one track with its name after three code lengths, and nobody else is there.
 #[test]
-fn a_fleet_with_several_signals_a_vehicle_is_followed_only_when_asked() {
+fn vehicles_whose_arms_blink_different_words_are_named() {
     let stage = Stage::new("several");
     let scenes = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes");
+    let target = |id: usize, x_m: f64, y_m: f64, heading_deg: f64| {
+        let words: Vec<usize> = (4 * id - 4..4 * id).collect();
+        format!(
+            "[[target]]\nid = {id}\nairframe = \"{scenes}/airframes/quadrotor-pairs-0.3.toml\"\nheading_deg = {heading_deg}\n\
+             motion = {{ line = {{ from_m = [{x_m}, {y_m}, 5.0], to_m = [{x_m}, {}, 5.4], duration_s = 2.0 }} }}\n\
+             blink = {{ codes = \"{scenes}/codes/l18-d3-r3.txt\", words = {words:?}, rate_hz = 60.0, shift_s = 0.00{id} }}\n",
+            y_m - 0.6
+        )
+    };
     let scene = format!(
-        "name = \"several\"\nseed = 3\npreset = \"bluefox-dsl215-bp365\"\nrate_hz = 60.0\nduration_s = 0.3\n\
-         exposure_us = 1000.0\n{STILL}[[camera]]\nname = \"front\"\nfile = \"{scenes}/cameras/bluefox-dsl215.toml\"\n\
-         [[target]]\nid = 1\nairframe = \"{scenes}/airframes/quadrotor-pairs-0.3.toml\"\n\
-         motion = {{ hover = {{ position_m = [4.0, 0.2, 5.0] }} }}\n\
-         blink = {{ codes = \"{scenes}/codes/l12-d3-r3.txt\", first_word = 0, rate_hz = 60.0 }}\n"
+        "name = \"several\"\nseed = 7\npreset = \"bluefox-dsl215-bp365\"\nrate_hz = 60.0\nduration_s = 2.0\n\
+         exposure_us = 1000.0\n{STILL}[[camera]]\nname = \"front\"\nfile = \"{scenes}/cameras/bluefox-dsl215.toml\"\n{}{}{}",
+        target(1, 4.0, 2.2, 20.0),
+        target(2, 5.0, 0.3, 110.0),
+        target(3, 4.5, -1.8, 250.0)
     );
     stage.file("scene.toml", scene);
     assert_eq!(stage.run("simulate scene.toml --out flight -q").code, 0);
-    for (option, is_followed) in [("", false), ("--track", true)] {
-        let done = stage.run(&format!("locate flight --out r.jsonl --force {option}"));
-        assert_eq!((done.code, done.err.contains("are not followed")), (0, !is_followed), "{}", done.err);
-        let frames = records(&stage, "r.jsonl");
-        assert_eq!(frames.iter().any(|frame| !frame.tracks.is_empty()), is_followed);
-        assert!(frames.iter().any(|frame| !frame.neighbours.is_empty()));
+    let done = stage.run("locate flight --out r.jsonl");
+    assert_eq!((done.code, done.err.contains("not followed")), (0, false), "{}", done.err);
+    let truth = Dataset::read(stage.path("flight")).unwrap().truth().unwrap().unwrap();
+    let (mut named, mut tracks) = (0, std::collections::BTreeSet::new());
+    for (frame, truth) in records(&stage, "r.jsonl").iter().zip(&truth).skip(54) {
+        tracks.extend(frame.tracks.iter().map(|track| track.track));
+        for track in &frame.tracks {
+            let Some(id) = track.id else { continue };
+            let there = truth.neighbours.iter().find(|there| there.id == id).unwrap();
+            let off = Vector3::from(track.position_m) - Vector3::from(there.position_m);
+            let sigmas = off.dot(&(Matrix3::from(track.position_covariance_m2).try_inverse().unwrap() * off)).sqrt();
+            assert!(sigmas < 6.0, "{:?}: vehicle {id} is {off:?} m off, {sigmas} sigma", frame.frame);
+            named += 1;
+        }
     }
+    let frames = truth.len() - 54;
+    assert!(named as f64 > 0.99 * 3.0 * frames as f64, "{named} of {}", 3 * frames);
+    assert_eq!(tracks.len(), 3, "{tracks:?}");
 }

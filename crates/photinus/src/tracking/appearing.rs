@@ -1,7 +1,7 @@
 //! Located neighbours whose spots no vehicle claims -> new vehicles.
 //!
 //! A neighbour that is a vehicle's own spots, located again, is claimed and no news. The mixture of a neighbour's poses enters as it is. A vehicle that is
-//! heard appears once.
+//! heard appears once; where its track is lost, that one begins anew where the vehicle shows.
 
 use alloc::vec::Vec;
 
@@ -16,6 +16,8 @@ use crate::pose::{Mode, turn_of};
 
 /// A neighbour less likely than this to be new and there is none.
 const LEAST: f64 = 0.1;
+/// A vehicle that was heard and shows is not dark for so long, s: a track of it that is not seen meanwhile is lost.
+pub(super) const LOST_S: f64 = 0.15;
 
 /// Adds those that appear; returns how many sightings are nobody's.
 pub(super) fn appear(
@@ -32,7 +34,12 @@ pub(super) fn appear(
         let existence = appearance.probability * (1.0 - of_others).max(0.0);
         unexplained -= existence * members.len() as f64;
         let is_there = |own: &Target| appearance.vehicle.is_some() && own.vehicle == appearance.vehicle;
-        if existence < LEAST || after.targets.len() == MOST_TARGETS || after.targets.iter().any(is_there) {
+        let before = after.targets.iter().position(is_there);
+        let may_begin = match before {
+            Some(before) => !members.is_empty() && after.is_lost(&after.targets[before]),
+            None => after.targets.len() < MOST_TARGETS,
+        };
+        if existence < LEAST || !may_begin {
             continue;
         }
         modes.clear();
@@ -52,8 +59,8 @@ pub(super) fn appear(
         after.components.extend_from_slice(modes);
         after.members.extend_from_slice(members);
         after.markers.resize(after.members.len(), None);
-        after.targets.push(Target {
-            id: after.next_id,
+        let begun = Target {
+            id: before.map_or(after.next_id, |before| after.targets[before].id),
             vehicle: appearance.vehicle,
             existence,
             hidden: 0.0,
@@ -65,8 +72,14 @@ pub(super) fn appear(
             components: modes.len(),
             first_member,
             members: members.len(),
-        });
-        after.next_id += 1;
+        };
+        match before {
+            Some(before) => after.targets[before] = begun,
+            None => {
+                after.targets.push(begun);
+                after.next_id += 1;
+            }
+        }
     }
     unexplained.max(0.0)
 }

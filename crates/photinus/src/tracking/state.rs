@@ -4,6 +4,7 @@ use alloc::vec::Vec;
 
 use nalgebra::{Matrix3, Unit, Vector3};
 
+use super::appearing::LOST_S;
 use super::component::Component;
 
 /// Most vehicles that are followed at once.
@@ -79,6 +80,11 @@ impl State {
         self.components.clear();
         self.members.clear();
         self.markers.clear();
+    }
+
+    /// Whether a vehicle that was heard would have shown by now where its track is.
+    pub(super) fn is_lost(&self, target: &Target) -> bool {
+        self.time_s - target.seen_s > LOST_S
     }
 
     /// The light of an LED of intensity 1 at 1 m, as a logarithm: what half of the vehicles say at most, so that one that is taken to be too near or too far

@@ -39,6 +39,8 @@ pub struct Track {
     pub is_predicted: bool,
     /// Who it was heard to be when it appeared.
     pub(crate) vehicle: Option<u32>,
+    /// Whether it would have shown by now where it is, if it was heard.
+    is_lost: bool,
     first_member: usize,
     members: usize,
 }
@@ -80,9 +82,9 @@ impl Tracked {
         own(&self.markers, track)
     }
 
-    /// Whether a vehicle that was heard is followed.
+    /// Whether a vehicle that was heard is followed, and not lost.
     pub(crate) fn is_followed(&self, vehicle: u32) -> bool {
-        self.tracks.iter().any(|track| track.vehicle == Some(vehicle))
+        self.tracks.iter().any(|track| track.vehicle == Some(vehicle) && !track.is_lost)
     }
 
     /// The same as another, in the room that it has.
@@ -152,6 +154,7 @@ impl Tracked {
                 existence,
                 is_predicted: target.is_predicted || interval_s > 0.0,
                 vehicle: target.vehicle,
+                is_lost: state.is_lost(target),
                 first_member,
                 members: self.members.len() - first_member,
             });

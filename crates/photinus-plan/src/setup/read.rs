@@ -140,6 +140,7 @@ impl Reading<'_> {
                 * self.within("filter.transmission", filter.transmission, 1e-6, 1.0)?,
             side_illumination: within("side_illumination", lens.side_illumination, 0.0, 1.0)?,
             vignette: None,
+            falloff: None,
             spread,
             veiling_glare: 0.0,
         })

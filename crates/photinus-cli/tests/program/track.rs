@@ -209,7 +209,8 @@ fn vehicles_whose_arms_blink_different_words_are_named() {
             let Some(id) = track.id else { continue };
             let there = truth.neighbours.iter().find(|there| there.id == id).unwrap();
             let off = Vector3::from(track.position_m) - Vector3::from(there.position_m);
-            let sigmas = off.dot(&(Matrix3::from(track.position_covariance_m2).try_inverse().unwrap() * off)).sqrt();
+            let sigmas =
+                off.dot(&(Matrix3::from(track.position_covariance_m2).try_inverse().unwrap() * off)).sqrt();
             assert!(sigmas < 6.0, "{:?}: vehicle {id} is {off:?} m off, {sigmas} sigma", frame.frame);
             named += 1;
         }

@@ -42,9 +42,9 @@ pub struct Record {
     /// `png` (default), `raw` or `none`.
     #[serde(default)]
     pub pixels: crate::recording::Pixels,
-    /// Goes on in another file past so many MB.
+    /// Goes on in another file past this many MB.
     pub split_mb: Option<f64>,
-    /// Goes on in another file past so many seconds.
+    /// Goes on in another file past this many seconds.
     pub split_s: Option<f64>,
 }
 

@@ -6,7 +6,7 @@ use std::time::Duration;
 
 /// What may wait for one of them: about a second of three cameras.
 const MOST_WAITING: usize = 32;
-/// So many may look.
+/// This many may look.
 const MOST: usize = 8;
 
 /// Whoever looks.

@@ -10,7 +10,7 @@ pub const ADVICE: &str = "please report it, with the file if you may";
 /// Where the last panic came from, on whichever thread.
 static PLACE: Mutex<String> = Mutex::new(String::new());
 
-/// From now on panics print nothing by themselves. Who looks for one sets RUST_BACKTRACE and sees them as ever.
+/// From now on panics print nothing by themselves. Whoever looks for one sets RUST_BACKTRACE and sees them as ever.
 pub fn be_quiet() {
     if std::env::var_os("RUST_BACKTRACE").is_some() {
         return;

@@ -33,7 +33,7 @@ pub trait Outlet {
     /// Takes what went wrong with a frame, which is skipped.
     fn failed(&mut self, error: Error);
 
-    /// Takes what was done otherwise than a user may think, once of each kind.
+    /// Takes what was done differently from what a user may think, once of each kind.
     fn note(&mut self, text: String);
 
     /// Takes what a user should know.

@@ -182,7 +182,7 @@ fn time(seen: &Seen, kind: Kind, findings: &mut Findings) {
             1e3 * usual_s
         ),
     );
-    if kind == Kind::Dataset {
+    if matches!(kind, Kind::Dataset | Kind::Recording) {
         findings.check(
             seen.with_gravity == seen.frames,
             "gravity is known in every frame",

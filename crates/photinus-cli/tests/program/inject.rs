@@ -108,7 +108,8 @@ fn what_cannot_be_injected_is_refused() {
     refuses("flight --fault fog --out x", &["`fog`: no such fault; there is gain=0.5 noise=8"]);
     refuses("flight --fault noise=-1 --out x", &["give noise= a number from 0 to 255"]);
     refuses("flight --out x", &["--fault <WORD>"]);
-    refuses("none --fault mirrored --out x", &["the folder holds no dataset.toml"]);
+    refuses("none --fault mirrored --out x", &["none: ", "check the path"]);
+    refuses("mine --fault mirrored --out x", &["the folder holds no dataset.toml"]);
     stage.file("flight/outside.toml", stage.read("flight/dataset.toml"));
     let outside = stage.read("flight/dataset.toml").replace("airframe.toml", "../hexa.toml");
     stage.file("flight/dataset.toml", outside);

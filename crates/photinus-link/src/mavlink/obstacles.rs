@@ -16,9 +16,9 @@ pub const SECTORS: usize = 72;
 const SECTOR_RAD: f64 = TAU / SECTORS as f64;
 /// What nobody knows.
 pub const UNKNOWN_CM: u16 = u16::MAX;
-/// A neighbour may be so many sigma beside its bearing.
+/// A neighbour may be this many sigma beside its bearing.
 const SIGMAS: f64 = 3.0;
-/// The sector of a direction is looked into at so many elevations, on both sides of the horizon.
+/// The sector of a direction is looked into at this many elevations, on both sides of the horizon.
 const LOOKS: i32 = 3;
 
 /// What neighbours are taken for.

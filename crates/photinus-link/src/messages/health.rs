@@ -1,4 +1,4 @@
-//! How a running Photinus feels -> diagnostic_msgs/DiagnosticArray.
+//! How a running Photinus is doing -> diagnostic_msgs/DiagnosticArray.
 
 use crate::ros::{DiagnosticArray, DiagnosticStatus, Header, KeyValue, Level, Time};
 

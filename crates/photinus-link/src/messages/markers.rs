@@ -7,9 +7,9 @@ use super::Viewpoint;
 use super::name;
 use crate::ros::{ColorRGBA, Header, Marker, MarkerArray, Matrix3, Point, Pose, Quaternion, Shape, Vector3};
 
-/// An ellipsoid of so many sigma holds truth in 95 of 100 cases: the root of the quantile of chi square with three degrees of freedom.
+/// An ellipsoid of this many sigma holds truth in 95 of 100 cases: the root of the quantile of chi square with three degrees of freedom.
 const SIGMAS: f64 = 2.795_483_482_915_108;
-/// A line without an upper bound is drawn so many times as far as its lower one, at least.
+/// A line without an upper bound is drawn this many times as far as its lower one, at least.
 const BEYOND: f64 = 2.0;
 const MEASURED: ColorRGBA = ColorRGBA { r: 0.3, g: 0.6, b: 1.0, a: 0.6 };
 const PREDICTED: ColorRGBA = ColorRGBA { r: 0.6, g: 0.6, b: 0.6, a: 0.4 };

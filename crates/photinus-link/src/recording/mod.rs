@@ -29,7 +29,7 @@ pub use recover::{Recovered, recover};
 pub use sink::RecordSink;
 pub use write::{Located, Recorder, Settings, Split};
 
-/// The reader of MCAP is other people's code, bytes are anybody's: a panic of it is a damaged file like another.
+/// The reader of MCAP is other people's code, and bytes come from anybody: a panic of it is treated as a damaged file.
 fn guarded<T>(path: &Path, read: impl FnOnce() -> Result<T>) -> Result<T> {
     let refuse = |_| Err(Error::format(path, "its index contradicts itself").advise(MEND));
     catch_unwind(AssertUnwindSafe(read)).unwrap_or_else(refuse)

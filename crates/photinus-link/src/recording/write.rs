@@ -16,9 +16,9 @@ use crate::{cdr, topics};
 /// When a recording goes on in another file.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Split {
-    /// Past so many bytes of messages.
+    /// Past this many bytes of messages.
     pub bytes: Option<u64>,
-    /// Past so many seconds.
+    /// Past this many seconds.
     pub seconds: Option<f64>,
 }
 

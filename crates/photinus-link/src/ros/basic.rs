@@ -17,7 +17,7 @@ pub struct Time {
 }
 
 impl Time {
-    /// The nearest time to so many seconds; those that no such time holds become the first or last one, NaN becomes 0.
+    /// The nearest time to this many seconds; those that no such time holds become the first or last one, NaN becomes 0.
     #[must_use]
     pub fn from_seconds(seconds: f64) -> Self {
         // Past 2^53 whole nanoseconds a product would round: seconds and their rest are taken apart first.
@@ -40,7 +40,7 @@ impl Time {
         f64::from(self.sec) + f64::from(self.nanosec) * 1e-9
     }
 
-    /// So many nanoseconds since the clock's beginning.
+    /// This many nanoseconds since the clock's beginning.
     #[must_use]
     pub fn from_nanoseconds(nanoseconds: u64) -> Self {
         let sec = i32::try_from(nanoseconds / 1_000_000_000).unwrap_or(i32::MAX);

@@ -85,7 +85,7 @@ pub struct SinkHealth {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Level {
-    /// Something is otherwise than one may think.
+    /// Something differs from what one may think.
     Note,
     /// There is something to do.
     Warning,

@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 
 use serde::{Deserialize, Serialize};
 
-/// So many of the last numbers are told of: 8 s of a camera with 60 frames a second.
+/// This many of the last numbers are told of: 8 s of a camera with 60 frames a second.
 const MOST: usize = 512;
 
 /// How numbers spread.

@@ -39,7 +39,7 @@ const NAP: Duration = Duration::from_millis(5);
 const PATIENCE: Duration = Duration::from_secs(2);
 /// So long may a camera take to end its wait.
 const READER_PATIENCE: Duration = Duration::from_millis(500);
-/// After so many failed frames of a camera the others are only counted.
+/// After this many failed frames of a camera the others are only counted.
 const REPORTED_FAILURES: u64 = 10;
 
 /// A camera that is to run.

@@ -60,7 +60,7 @@ impl Slot {
         self.state().dropped
     }
 
-    /// Frames that follow are to be exposed so long, us.
+    /// How long the frames that follow are to be exposed, us.
     pub(super) fn wish(&self, exposure_us: f64) {
         self.state().wish_us = Some(exposure_us);
     }

@@ -9,7 +9,7 @@ use std::path::PathBuf;
 
 use photinus_io::{Error, Result};
 
-/// So many may read along.
+/// This many may read along.
 const MOST: usize = 16;
 /// What may wait for one of them, bytes: some seconds of results.
 const MOST_WAITING: usize = 1 << 20;

@@ -36,7 +36,7 @@ pub(crate) struct Association {
 }
 
 impl Association {
-    /// Nothing yet, for so many sightings.
+    /// Nothing yet, for this many sightings.
     pub(crate) fn begin(&mut self, sightings: usize) {
         self.pairs.clear();
         self.claims.clear();

@@ -63,7 +63,7 @@ impl Presence {
         self.hidden = (self.hidden + hides - returns) * (1.0 - passage.go);
     }
 
-    /// A frame that is so much more likely if the marker is in sight than if it is not.
+    /// A frame that is this much more likely if the marker is in sight than if it is not.
     pub(super) fn weigh(&mut self, ratio: f64) {
         let gone = (1.0 - self.exists()).max(0.0);
         let in_sight = self.in_sight * ratio;

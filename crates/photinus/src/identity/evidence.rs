@@ -10,7 +10,7 @@ pub(crate) const SHARES: usize = 5;
 /// Those shares.
 const AT: [f64; SHARES] = [0.0, 0.25, 0.5, 0.75, 1.0];
 
-/// So many standard deviations are not worth a function: what it gives is lost beside a surprise.
+/// This many standard deviations are not worth a function: what it gives is lost beside a surprise.
 const NEVER: f64 = 13.0;
 
 /// A light that fits nothing still has this likelihood against the best fit, so that no frame rules out anything for ever.

@@ -20,7 +20,7 @@ impl Level {
     /// A level is never surer than this: LEDs, edges of the signal and centres between pixels.
     const LEAST_SPREAD: f64 = 0.03;
 
-    /// One frame in so many shows something else in the place of the LED.
+    /// One frame in this many shows something else in the place of the LED.
     const SURPRISE: f64 = 1.0 / 500.0;
 
     /// More standard deviations above it are no chance: it grew faster than was believed, as an LED does that turns into view.

@@ -21,9 +21,9 @@ pub struct Properties {
     pub longest_lit: usize,
     /// The least and the largest share of bits that are on.
     pub duty: [f64; 2],
-    /// So many bits without error, begun anywhere, belong to one word only; `None` when no number does.
+    /// This many bits without error, begun anywhere, belong to one word only; `None` when no number does.
     pub unique_after: Option<usize>,
-    /// So many bits without error, begun anywhere, belong to one word and one place in it only; `None` when no number does.
+    /// This many bits without error, begun anywhere, belong to one word and one place in it only; `None` when no number does.
     pub in_phase_after: Option<usize>,
 }
 

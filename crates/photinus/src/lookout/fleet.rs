@@ -62,10 +62,10 @@ impl Fleet {
         self.vehicles.iter().any(differ)
     }
 
-    /// A fleet whose vehicles each blink so many bits per second.
+    /// A fleet whose vehicles each blink this many bits per second.
     ///
     /// # Errors
-    /// [`FleetError`] for no vehicle, an id that stands twice, a vehicle without words, words that the book has not, and rates that are none, or differ by
+    /// [`FleetError`] for no vehicle, an id that stands twice, a vehicle without words, words that the book does not hold, and rates that nothing blinks at, or that differ by
     /// more than a hundredth.
     pub fn new(
         book: CodeBook,

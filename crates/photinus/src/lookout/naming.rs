@@ -28,7 +28,7 @@ const PLACED: f64 = 0.98;
 const REMEMBERED_NATS: f64 = 7.0;
 /// A share that no marker goes below.
 const LEAST: f64 = 1e-9;
-/// Who is less likely than this is not told.
+/// A name that is less likely than this is not told.
 const TOLD: f64 = 0.01;
 /// How a vehicle is turned is told from this probability on.
 const SURE_TURN: f64 = 0.95;

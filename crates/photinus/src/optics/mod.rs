@@ -23,7 +23,7 @@ pub use sensor::{Measured, Saturation, Sensor};
 pub use spread::{Gaussian, PointSpread};
 pub use vignetting::Vignetting;
 
-/// Why numbers are no optics.
+/// Why numbers do not make optics.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum OpticsError {

@@ -147,7 +147,7 @@ impl PointSpread {
         }
         let (column, row) = (x_px.round(), y_px.round());
         let placed = self.placed((column - x_px) as f32, (row - y_px) as f32, 0);
-        // The window of one pixel lies in the middle; others are so many pixels further.
+        // The window of one pixel lies in the middle; others are this many pixels further.
         f64::from(placed.shifted(column as isize, row as isize).four(0, 0).share.to_array()[0])
     }
 
@@ -295,7 +295,7 @@ impl Placed<'_> {
         Shares { share, by_u, by_v, by_variance: Lanes::splat(0.5) * (by_uu + by_vv) }
     }
 
-    /// The same for a window so many pixels further on.
+    /// The same for a window this many pixels further on.
     fn shifted(self, columns: isize, rows: isize) -> Self {
         Self { across: self.across.shifted(columns), down: self.down.shifted(rows), ..self }
     }

@@ -16,7 +16,7 @@ impl Vignetting {
     /// From angles off the axis, rad, rising from 0, the share of light at each and its sigma.
     ///
     /// # Errors
-    /// [`OpticsError`] when there is none, they are not as many of each, angles do not rise from 0, or shares are not positive.
+    /// [`OpticsError`] when there is no angle, when the lists differ in length, angles do not rise from 0, or shares are not positive.
     pub fn new(angles_rad: &[f64], shares: &[f64], sigmas: &[f64]) -> Result<Self, OpticsError> {
         let needed = angles_rad.len().max(1);
         for list in [angles_rad, shares, sigmas] {

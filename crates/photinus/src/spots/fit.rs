@@ -184,7 +184,7 @@ fn fit_from<const N: usize>(
         let level = 1.0 / (LEVEL_KNOWN_DN * LEVEL_KNOWN_DN);
         matrix[(LEVEL, LEVEL)] += level;
         right[LEVEL] -= level * numbers[LEVEL];
-        // A step changes the light by no more than so much: where light, level and widths tell little apart, sums in 32 bits do not.
+        // A step changes the light by no more than this much: where light, level and widths tell little apart, sums in 32 bits do not.
         matrix[(LIGHT, LIGHT)] += 1.0 / (LIGHT_STEP * LIGHT_STEP * numbers[LIGHT] * numbers[LIGHT]);
         for number in WIDTH..N {
             let (mean, weight) = shape.believed(number);

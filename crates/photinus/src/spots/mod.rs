@@ -1,4 +1,4 @@
-//! A frame -> spots: what is bright, what belongs together, where its centre is, and what is no marker.
+//! A frame -> spots: what is bright, what belongs together, where its centre is, and what is not a marker.
 //!
 //! The stages, a module each, in the order of the flow:
 //!
@@ -9,7 +9,7 @@
 //! grouping       runs that touch, also by a corner                -> components
 //! splitting      one component with several summits (summits)     -> parts
 //! part           size, shape and first guess of a part; ledge: whether it goes on where the threshold is higher
-//! rejection      what is no marker by its outline, and why
+//! rejection      what is not a marker by its outline, and why
 //! neighbourhood  how far a part's light is its own                -> room for a window
 //! lessons        what the frame tells of the camera               -> point spread (learning), noise (noise_bins), full_level
 //! fitting        a window on each part, less its background (window, patch), and the camera's point spread in it (fit), along a segment where it moved (smear)
@@ -130,7 +130,7 @@ impl Extent {
     }
 }
 
-/// Something bright that is no marker, and why.
+/// A bright region that is not a marker, and why.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rejected {
     /// Its middle, px.

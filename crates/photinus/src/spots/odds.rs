@@ -13,7 +13,7 @@ pub(super) const BESIDE_SUN: f64 = 50.0;
 /// Odds for clutter of what is as long and thin as a streak, yet no longer than a marker that moves during the exposure.
 pub(super) const LONG_AND_THIN: f64 = 20.0;
 
-/// Markers are fewer by e per so much less of the logarithm of light (rendered flights of one to twelve neighbours).
+/// Markers are fewer by e per this much less of the logarithm of light (rendered flights of one to twelve neighbours).
 const MARKERS_FALL: f64 = 1.3;
 /// The logarithm of a reflection's light: how far below the ratio at which it is as likely a marker, and its spread (real glossy surfaces
 /// gave 0.09 to 0.18 of the brightest LED).

@@ -26,7 +26,7 @@ pub(super) struct Part {
     pub(super) bright: u8,
     /// The level of the surroundings as the tile has it.
     pub(super) level: u8,
-    /// Why it is no marker, once that is known.
+    /// Why it is not a marker, once that is known.
     pub(super) reason: Option<Reason>,
     /// Which of the frame's components that were split it is of, if any.
     pub(super) split_from: Option<usize>,

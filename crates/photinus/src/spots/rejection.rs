@@ -1,4 +1,4 @@
-//! What is no marker, and why.
+//! Bright regions that are not markers, and why.
 //!
 //! In: the outline of a part: its size, shape, saturation and how much of it is masked. Out: a reason, or none.
 
@@ -22,7 +22,7 @@ const LONGEST_SMEAR_PX: f64 = 16.0;
 /// The sun's glare reaches this far past the edge of what is bright, as a share of its radius.
 const GLARE_REACH: f64 = 0.5;
 
-/// Why something bright is no marker.
+/// Why a bright region is not a marker.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Reason {

@@ -15,7 +15,7 @@ use crate::pose::{Observation, Pose, Whitened};
 
 /// Ways that are gone on with.
 const MOST_BRANCHES: usize = 8;
-/// A way that is so much less likely than the best, nats, is not.
+/// A way that is this much less likely than the best, nats, is not.
 const HOPELESS_NATS: f64 = 14.0;
 /// A spot farther off than this, squared and in variances, is not the marker.
 const GATE: f64 = 36.0;
@@ -80,7 +80,7 @@ pub(super) struct Around<'a> {
     pub(super) whitened: &'a [Whitened],
     /// How likely each marker is lit, by marker.
     pub(super) lit: &'a [f64],
-    /// How seldom a bright marker is found to be missing.
+    /// How rarely a bright marker is missed.
     pub(super) missed: f64,
 }
 

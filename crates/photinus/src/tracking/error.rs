@@ -19,7 +19,7 @@ pub enum TrackerError {
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum TrackError {
-    /// A time that is no number.
+    /// A time that is not a number.
     #[error("a time of {0} s: it must be a finite number")]
     Time(f64),
     /// A frame too far behind the newest.

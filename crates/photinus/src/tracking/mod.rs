@@ -66,7 +66,7 @@ pub struct Tracker {
 impl Tracker {
     /// Frames so far behind the newest take their place, s.
     pub const MOST_LATE_S: f64 = 0.5;
-    /// A time so much before or after the newest is another clock, s.
+    /// A time this much before or after the newest is another clock, s.
     pub const JUMP_S: f64 = 5.0;
 
     /// A tracker of what a locator with these settings tells.

@@ -6,7 +6,7 @@ use super::component::{Component, merged};
 use super::splitting::STRAIGHT_RAD;
 use super::state::MOST_COMPONENTS;
 
-/// A share of the weight that is none.
+/// A share of the weight that counts for nothing.
 const NEGLIGIBLE: f64 = 1e-4;
 /// Distributions whose means are nearer than this, squared and in variances of the heavier one, become one.
 const SAME: f64 = 1.0;

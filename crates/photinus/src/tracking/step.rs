@@ -27,12 +27,12 @@ use crate::airframe::Airframe;
 use crate::camera::Watched;
 use crate::pose::{self, Symmetry};
 
-/// Clutter is counted over so many frames, and is at least so many points.
+/// Clutter is counted over this many frames, and is at least this many points.
 const CLUTTER_FRAMES: f64 = 32.0;
 const LEAST_CLUTTER: f64 = 0.05;
 /// A vehicle less likely than this is forgotten.
 const GONE: f64 = 0.02;
-/// The power of LEDs is the mean of so many frames.
+/// The power of LEDs is the mean of this many frames.
 const POWER_FRAMES: f64 = 16.0;
 
 /// What does not change from frame to frame.

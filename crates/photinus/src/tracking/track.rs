@@ -64,7 +64,7 @@ pub struct Tracked {
     pub time_s: f64,
     /// Where the frame that was handed in last came in.
     pub placed: Placed,
-    /// Who is followed, those who were there first before the others.
+    /// The vehicles that are followed, in the order in which they appeared.
     pub tracks: Vec<Track>,
     members: Vec<usize>,
     markers: Vec<Option<u16>>,

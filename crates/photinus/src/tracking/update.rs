@@ -34,7 +34,7 @@ pub(super) struct Updated {
 }
 
 impl Prior {
-    /// `None` where the covariance is none.
+    /// `None` where the matrix is not a covariance.
     pub(super) fn of(component: &Component) -> Option<Self> {
         let (information, log_determinant) = inverse(component.covariance)?;
         Some(Self { component: *component, information, log_determinant })

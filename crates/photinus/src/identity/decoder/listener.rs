@@ -144,7 +144,7 @@ impl Decoder {
         Ok(())
     }
 
-    /// Moves the phases of all words that are awake: they stray in so many steps, and are weighed. Returns what they weigh together.
+    /// Moves the phases of all words that are awake: they stray in this many steps, and are weighed. Returns what they weigh together.
     fn step_words(&self, listener: &mut Listener, (steps, each_way): (usize, f32), step: &Step<'_>) -> f64 {
         let block = self.block();
         let mut sum = 0.0;

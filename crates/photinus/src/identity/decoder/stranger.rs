@@ -47,7 +47,7 @@ impl Stranger {
         0.5 * (evidence.off() + evidence.on())
     }
 
-    /// The likelihood of a frame, which is learnt from; places stray in so many steps, with this probability each way in each.
+    /// The likelihood of a frame, which is learnt from; places stray in this many steps, with this probability each way in each.
     pub(super) fn hear(&mut self, windows: &[Window; PLACES], (steps, each_way): (usize, f32)) -> f32 {
         self.is_new = false;
         let stray = (steps as f32 * each_way).min(1.0 / 3.0);
@@ -80,7 +80,7 @@ impl Stranger {
         total
     }
 
-    /// The probability that it is the word of this signal, shifted by so many bits.
+    /// The probability that it is the word of this signal, shifted by this many bits.
     pub(super) fn is(&self, signal: &Signal, shift: usize) -> f32 {
         let of = |(place, bits): (&f32, &[f32])| {
             let agrees = |(bit, on): (usize, &f32)| if signal.is_on(bit + shift) { *on } else { 1.0 - on };

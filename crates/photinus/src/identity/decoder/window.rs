@@ -18,7 +18,7 @@ pub(super) struct Window {
 }
 
 impl Window {
-    /// The exposure of so many bits (up to 1) that begins at `base` bits, from 0 to `length`, for each place in a bit. What lies
+    /// The exposure of this many bits (up to 1) that begins at `base` bits, from 0 to `length`, for each place in a bit. What lies
     /// within a place is as likely everywhere in it.
     pub(super) fn all(base: f64, exposure_bits: f64, length: usize, evidence: &Evidence) -> [Self; PLACES] {
         let (off, on, inverted) = (evidence.off(), evidence.on(), evidence.inverted());

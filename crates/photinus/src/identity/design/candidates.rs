@@ -48,13 +48,13 @@ impl Requirements {
         Ok(Self { length, distance, longest_run: length, self_distance: 2, duty: 0.0..=1.0 })
     }
 
-    /// With no more than so many equal bits in a row: the LED is seen again soon, and told from steady light soon.
+    /// With no more than this many equal bits in a row: the LED is seen again soon, and told from steady light soon.
     #[must_use]
     pub fn with_longest_run(self, longest_run: usize) -> Self {
         Self { longest_run, ..self }
     }
 
-    /// With at least so many bits between a word and its own shifts; always an even number, as the distances are.
+    /// With at least this many bits between a word and its own shifts; always an even number, as the distances are.
     #[must_use]
     pub fn with_self_distance(self, self_distance: u32) -> Self {
         Self { self_distance, ..self }
@@ -106,7 +106,7 @@ impl Requirements {
     }
 }
 
-/// Whether no turn of the number, as a circle of so many bits, is less than it.
+/// Whether no turn of the number, as a circle of this many bits, is less than it.
 fn begins_least(number: u64, length: u32) -> bool {
     let all = (1 << length) - 1;
     (1..length).all(|by| (number >> by | number << (length - by)) & all >= number)

@@ -17,7 +17,7 @@ pub(super) enum Outcome {
     GaveUp(Vec<usize>),
 }
 
-/// Searches all sets that are larger than `known`, looking at so many branches at most.
+/// Searches all sets that are larger than `known`, looking at this many branches at most.
 pub(super) fn search(conflicts: &Conflicts, known: &[usize], branches: u64) -> Outcome {
     // those with few conflicts come first, so that groups are few
     let mut order: Vec<u32> = (0..conflicts.len() as u32).collect();

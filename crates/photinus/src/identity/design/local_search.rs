@@ -10,7 +10,7 @@ use alloc::vec::Vec;
 use super::Effort;
 use super::conflicts::Conflicts;
 
-/// So many steps without a larger set, and one at random comes in.
+/// This many steps without a larger set, and one at random comes in.
 const SHAKE_AFTER: u64 = 20_000;
 
 /// The largest set that was met. Never smaller than what taking the candidates in order gives.

@@ -23,7 +23,7 @@ const MOST_STARTS: usize = 6;
 const LEAST_START: f64 = 0.02;
 /// A track has settled for the wrong pose so seldom, ...
 const WRONG: f64 = 1e-3;
-/// ... and then nothing is known of it but this: its distance to so much of itself, and yaw, rad.
+/// ... and then nothing is known of it but this: its distance to this much of itself, and yaw, rad.
 const ANEW_SHARE: f64 = 0.5;
 const ANEW_YAW_RAD: f64 = 1.0;
 impl Ways {

@@ -51,7 +51,7 @@ pub(super) fn clear_of_full<'a>(
         let (full, slope) = noise.straightened(f64::from(full_from) - spot.level);
         let mut brightest = 0.0_f64;
         spot.each_pixel(table, noise, 1, &mut Shares::default(), |pixel| {
-            brightest = brightest.max(pixel.light)
+            brightest = brightest.max(pixel.light);
         });
         brightest + CLEAR_SIGMAS * slope * noise.variance(brightest).sqrt() < full
     };

@@ -75,7 +75,7 @@ fn candidates(leds: usize, radius_m: f64, like: &Airframe) -> Vec<(String, Airfr
     offer(format!("{leds} arms, one LED each"), ring(leds, 1, 0.0));
     let gap = ring(leds + 1, 1, 0.0).and_then(|whole| alike(whole.leds()[1..].to_vec(), like));
     offer(format!("{} arms, one of them without an LED", leds + 1), gap);
-    for splay_deg in SPLAYS_DEG.into_iter().filter(|_| leds % 2 == 0) {
+    for splay_deg in SPLAYS_DEG.into_iter().filter(|_| leds.is_multiple_of(2)) {
         let arms = leds / 2;
         offer(format!("{arms} arms, two LEDs each, {splay_deg} deg apart"), ring(arms, 2, splay_deg));
     }

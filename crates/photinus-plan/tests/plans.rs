@@ -19,7 +19,7 @@ fn example_with(changes: &[(&str, &str)]) -> Setup {
         assert!(text.contains(from), "{from}");
         text.replace(from, to)
     });
-    Setup::parse(&text, Path::new("set-up.toml")).unwrap()
+    Setup::parse(&text, Path::new("set-up.toml")).expect("a set-up")
 }
 
 fn reach(setup: &Setup) -> [Reach; 2] {

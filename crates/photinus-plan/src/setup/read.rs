@@ -73,7 +73,7 @@ impl Reading<'_> {
         let exposure_us =
             physics::within(self.path, "exposure_us", table.exposure_us, &physics::EXPOSURE_US)?;
         let camera = match &table.camera {
-            Some(file) => read_camera(&self.beside(file))?.camera,
+            Some(file) => read_camera(self.beside(file))?.camera,
             None => self.camera(&table.lens, &table.sensor)?,
         };
         let battery = table.battery.map(|battery| -> Result<[f64; 2]> {
@@ -139,6 +139,7 @@ impl Reading<'_> {
             transmission: within("transmission", lens.transmission, 1e-6, 1.0)?
                 * self.within("filter.transmission", filter.transmission, 1e-6, 1.0)?,
             side_illumination: within("side_illumination", lens.side_illumination, 0.0, 1.0)?,
+            falloff: None,
             vignette: None,
             falloff: None,
             spread,
@@ -185,7 +186,11 @@ impl Reading<'_> {
             (None, Some(file)) => return Ok(read_airframe(self.beside(file))?.airframe),
             _ => return Err(self.refuse("airframe", "it takes a ring or a file").advise("give one of them")),
         };
-        let lobe = if lobe_power == 1.0 { Lobe::Lambertian } else { Lobe::Cosine { power: lobe_power } };
+        let lobe = if (lobe_power - 1.0).abs() < 1e-9 {
+            Lobe::Lambertian
+        } else {
+            Lobe::Cosine { power: lobe_power }
+        };
         let leds: Vec<Led> =
             airframe.leds().iter().map(|led| Led { lobe: lobe.clone(), ..led.clone() }).collect();
         Airframe::new(airframe.name(), leds).map_err(|error| Error::new(self.path, error))

@@ -73,11 +73,13 @@ impl Listeners {
         }
     }
 
-    /// Listens anew to a marker that blinked for so long what nobody knows.
+    /// Listens anew to a marker that for so long blinked what nobody knows, or not at all.
     pub(super) fn doubt(&self, hearing: &mut Hearing, time_s: f64, after_s: f64) {
         let Hearing { listener: Some(listener), stranger_since_s, .. } = hearing else { return };
         let Some(decoder) = &self.decoder else { return };
-        if decoder.probability(listener, Who::Unknown) < STRANGER {
+        let known_to_nobody =
+            decoder.probability(listener, Who::Unknown) + decoder.probability(listener, Who::Dark);
+        if known_to_nobody < STRANGER {
             *stranger_since_s = None;
             return;
         }

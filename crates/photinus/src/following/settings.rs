@@ -23,7 +23,7 @@ pub struct Settings {
     pub returns_per_s: f64,
     /// How soon a marker that is hidden, or beyond the border, is gone for good, 1/s.
     pub goes_per_s: f64,
-    /// A marker that surely blinks what nobody knows is listened to anew after so long, s; never where it is infinite. While two LEDs came so near that
+    /// A marker that surely blinks what nobody knows, or nothing, is listened to anew after so long, s; never where it is infinite. While two LEDs came so near that
     /// they were one spot, their tracks heard both, and each remembers a word that nobody has.
     pub listen_anew_s: f64,
 }

@@ -28,6 +28,8 @@ use crate::tracking::Called;
 const HEARD: f64 = 0.5;
 /// ... and those of a vehicle together from this one on: they are wrong when each of them is.
 const HEARD_TOGETHER: f64 = 0.95;
+/// Whose place is less sure is no help to tell one, rad: half a small vehicle at 10 m.
+const PLACED_RAD: f64 = 0.015;
 /// Markers that are needed for a pose.
 const FEWEST: usize = 2;
 /// Markers of one vehicle at most.
@@ -84,7 +86,10 @@ impl Calling {
     ) -> &[Called] {
         self.count = 0;
         self.heard.clear();
-        for (place, marker) in markers.iter().enumerate() {
+        let is_placed = |marker: &MarkerTrack| {
+            marker.covariance.fixed_view::<2, 2>(0, 0).trace() < 2.0 * PLACED_RAD * PLACED_RAD
+        };
+        for (place, marker) in markers.iter().enumerate().filter(|own| is_placed(own.1)) {
             let entry = marker.identity.filter(|own| own.probability > HEARD);
             if let Some(entry) =
                 entry.and_then(|own| directory.entry(own.who)).filter(|own| !is_followed(own.vehicle))

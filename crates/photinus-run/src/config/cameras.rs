@@ -192,7 +192,10 @@ impl Config {
         } else if several && self.keys.locate.time.is_none() {
             note("vehicles carry several signals each, and are not followed: every frame is located by itself (time = true in [locate] follows all the same)".to_owned());
         }
-        let source = self.opener(named, exposure_us, (clock, start_s));
+        let source = match &keys.source.v4l2 {
+            Some(path) => self.v4l2(named, path, [camera.width(), camera.height()], clock)?,
+            None => self.opener(named, exposure_us, (clock, start_s)),
+        };
         let exposure = self.wanted_exposure().map(Exposure::new);
         Ok(Camera { name: keys.name.clone(), source, view, exposure })
     }
@@ -231,6 +234,31 @@ impl Config {
             TimesKey::Arrival => Times::Arrival(clock, 1e-6 * exposure_us.unwrap_or(EXPOSURE_US)),
         };
         Box::new(move || Ok(Box::new(Stream::open(&carrier, format, times)?) as Box<dyn Source>))
+    }
+
+    #[cfg(all(feature = "v4l2", target_os = "linux"))]
+    fn v4l2(&self, named: &Named<'_>, path: &Path, size: [usize; 2], clock: HostClock) -> Result<Opener> {
+        use crate::source::{PixelFormat, V4l2, V4l2Wanted};
+        let SourceKeys { format, rate_hz, gain, .. } = &named.keys.source;
+        let wanted = V4l2Wanted {
+            path: self.located(path),
+            size,
+            format: format.as_deref().and_then(PixelFormat::of_code),
+            rate_hz: *rate_hz,
+            exposure_us: named.keys.exposure_us,
+            gain: *gain,
+        };
+        Ok(Box::new(move || Ok(Box::new(V4l2::open(wanted.clone(), clock, EXPOSURE_US)?) as Box<dyn Source>)))
+    }
+
+    #[cfg(not(all(feature = "v4l2", target_os = "linux")))]
+    fn v4l2(&self, named: &Named<'_>, _path: &Path, _size: [usize; 2], _clock: HostClock) -> Result<Opener> {
+        let advice = "build with --features v4l2 on Linux, or take its frames by a `command`";
+        Err(self.refuse(
+            &format!("camera {}", named.keys.name),
+            "V4L2 cameras are not in this program",
+            advice,
+        ))
     }
 
     fn carrier(&self, source: &SourceKeys) -> Carrier {

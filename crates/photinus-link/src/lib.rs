@@ -4,13 +4,18 @@
 //! photinus-io's FrameRecord -> messages -> ros -> cdr -> recording   MCAP files, feature `recording`
 //!                                                     -> dds         ROS 2 topics without ROS, feature `ros2`
 //!                           -> mavlink                               autopilots, feature `mavlink`
+//! a code book               -> led                                   LED boards on serial ports, feature `led`
 //! ```
 //! [`messages`] says what a located frame is in ROS's words, once for all that carry them. Each link is a [`Sink`](photinus_run::sink::Sink)
 //! of a run; below the sinks nothing reads a clock.
 
 pub mod cdr;
+#[cfg(any(feature = "ros2", feature = "mavlink"))]
+pub mod clock_offset;
 #[cfg(any(feature = "recording", feature = "ros2", feature = "mavlink"))]
 pub mod config;
+#[cfg(feature = "led")]
+pub mod led;
 #[cfg(feature = "mavlink")]
 pub mod mavlink;
 pub mod messages;

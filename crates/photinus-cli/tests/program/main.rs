@@ -20,6 +20,8 @@ mod doctor;
 mod evaluate;
 mod files_survive;
 mod inject;
+#[cfg(target_os = "linux")]
+mod led;
 mod live;
 mod mistakes;
 mod mutated;

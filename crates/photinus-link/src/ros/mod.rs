@@ -8,8 +8,10 @@ mod definitions;
 mod detection;
 mod diagnostic;
 mod marker;
+mod odometry;
 mod photinus;
 mod sensor;
+mod uvdar;
 
 pub use basic::{
     Header, Matrix3, Matrix6, Point, Pose, PoseWithCovariance, Quaternion, TFMessage, Text, Time, Transform,
@@ -21,8 +23,14 @@ pub use detection::{
 };
 pub use diagnostic::{DiagnosticArray, DiagnosticStatus, KeyValue, Level};
 pub use marker::{ColorRGBA, Marker, MarkerArray, MeshFile, Shape, UVCoordinate};
+pub use odometry::{Odometry, Twist, TwistWithCovariance};
 pub use photinus::{Frame, Neighbour, NeighbourArray, PoseMode};
 pub use sensor::{CameraInfo, CompressedImage, Image, Imu, RegionOfInterest};
+
+pub use uvdar::{
+    BearingObservation, BearingObservationArrayStamped, ImagePointsWithCovariancesStamped,
+    Point2DWithCovariance, PoseWithCovarianceArrayStamped, PoseWithCovarianceIdentified,
+};
 
 /// A message that a topic can carry.
 pub trait Message: serde::Serialize {
@@ -48,6 +56,10 @@ messages! {
     "sensor_msgs/CompressedImage": CompressedImage<'_>,
     "sensor_msgs/CameraInfo": CameraInfo,
     "sensor_msgs/Imu": Imu,
+    "nav_msgs/Odometry": Odometry,
+    "uvdar_core/ImagePointsWithCovariancesStamped": ImagePointsWithCovariancesStamped,
+    "uvdar_core/PoseWithCovarianceArrayStamped": PoseWithCovarianceArrayStamped,
+    "uvdar_core/BearingObservationArrayStamped": BearingObservationArrayStamped,
     "photinus_msgs/NeighbourArray": NeighbourArray,
     "photinus_msgs/Frame": Frame,
 }

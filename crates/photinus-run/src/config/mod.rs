@@ -17,6 +17,8 @@ use photinus_io::video::RawFormat;
 use photinus_io::{Error, Place, Result, table, whole};
 use serde::Deserialize;
 
+pub use cameras::Linked;
+
 use crate::exposure::Wanted;
 use crate::live::Pace;
 use crate::sink::{Address, HealthLines, JsonLines, Sink};
@@ -88,6 +90,11 @@ struct SourceKeys {
     unix: Option<PathBuf>,
     raw: Option<RawKeys>,
     times: Option<TimesKey>,
+    /// Lines of spots come in place of frames.
+    #[serde(default)]
+    spots: bool,
+    /// A topic of ROS 2.
+    ros2: Option<String>,
     v4l2: Option<PathBuf>,
     /// How a V4L2 camera lays out its pixels.
     format: Option<String>,
@@ -337,8 +344,8 @@ impl Config {
     }
 
     fn check_source(&self, source: &SourceKeys, key: &str) -> Result<()> {
-        let SourceKeys { dataset, camera, repeat, command, stdin, tcp, unix, raw, times, .. } = source;
-        let SourceKeys { v4l2, format, rate_hz, gain, .. } = source;
+        let SourceKeys { dataset, camera, repeat, command, stdin, tcp, unix, raw, times, spots, .. } = source;
+        let SourceKeys { ros2, v4l2, format, rate_hz, gain, .. } = source;
         let is_stream = command.is_some() || *stdin == Some(true) || tcp.is_some() || unix.is_some();
         let kinds = [
             dataset.is_some(),
@@ -347,23 +354,29 @@ impl Config {
             tcp.is_some(),
             unix.is_some(),
             v4l2.is_some(),
+            ros2.is_some(),
         ];
         if kinds.into_iter().filter(|there| *there).count() != 1 {
             return Err(self.refuse(
                 key,
                 "it needs exactly one source",
-                "give one of dataset, command, stdin = true, tcp, unix, v4l2",
+                "give one of dataset, command, stdin = true, tcp, unix, v4l2, ros2",
             ));
         }
         let of_dataset = camera.is_some() || *repeat;
         let of_stream = raw.is_some() || times.is_some();
+        let is_lost = *spots && !is_stream && ros2.is_none();
         let of_v4l2 = format.is_some() || rate_hz.is_some() || gain.is_some();
-        if of_dataset && dataset.is_none() || of_stream && !is_stream || of_v4l2 && v4l2.is_none() {
+        if of_dataset && dataset.is_none() || of_stream && !is_stream || of_v4l2 && v4l2.is_none() || is_lost
+        {
             return Err(self.refuse(
                 key,
                 "these keys do not go together",
-                "`camera` and `repeat` are of a dataset, `raw` and `times` of a stream, `format`, `rate_hz` and `gain` of v4l2",
+                "`camera` and `repeat` are of a dataset, `raw` and `times` of a stream, `spots` of a stream or of ros2, `format`, `rate_hz` and `gain` of v4l2",
             ));
+        }
+        if *spots && raw.is_some() {
+            return Err(self.refuse(key, "spots are no raw frames", "keep `spots` or `raw`"));
         }
         if let Some(code) = format
             && PixelFormat::of_code(code).is_none()

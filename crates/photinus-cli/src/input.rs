@@ -56,6 +56,8 @@ pub(crate) struct Input {
     pub(crate) cameras: Vec<DatasetCamera>,
     /// The files that are read, which no output may replace.
     pub(crate) files: Vec<PathBuf>,
+    /// The MCAP recording that they are of.
+    pub(crate) recording: Option<PathBuf>,
     /// What it is called in messages.
     pub(crate) name: String,
 }
@@ -189,7 +191,8 @@ impl InputArgs {
         let frames = Frames::open(path, self.dataset.only.as_deref()).map_err(Failure::input)?;
         let count = frames.total();
         let frames = Source::Frames(FrameSource::other(frames));
-        Ok(Input::new(frames, count, self.inputs.clone(), path))
+        let input = Input::new(frames, count, self.inputs.clone(), path);
+        Ok(Input { recording: Some(path.to_owned()), ..input })
     }
 
     fn source(&self) -> std::result::Result<Input, Failure> {
@@ -284,7 +287,7 @@ impl Input {
     fn new(source: Source, count: Option<u64>, files: Vec<PathBuf>, name: &Path) -> Self {
         let entries = Entries { source, left: u64::MAX };
         let (cameras, name) = (Vec::new(), input_name(name).into_owned());
-        Self { entries, count, dataset: None, cameras, files, name }
+        Self { entries, count, dataset: None, cameras, files, recording: None, name }
     }
 }
 

@@ -68,7 +68,11 @@ pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> Result<(), Failure> {
 
 fn fly(config: &Config, terminal: &mut Terminal) -> Result<(), Failure> {
     let motion = Motion::default();
-    let cameras = config.cameras(&motion, &mut |text| terminal.note(text)).map_err(Failure::input)?;
+    let cameras = config
+        .cameras(&motion, &|topic, spots| protocols::source(config, topic, spots), &mut |text| {
+            terminal.note(text)
+        })
+        .map_err(Failure::input)?;
     let (sinks, page) = sinks(config, &motion, &cameras)?;
     if let Some(page) = page {
         terminal.note(format_args!("the page is at {page}"));
@@ -94,7 +98,11 @@ fn is_whole(sink: &SinkHealth) -> bool {
 
 fn check(config: &Config, terminal: &mut Terminal) -> Result<(), Failure> {
     let motion = Motion::default();
-    let cameras = config.cameras(&motion, &mut |text| terminal.note(text)).map_err(Failure::input)?;
+    let cameras = config
+        .cameras(&motion, &|topic, spots| protocols::source(config, topic, spots), &mut |text| {
+            terminal.note(text)
+        })
+        .map_err(Failure::input)?;
     // What was not there before is not left behind.
     let new: Vec<PathBuf> = config.files().into_iter().filter(|path| !path.exists()).collect();
     let (sinks, page) = sinks(config, &motion, &cameras)?;

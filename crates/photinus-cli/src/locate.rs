@@ -6,10 +6,11 @@ use nalgebra::{Unit, Vector3};
 use photinus::camera::Bearing;
 use photinus::locator::{Kind, Settings};
 use photinus::ranging::SpotCurve;
-use photinus_io::calibration::read_mounting;
+use photinus_io::calibration::{MountingFile, read_mounting};
 use photinus_io::dataset::{Dataset, DatasetCamera};
 use photinus_io::mask::MaskFile;
 use photinus_io::results::NeighbourRecord;
+use photinus_link::recording::Motions;
 use photinus_run::watch::{self, Turns, Watch};
 use photinus_run::{Entry, View};
 
@@ -186,7 +187,7 @@ impl Args {
             let is_rig = of_dataset.is_some_and(|camera| camera.name.is_some());
             let turns = match dataset {
                 Some(dataset) => Turns::of(dataset, is_rig, mounting.as_ref()).map_err(Failure::input)?,
-                None => Turns::Unknown,
+                None => recorded_turns(input, mounting.as_ref(), terminal).map_err(Failure::input)?,
             };
             let beside = (fleets.as_slice(), turns, of_dataset.map(|camera| camera.exposure_us));
             let watch = Watch::new(&camera, kinds, &self.settings(), mask, beside)
@@ -230,6 +231,36 @@ pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> std::result::Result<(
 
 fn probability(text: &str) -> std::result::Result<f64, String> {
     number::within(text, 0.0..=1.0, "a share")
+}
+
+/// What a recording says of the vehicle's own motion.
+fn recorded_turns(
+    input: &Input,
+    mounting: Option<&MountingFile>,
+    terminal: &Terminal,
+) -> photinus_io::Result<Turns> {
+    let Some(path) = &input.recording else { return Ok(Turns::Unknown) };
+    let motions = Motions::read(path)?;
+    let body_from_camera = match mounting {
+        _ if motions.is_empty() => return Ok(Turns::Unknown),
+        Some(mounting) => mounting.body_from_camera,
+        None => {
+            let path = path.display();
+            terminal.warning(format_args!(
+                "{path}: its imu or odometry is not used: how the camera sits on the vehicle is not known; give --mounting"
+            ));
+            return Ok(Turns::Unknown);
+        }
+    };
+    let camera_from_body = body_from_camera.inverse();
+    Ok(Turns::Recorded {
+        rates: motions.rates.into_iter().map(|(time_s, rate)| (time_s, camera_from_body * rate)).collect(),
+        attitudes: motions
+            .attitudes
+            .into_iter()
+            .map(|(time_s, world_from_body)| (time_s, world_from_body * body_from_camera))
+            .collect(),
+    })
 }
 
 /// The file that was named, or that of the dataset.

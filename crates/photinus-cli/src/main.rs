@@ -13,6 +13,7 @@
 //! swarm: a scenario -> robots that fly by what they see
 //! demo: all of it on a flight that the program carries along
 //! reproduce: the experiments of the founding paper, each number beside the paper's
+//! led: a book of words -> an LED board that blinks them, and whether it does
 //! completions, man: the command line itself, for shells and manuals
 //! ```
 
@@ -32,6 +33,7 @@ mod info;
 mod inject;
 mod input;
 mod interrupt;
+mod led;
 mod live;
 mod locate;
 mod number;
@@ -104,6 +106,7 @@ interrupted.";
 enum Command {
     Locate(Box<locate::Args>),
     Run(live::Args),
+    Led(led::Args),
     Detect(detect::Args),
     Info(info::Args),
     Doctor(doctor::Args),
@@ -142,6 +145,7 @@ impl Command {
         match self {
             Self::Locate(args) => args.quiet(),
             Self::Run(args) => args.quiet(),
+            Self::Led(args) => args.quiet(),
             Self::Detect(args) => args.quiet(),
             Self::Simulate(args) => args.quiet(),
             Self::Swarm(args) => args.quiet(),
@@ -165,6 +169,7 @@ impl Command {
         match self {
             Self::Locate(args) => locate::run(args, terminal),
             Self::Run(args) => live::run(args, terminal),
+            Self::Led(args) => led::run(args, terminal),
             Self::Detect(args) => detect::run(args, terminal),
             Self::Info(args) => info::run(args, terminal),
             Self::Doctor(args) => doctor::run(args, terminal),

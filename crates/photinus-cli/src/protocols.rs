@@ -7,6 +7,7 @@ use photinus_run::config::Config;
 use photinus_run::live;
 use photinus_run::motion::Motion;
 use photinus_run::sink::Sink;
+use photinus_run::source::Opener;
 use serde::Deserialize;
 
 use crate::failure::Failure;
@@ -50,7 +51,7 @@ pub(crate) fn sinks(
 ) -> Result<Option<Box<dyn Sink>>, Failure> {
     let tables: Tables = table::parse(config.text(), config.path()).map_err(Failure::input)?;
     let cameras: Vec<Camera> = cameras.iter().map(linked).collect();
-    #[cfg(not(feature = "mavlink"))]
+    #[cfg(not(any(feature = "ros2", feature = "mavlink")))]
     let _ = motion;
     let opened = match table {
         "record" => tables.record.map(|record| {
@@ -58,12 +59,25 @@ pub(crate) fn sinks(
             Record { file, ..record }.open(&cameras)
         }),
         #[cfg(feature = "ros2")]
-        "ros2" => tables.ros2.map(|ros2| ros2.open(&cameras)),
+        "ros2" => tables.ros2.map(|ros2| ros2.open(&cameras, motion.clone())),
         #[cfg(feature = "mavlink")]
         "mavlink" => tables.mavlink.map(|mavlink| mavlink.open(&cameras, motion.clone())),
         _ => return Err(missing(config, table)),
     };
     opened.transpose().map_err(Failure::input)
+}
+
+/// What opens a topic of ROS 2 as a camera's source; the table `[ros2]` says the domain.
+#[cfg(feature = "ros2")]
+pub(crate) fn source(config: &Config, topic: &str, spots: bool) -> Option<Opener> {
+    let tables: Tables = table::parse(config.text(), config.path()).ok()?;
+    Some(tables.ros2.unwrap_or_default().source(topic, spots))
+}
+
+/// There is none in this program.
+#[cfg(not(feature = "ros2"))]
+pub(crate) fn source(_config: &Config, _topic: &str, _spots: bool) -> Option<Opener> {
+    None
 }
 
 /// A camera as links need to know it.

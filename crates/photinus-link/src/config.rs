@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! [record]    file, pixels, split_mb, split_s
-//! [ros2]      domain, namespace, remaps, base_frame
+//! [ros2]      domain, namespace, remaps, base_frame, imu, odometry, compat
 //! [mavlink]   peer, local, system, component, radius_m, reach_m, tells_free, most_hz, stale_ms
 //! ```
 
@@ -84,25 +84,68 @@ pub struct Ros2 {
     pub remaps: std::collections::BTreeMap<String, String>,
     /// The vehicle's body frame in tf; `base_link` where nothing is said.
     pub base_frame: Option<String>,
+    /// Topic of the vehicle's sensor_msgs/Imu, whose frame is the body's.
+    pub imu: Option<String>,
+    /// Topic of its nav_msgs/Odometry.
+    pub odometry: Option<String>,
+    /// `uvdar`: the topics and messages of UVDAR's own stack, too.
+    pub compat: Option<Compat>,
+}
+
+/// Whose topics are published beside our own.
+#[cfg(feature = "ros2")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Compat {
+    /// Those of UVDAR's own stack on ROS 2.
+    Uvdar,
 }
 
 #[cfg(feature = "ros2")]
 impl Ros2 {
-    /// Joins the domain.
+    /// Joins the domain; what is heard of the vehicle's motion goes into `motion`.
     ///
     /// # Errors
     /// When the network refuses, or a name is none.
-    pub fn open(&self, cameras: &[Camera]) -> Result<Box<dyn Sink>> {
-        use crate::ros2::{Ros2Sink, Settings};
-        let remaps = self.remaps.clone().into_iter().collect();
-        let settings = Settings { domain: self.domain, namespace: self.namespace.clone(), remaps };
-        let refuse = |error: crate::ros2::Ros2Error| Error::format("[ros2]", error.to_string());
-        let mut sink = Ros2Sink::new(settings, views(cameras)).map_err(refuse)?;
+    pub fn open(&self, cameras: &[Camera], motion: photinus_run::motion::Motion) -> Result<Box<dyn Sink>> {
+        use crate::ros2::{MotionTopics, Ros2Sink};
+        let topics = MotionTopics { imu: self.imu.clone(), odometry: self.odometry.clone() };
+        let sink = Ros2Sink::new(self.settings(), cameras.to_vec());
+        let sink = sink.and_then(|sink| match self.compat {
+            Some(Compat::Uvdar) => sink.beside_uvdar(),
+            None => Ok(sink),
+        });
+        let mut sink = sink.and_then(|sink| sink.hearing(&topics, motion)).map_err(refuse)?;
         let base = self.base_frame.as_deref().unwrap_or(BASE);
         let mounted = cameras.iter().filter_map(|camera| Some((camera.view.header(None), camera.mounting?)));
         sink.topics().tell_mountings(base, &mounted.collect::<Vec<_>>());
         Ok(Box::new(sink))
     }
+
+    /// What opens a topic with images, or with `spots` one with the points of UVDAR's detector.
+    #[must_use]
+    pub fn source(&self, topic: &str, spots: bool) -> photinus_run::source::Opener {
+        use crate::ros2::{ImageSource, PointSource};
+        use photinus_run::source::Source;
+        let (settings, topic) = (self.settings(), topic.to_owned());
+        Box::new(move || {
+            let settings = settings.clone();
+            Ok(match spots {
+                false => Box::new(ImageSource::new(settings, &topic).map_err(refuse)?) as Box<dyn Source>,
+                true => Box::new(PointSource::new(settings, &topic).map_err(refuse)?),
+            })
+        })
+    }
+
+    fn settings(&self) -> crate::ros2::Settings {
+        let remaps = self.remaps.clone().into_iter().collect();
+        crate::ros2::Settings { domain: self.domain, namespace: self.namespace.clone(), remaps }
+    }
+}
+
+#[cfg(feature = "ros2")]
+fn refuse(error: crate::ros2::Ros2Error) -> Error {
+    Error::format("[ros2]", error.to_string())
 }
 
 /// `[mavlink]`.
@@ -183,6 +226,7 @@ fn any_port() -> String {
     "0.0.0.0:0".to_owned()
 }
 
+#[cfg(feature = "recording")]
 fn views(cameras: &[Camera]) -> Vec<Viewpoint> {
     cameras.iter().map(|camera| camera.view.clone()).collect()
 }

@@ -4,6 +4,7 @@
 //! photinus-io's FrameRecord -> messages -> ros -> cdr -> recording   MCAP files, feature `recording`
 //!                                                     -> dds         ROS 2 topics without ROS, feature `ros2`
 //!                           -> mavlink                               autopilots, feature `mavlink`
+//! a code book               -> led                                   LED boards on serial ports, feature `led`
 //! ```
 //! [`messages`] says what a located frame is in ROS's words, once for all that carry them. Each link is a [`Sink`](photinus_run::sink::Sink)
 //! of a run; below the sinks nothing reads a clock. The other way round, [`recording`] reads MCAP, [`mod@bag`] bags of ROS 1, and [`poses`] where
@@ -12,8 +13,12 @@
 #[cfg(feature = "recording")]
 pub mod bag;
 pub mod cdr;
+#[cfg(any(feature = "ros2", feature = "mavlink"))]
+pub mod clock_offset;
 #[cfg(any(feature = "recording", feature = "ros2", feature = "mavlink"))]
 pub mod config;
+#[cfg(feature = "led")]
+pub mod led;
 #[cfg(feature = "mavlink")]
 pub mod mavlink;
 pub mod messages;

@@ -5,7 +5,7 @@ use std::time::Instant;
 use nalgebra::{Unit, Vector3};
 use photinus_io::frames::Frame;
 use photinus_io::image::{Conversion, GreyImage};
-use photinus_io::results::FrameRecord;
+use photinus_io::results::{FrameRecord, SpotRecord};
 
 /// A frame on its way to a record of results.
 #[derive(Clone, Debug)]
@@ -32,23 +32,17 @@ pub struct Entry {
 impl Entry {
     /// A frame of a file or a stream.
     pub fn from_frame(frame: Frame) -> Self {
-        let record = FrameRecord {
-            frame: Some(frame.index),
-            camera: None,
-            time_s: frame.time_s,
-            latency_s: None,
-            tracks: Vec::new(),
-            source: frame.source,
-            incomplete: false,
-            spots: Vec::new(),
-            rejected: Vec::new(),
-            neighbours: Vec::new(),
-        };
+        let record = record(frame.index, frame.time_s, frame.source, Vec::new());
         Self {
             gravity: frame.gravity,
             conversions: frame.conversions,
             ..Self::new(record, Some(frame.image))
         }
+    }
+
+    /// Spots of another detector that numbers its frames and says their times, s.
+    pub fn of_spots(index: u64, time_s: f64, source: &str, spots: Vec<SpotRecord>) -> Self {
+        Self::new(record(index, Some(time_s), source.to_owned(), spots), None)
     }
 
     /// Spots of another detector in place of a frame.
@@ -72,5 +66,21 @@ impl Entry {
     /// Its number, 0 where it has none.
     pub fn number(&self) -> u64 {
         self.record.frame.unwrap_or_default()
+    }
+}
+
+/// A frame of which nothing is known yet but this.
+fn record(index: u64, time_s: Option<f64>, source: String, spots: Vec<SpotRecord>) -> FrameRecord {
+    FrameRecord {
+        frame: Some(index),
+        camera: None,
+        time_s,
+        latency_s: None,
+        tracks: Vec::new(),
+        source,
+        incomplete: false,
+        spots,
+        rejected: Vec::new(),
+        neighbours: Vec::new(),
     }
 }

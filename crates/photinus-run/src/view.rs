@@ -76,7 +76,7 @@ impl View {
 
 impl Work for View {
     fn fill(&mut self, entry: &mut Entry, clock: &mut Clock) -> Result<()> {
-        let live = || self.watch.as_ref()?.down(entry.record.time_s?);
+        let live = || self.watch.as_ref()?.down(entry);
         entry.gravity = self.gravity.or(entry.gravity).or_else(live);
         locate(entry, &mut self.locator, &self.airframes, clock)?;
         if let Some(watch) = &mut self.watch {

@@ -133,6 +133,13 @@ pub enum Turns {
     Gyro(Vec<(f64, Vector3<f64>)>),
     /// Attitudes odometry_from_camera.
     Attitudes(Vec<(f64, UnitQuaternion<f64>)>),
+    /// Rates in the camera's own frame and attitudes world_from_camera, world with z up, of a recording.
+    Recorded {
+        /// Goes before attitudes.
+        rates: Vec<(f64, Vector3<f64>)>,
+        /// Says where down is, too.
+        attitudes: Vec<(f64, UnitQuaternion<f64>)>,
+    },
     /// What arrives while frames do, of the body that the camera sits on.
     Live {
         /// What the vehicle says of its motion.
@@ -171,6 +178,9 @@ impl Turns {
             Self::Unknown => None,
             Self::Gyro(rates) => tracking::turned(rates, from_s, to_s),
             Self::Attitudes(attitudes) => turned_by(attitudes, from_s, to_s),
+            Self::Recorded { rates, attitudes } => {
+                tracking::turned(rates, from_s, to_s).or_else(|| turned_by(attitudes, from_s, to_s))
+            }
             Self::Live { motion, body_from_camera } => {
                 let camera_from_body = body_from_camera.inverse();
                 let rate = |(time_s, rate): (f64, Vector3<f64>)| (time_s, camera_from_body * rate);
@@ -181,10 +191,15 @@ impl Turns {
         }
     }
 
-    /// Down in the camera frame at a time, where what arrives says so.
+    /// Down in the camera frame at a time, where attitudes are known against the world.
     fn down(&self, time_s: f64) -> Option<Unit<Vector3<f64>>> {
-        let Self::Live { motion, body_from_camera } = self else { return None };
-        let world_from_camera = attitude_at(&attitudes_of(motion, body_from_camera), time_s)?;
+        let world_from_camera = match self {
+            Self::Live { motion, body_from_camera } => {
+                attitude_at(&attitudes_of(motion, body_from_camera), time_s)
+            }
+            Self::Recorded { attitudes, .. } => attitude_at(attitudes, time_s),
+            Self::Unknown | Self::Gyro(_) | Self::Attitudes(_) => None,
+        }?;
         Some(world_from_camera.inverse() * -Vector3::z_axis())
     }
 }
@@ -251,9 +266,10 @@ impl Watch {
         })
     }
 
-    /// Down in the camera frame at the time of a frame, where the vehicle says so while it flies.
-    pub fn down(&self, time_s: f64) -> Option<Unit<Vector3<f64>>> {
-        self.turns.down(time_s)
+    /// Down in the camera frame in the middle of a frame's exposure, where the vehicle says so.
+    pub fn down(&self, entry: &Entry) -> Option<Unit<Vector3<f64>>> {
+        let exposure_s = entry.exposure_s.unwrap_or(self.exposure_s);
+        self.turns.down(entry.record.time_s? + 0.5 * exposure_s)
     }
 
     /// Completes the record of a frame that was located, if it has a time that comes after the one before.
@@ -307,5 +323,28 @@ impl Watch {
         let id = name.id;
         self.contested.push(id);
         self.remarks.push(format!("frame {frame}: two tracks blink the words of vehicle {id}; none of them has its id meanwhile (said once)"));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_recording_says_where_down_is_and_how_the_camera_turned_by_rates_or_else_by_attitudes() {
+        // It turns at 1 rad/s about its x axis, from level (z up) on.
+        let at = |time_s: f64| (time_s, UnitQuaternion::from_euler_angles(time_s, 0.0, 0.0));
+        let attitudes: Vec<_> = (0..=10).map(|step| at(0.1 * f64::from(step))).collect();
+        let of = |rates| Turns::Recorded { rates, attitudes: attitudes.clone() };
+        // Between two attitudes it turns evenly.
+        let down = of(Vec::new()).down(0.55).unwrap();
+        assert!((down.into_inner() - Vector3::new(0.0, -libm::sin(0.55), -libm::cos(0.55))).norm() < 1e-9);
+        assert!(of(Vec::new()).down(1.5).is_none() && of(Vec::new()).down(-0.1).is_none());
+        let turned = of(Vec::new()).between(0.2, 0.25).unwrap().now_from_before;
+        assert!((turned.scaled_axis() + Vector3::x() * 0.05).norm() < 1e-9, "{turned}");
+        let rates: Vec<_> =
+            (0..=100).map(|step| (0.01 * f64::from(step), Vector3::new(2.0, 0.0, 0.0))).collect();
+        let turned = of(rates).between(0.2, 0.25).unwrap().now_from_before;
+        assert!((turned.scaled_axis() + Vector3::x() * 0.1).norm() < 1e-9, "rates go before: {turned}");
     }
 }

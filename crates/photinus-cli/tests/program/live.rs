@@ -113,3 +113,58 @@ fn what_is_not_understood_is_refused_with_its_line() {
     let example = stage.run("run --example");
     assert!(example.code == 0 && example.out.contains("[[camera]]"));
 }
+
+#[test]
+fn spots_of_another_detector_are_located_as_locate_does_and_a_bad_line_costs_itself() {
+    let stage = Stage::new("run-spots");
+    stage.dataset("rec", 5);
+    assert_eq!(stage.run("detect rec --out spots.jsonl -q").code, 0);
+    let spots = stage.read("spots.jsonl");
+    let located = stage.run("locate --spots spots.jsonl --camera camera.toml --airframe hexa.toml --no-time --out located.jsonl -q");
+    assert_eq!(located.code, 0, "{}", located.err);
+    let mut lines: Vec<&str> = spots.lines().collect();
+    lines.insert(2, "{\"spots\": 7}");
+    stage.file("line.jsonl", lines.join("\n") + "\n");
+    let rest = "[locate]\ntime = false\n[json]\nfile = \"live.jsonl\"\n";
+    config(&stage, "fast", "command = [\"cat\", \"line.jsonl\"], spots = true", rest);
+    let told = stage.run("run run.toml");
+    assert!(told.code == 0 && told.err.contains("line 3"), "{}", told.err);
+    // What the stream does not say is not made up: neither camera nor mounting change what was located.
+    let neighbours = |text: &str| -> Vec<serde_json::Value> {
+        let line = |line: &str| serde_json::from_str::<serde_json::Value>(line).unwrap();
+        let all = text.lines().map(line).map(|line| {
+            (line["frame"].clone(), line["time_s"].clone(), line["neighbours"][0]["position_m"].clone())
+        });
+        all.map(|parts| serde_json::json!(parts)).collect()
+    };
+    let live = neighbours(&stage.read("live.jsonl"));
+    assert_eq!((live.len(), &live), (5, &neighbours(&stage.read("located.jsonl"))));
+    assert!(live[0][2].is_array(), "{live:?}");
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_costs_the_sink_that_writes_there_and_no_other() {
+    let stage = Stage::new("run-full");
+    stage.dataset("rec", 60);
+    config(
+        &stage,
+        "fast",
+        "dataset = \"rec\"",
+        "[json]\nfile = \"live.jsonl\"\nstdout = true\n[record]\nfile = \"live.mcap\"\n",
+    );
+    // The largest file that may be written stands for the disk's last byte: 8 blocks of 1024.
+    let program = env!("CARGO_BIN_EXE_photinus");
+    let done = std::process::Command::new("bash")
+        .args(["-c", &format!("ulimit -f 8; exec {program} run run.toml")])
+        .current_dir(stage.path(""))
+        .output()
+        .unwrap();
+    let (out, err) = (String::from_utf8_lossy(&done.stdout), String::from_utf8_lossy(&done.stderr));
+    assert_eq!(out.lines().count(), 60, "{err}");
+    assert!(
+        err.contains("json live.jsonl") && err.contains("nothing more goes there, the other outputs go on"),
+        "{err}"
+    );
+    assert!(stage.read("live.jsonl").len() <= 8192);
+}

@@ -23,6 +23,8 @@ mod evaluate_recordings;
 mod files_survive;
 mod inject;
 mod kinds;
+#[cfg(target_os = "linux")]
+mod led;
 mod live;
 mod mistakes;
 mod mutated;

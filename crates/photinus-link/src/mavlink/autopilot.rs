@@ -9,8 +9,9 @@ use mavlink::dialects::common::{
 use mavlink::{MAVLinkV2MessageRaw, MavHeader};
 use photinus_io::results::FrameRecord;
 
-use super::heard::{self, Attitude, ClockOffset, Turn};
+use super::heard::{self, Attitude, Turn};
 use super::{Obstacles, Outlook, Own, Ring, follow_target};
+use crate::clock_offset::ClockOffset;
 
 /// How the link behaves.
 #[derive(Clone, Copy, Debug, PartialEq)]

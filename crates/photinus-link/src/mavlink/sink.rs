@@ -5,7 +5,8 @@ use photinus_run::Entry;
 use photinus_run::motion::Motion;
 use photinus_run::sink::Sink;
 
-use super::{Autopilot, ClockOffset, Heard};
+use super::{Autopilot, Heard};
+use crate::clock_offset::ClockOffset;
 use crate::sink_clock::SinkClock;
 
 /// Messages that are heard in one go.

@@ -5,6 +5,7 @@
 //! write     frames, results and attitudes come in, files come out (part); what was written a second ago survives any death of the program
 //! recover   a file that was cut off comes in, a whole one comes out
 //! read      a file comes in, whoever wrote it; its index and its messages come out
+//! motion    its IMU and odometry come out as attitudes and rates of the vehicle
 //! frames    its images come out as frames, bit for bit those that went in
 //! ```
 
@@ -14,6 +15,7 @@ use std::path::Path;
 use photinus_io::{Error, Result};
 
 mod frames;
+mod motion;
 mod part;
 mod pixels;
 mod read;
@@ -22,6 +24,7 @@ mod sink;
 mod write;
 
 pub use frames::{Frames, ImageTopic, image_topics};
+pub use motion::Motions;
 pub use pixels::Pixels;
 pub(crate) use read::MOST_BYTES;
 pub use read::{Recording, Topic};

@@ -12,6 +12,7 @@ mod odometry;
 mod photinus;
 mod pose;
 mod sensor;
+mod uvdar;
 
 pub use basic::{
     Header, Matrix3, Matrix6, Point, Pose, PoseWithCovariance, Quaternion, TFMessage, Text, Time, Transform,
@@ -27,6 +28,11 @@ pub use odometry::{Odometry, Twist, TwistWithCovariance};
 pub use photinus::{Frame, Neighbour, NeighbourArray, PoseMode};
 pub use pose::{PoseStamped, PoseWithCovarianceStamped};
 pub use sensor::{CameraInfo, CompressedImage, Image, Imu, RegionOfInterest};
+
+pub use uvdar::{
+    BearingObservation, BearingObservationArrayStamped, ImagePointsWithCovariancesStamped,
+    Point2DWithCovariance, PoseWithCovarianceArrayStamped, PoseWithCovarianceIdentified,
+};
 
 /// A message that a topic can carry.
 pub trait Message: serde::Serialize {
@@ -56,6 +62,9 @@ messages! {
     "sensor_msgs/CameraInfo": CameraInfo,
     "sensor_msgs/Imu": Imu,
     "nav_msgs/Odometry": Odometry,
+    "uvdar_core/ImagePointsWithCovariancesStamped": ImagePointsWithCovariancesStamped,
+    "uvdar_core/PoseWithCovarianceArrayStamped": PoseWithCovarianceArrayStamped,
+    "uvdar_core/BearingObservationArrayStamped": BearingObservationArrayStamped,
     "photinus_msgs/NeighbourArray": NeighbourArray,
     "photinus_msgs/Frame": Frame,
 }

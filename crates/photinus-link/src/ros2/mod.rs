@@ -3,15 +3,19 @@
 //! In: [`Messages`]. Out: what any ROS 2 node of the same domain subscribes to, and [`Images`] of theirs. Nothing here waits: a message that
 //! the network does not take at once is lost and counted, because the next one is newer.
 
+mod motion;
 mod node;
 mod sink;
 mod source;
+mod uvdar;
 
 use photinus_io::calibration::MountingFile;
 
-pub use node::{Images, Node, Ros2Error};
+pub use motion::{Heard, MotionTopics};
+pub use node::{Images, Inbox, Node, Ros2Error};
 pub use sink::Ros2Sink;
-pub use source::ImageSource;
+pub use source::{ImageSource, PointSource};
+pub use uvdar::UvdarTopics;
 
 use crate::messages::{Messages, mounting_transform};
 use crate::ros::{
@@ -127,6 +131,11 @@ impl Topics {
     #[must_use]
     pub fn lost(&self) -> u64 {
         self.lost
+    }
+
+    /// Messages of other topics of this program that the network did not take.
+    pub(super) fn count_lost(&mut self, lost: u64) {
+        self.lost += lost;
     }
 
     fn count(&mut self, results: &[Result<(), Ros2Error>]) {

@@ -7,6 +7,8 @@ use ros2_client::{
     Context, ContextOptions, MessageTypeName, Name, NodeName, NodeOptions, QosProfile, Subscription,
 };
 
+use serde::de::DeserializeOwned;
+
 use super::{Publisher, Quality, Settings};
 use crate::ros::{Header, Image, Message};
 
@@ -72,6 +74,19 @@ impl Node {
         images.map(Images).map_err(|error| Ros2Error::Network(error.to_string()))
     }
 
+    /// Subscribes to messages of a sensor; `topic` is its full name.
+    ///
+    /// # Errors
+    /// As [`Node::publisher`].
+    pub fn inbox<M: Message + DeserializeOwned + 'static>(
+        &mut self,
+        topic: &str,
+    ) -> Result<Inbox<M>, Ros2Error> {
+        let topic = self.named(topic, M::NAME, Quality::Sensor)?;
+        let inbox = self.node.create_subscription::<M>(&topic, None);
+        inbox.map(Inbox).map_err(|error| Ros2Error::Network(error.to_string()))
+    }
+
     fn topic(&self, topic: &str, kind: &str, quality: Quality) -> Result<Topic, Ros2Error> {
         self.named(&self.settings.name(topic), kind, quality)
     }
@@ -100,6 +115,17 @@ fn profile(quality: Quality) -> QosProfile {
 impl<M: Message> Publisher<M> for ros2_client::Publisher<M> {
     fn publish(&self, message: M) -> Result<(), Ros2Error> {
         ros2_client::Publisher::publish(self, message).map_err(|error| Ros2Error::Full(error.to_string()))
+    }
+}
+
+/// Messages of a sensor.
+pub struct Inbox<M: Message + DeserializeOwned + 'static>(Subscription<M>);
+
+impl<M: Message + DeserializeOwned + 'static> Inbox<M> {
+    /// The next message, when there is one by now; one that cannot be read says why.
+    pub fn take(&mut self) -> Option<Result<M, Ros2Error>> {
+        let taken = self.0.take().map(|taken| taken.map(|(message, _)| message));
+        taken.map_err(|error| Ros2Error::Network(error.to_string())).transpose()
     }
 }
 

@@ -8,10 +8,14 @@ use std::time::{Duration, Instant};
 
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use photinus_io::calibration::MountingFile;
-use photinus_link::messages::{Messages, Viewpoint};
+use photinus_link::messages::{Messages, Uvdar, Viewpoint};
 use photinus_link::ros;
-use photinus_link::ros2::{ImageSource, Node, Publisher, Quality, Settings, Topics};
+use photinus_link::ros2::{
+    Heard, ImageSource, MotionTopics, Node, PointSource, Publisher, Quality, Settings, Topics, UvdarTopics,
+};
 use photinus_link::topics;
+use photinus_run::Entry;
+use photinus_run::motion::Motion;
 use photinus_run::source::{Next, Source};
 use photinus_testing::python_with;
 use rand_pcg::Pcg64;
@@ -45,7 +49,7 @@ fn cyclonedds_hears_every_topic_and_its_images_are_heard() {
     let settings = Settings { domain: domain as u16, namespace: "/uav1".to_owned(), ..Settings::default() };
     let mut node = Node::new(settings.clone()).expect("there is a network");
     let mut published = Topics::new(&mut node).expect("names");
-    let mut source = ImageSource::new(settings, "/camera/image").expect("a name");
+    let mut source = ImageSource::new(settings.clone(), "/camera/image").expect("a name");
     let end_of_source = source.interrupter().expect("it waits");
     let (came, images) = channel();
     let taking = std::thread::spawn(move || {
@@ -53,6 +57,19 @@ fn cyclonedds_hears_every_topic_and_its_images_are_heard() {
             && came.send(entry).is_ok()
         {}
     });
+
+    let mut points = PointSource::new(settings, "/points").expect("a name");
+    let end_of_points = points.interrupter().expect("it waits");
+    let (said, spots) = channel();
+    let taking_points = std::thread::spawn(move || {
+        while let Next::Frame(entry) = points.next()
+            && said.send(entry).is_ok()
+        {}
+    });
+    let motion = Motion::default();
+    let topics_of_motion = MotionTopics { imu: Some("/imu".to_owned()), odometry: Some("/odom".to_owned()) };
+    let mut own = Heard::new(&mut node, &topics_of_motion, motion.clone()).expect("names");
+    let uvdar = UvdarTopics::new(&mut node, ["left"]).expect("names");
 
     let view = Viewpoint::new(Some("left"), Some(1e-3));
     let mut record = sample::record(17, 1_700_000_000.25);
@@ -74,6 +91,12 @@ fn cyclonedds_hears_every_topic_and_its_images_are_heard() {
         (topics::TRANSFORMS, "tf2_msgs/TFMessage"),
         (topics::STATIC_TRANSFORMS, "tf2_msgs/TFMessage"),
         (topics::DIAGNOSTICS, "diagnostic_msgs/DiagnosticArray"),
+        ("/uav1/uvdar/left/detector/points_seen", "uvdar_core/ImagePointsWithCovariancesStamped"),
+        ("/uav1/uvdar/left/detector/points_seen/sun", "uvdar_core/ImagePointsWithCovariancesStamped"),
+        ("/uav1/uvdar/bearing/left/observations", "uvdar_core/BearingObservationArrayStamped"),
+        ("/uav1/uvdar/measuredPoses", "uvdar_core/PoseWithCovarianceArrayStamped"),
+        ("/uav1/uvdar/filteredPoses", "uvdar_core/PoseWithCovarianceArrayStamped"),
+        ("/uav1/uvdar/filteredPoses/tentative", "uvdar_core/PoseWithCovarianceArrayStamped"),
     ];
     let asked: serde_json::Map<String, Value> = kinds
         .iter()
@@ -81,7 +104,9 @@ fn cyclonedds_hears_every_topic_and_its_images_are_heard() {
         .collect();
     let defined: serde_json::Map<String, Value> = kinds
         .iter()
-        .flat_map(|(_, kind)| definitions(kind))
+        .map(|(_, kind)| *kind)
+        .chain(["sensor_msgs/Imu", "nav_msgs/Odometry"])
+        .flat_map(definitions)
         .map(|(name, text)| (name, text.into()))
         .collect();
     let asked = json!({"topics": asked, "definitions": defined}).to_string();
@@ -95,8 +120,18 @@ fn cyclonedds_hears_every_topic_and_its_images_are_heard() {
     std::thread::spawn(move || said.send(out.lines().next()));
     let (end, mut image) = (Instant::now() + Duration::from_secs(60), None);
     let mut line = None;
-    while (line.is_none() || image.is_none()) && Instant::now() < end {
-        published.tell(Messages::of(&record, &view));
+    let (mut spot, mut clock_s) = (None, 50.0);
+    while (line.is_none() || image.is_none() || spot.is_none() || motion.attitudes().is_empty())
+        && Instant::now() < end
+    {
+        // Frames of a clock that is another than that of the stamps, and goes alike.
+        clock_s += 0.02;
+        own.frame(&Entry { taken: Some(Instant::now()), ..Entry::of_spots(0, clock_s, "", Vec::new()) });
+        own.hear();
+        spot = spot.or_else(|| spots.try_recv().ok());
+        let messages = Messages::of(&record, &view);
+        assert_eq!(uvdar.tell(0, Uvdar::of(&record, &messages, &view, [752, 480])), 0);
+        published.tell(messages);
         published.tell_health(health());
         image = image.or_else(|| images.try_recv().ok());
         match heard.try_recv() {
@@ -106,6 +141,9 @@ fn cyclonedds_hears_every_topic_and_its_images_are_heard() {
         }
         std::thread::sleep(Duration::from_millis(20));
     }
+    end_of_points();
+    drop(spots);
+    taking_points.join().expect("it ends when it is told to");
     end_of_source();
     drop(images);
     taking.join().expect("it ends when it is told to");
@@ -124,6 +162,29 @@ fn cyclonedds_hears_every_topic_and_its_images_are_heard() {
         "/uav1/photinus/tracks": told.tracks, "/uav1/photinus/markers": told.markers, topics::TRANSFORMS: told.transforms,
         topics::DIAGNOSTICS: health(),
     }));
+    let told = Uvdar::of(&record, &Messages::of(&record, &view), &view, [752, 480]);
+    let of_uvdar = flat(json!({
+        "/uav1/uvdar/left/detector/points_seen": told.points, "/uav1/uvdar/left/detector/points_seen/sun": told.sun,
+        "/uav1/uvdar/bearing/left/observations": told.bearings, "/uav1/uvdar/measuredPoses": told.measured,
+        "/uav1/uvdar/filteredPoses": told.filtered, "/uav1/uvdar/filteredPoses/tentative": told.tentative,
+    }));
+    for (topic, message) in of_uvdar.as_object().expect("topics") {
+        assert_eq!(&read[topic], message, "{topic}");
+    }
+    let spot = spot.expect("points were sent");
+    assert_eq!((spot.record.time_s, spot.record.spots.len()), (Some(12.5), 1));
+    assert!(
+        (spot.record.spots[0].u_px - 20.5).abs() < 1e-12 && (spot.record.spots[0].v_px - 30.25).abs() < 1e-12
+    );
+    // The imu has no attitude and the odometry no rate: each says what the other does not. Times are on the clock of the frames.
+    let (rate_s, rate) = motion.rates()[0];
+    let (attitude_s, attitude) = motion.attitudes()[0];
+    assert!((rate - Vector3::new(0.1, 0.2, 0.3)).norm() < 1e-12);
+    assert!(attitude.angle_to(&UnitQuaternion::from_euler_angles(2.0 * 0.6_f64.asin(), 0.0, 0.0)) < 1e-9);
+    for time_s in [rate_s, attitude_s] {
+        assert!((40.0..=clock_s + 1.0).contains(&time_s), "{time_s} of {clock_s}");
+    }
+    assert!(own.told().iter().any(|(name, _)| name == "clock_offset_ms"), "{:?}", own.told());
     for (topic, message) in expected.as_object().expect("topics") {
         assert_eq!(&read[topic], message, "{topic}");
     }

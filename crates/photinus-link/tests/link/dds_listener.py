@@ -28,9 +28,48 @@ image = wire.of("sensor_msgs/msg/Image")(
     header=header, height=16, width=20, encoding="mono8", is_bigendian=0, step=24,
     data=[(7 * place) % 256 for place in range(16 * 24)],
 )
+imus = DataWriter(participant, Topic(participant, "rt/imu", wire.of("sensor_msgs/msg/Imu"), qos=sensor), qos=sensor)
+odometries = DataWriter(participant, Topic(participant, "rt/odom", wire.of("nav_msgs/msg/Odometry"), qos=sensor), qos=sensor)
+points = DataWriter(
+    participant, Topic(participant, "rt/points", wire.of("uvdar_core/msg/ImagePointsWithCovariancesStamped"), qos=sensor), qos=sensor
+)
+vector, turn = wire.of("geometry_msgs/msg/Vector3"), wire.of("geometry_msgs/msg/Quaternion")
+began = time.monotonic()
+
+
+def stamped():
+    passed = time.monotonic() - began
+    stamp = wire.of("builtin_interfaces/msg/Time")(sec=100 + int(passed), nanosec=int(passed % 1 * 1e9))
+    return wire.of("std_msgs/msg/Header")(stamp=stamp, frame_id="base_link")
+
+
+def write_motion():
+    imus.write(wire.of("sensor_msgs/msg/Imu")(
+        header=stamped(), orientation=turn(x=0.0, y=0.0, z=0.0, w=0.0), orientation_covariance=[-1.0] + 8 * [0.0],
+        angular_velocity=vector(x=0.1, y=0.2, z=0.3), angular_velocity_covariance=9 * [0.0],
+        linear_acceleration=vector(x=0.0, y=0.0, z=9.8), linear_acceleration_covariance=9 * [0.0],
+    ))
+    pose = wire.of("geometry_msgs/msg/Pose")(
+        position=wire.of("geometry_msgs/msg/Point")(x=1.0, y=2.0, z=3.0), orientation=turn(x=0.6, y=0.0, z=0.0, w=0.8)
+    )
+    twist = wire.of("geometry_msgs/msg/Twist")(linear=vector(x=0.0, y=0.0, z=0.0), angular=vector(x=float("nan"), y=0.0, z=0.0))
+    odometries.write(wire.of("nav_msgs/msg/Odometry")(
+        header=stamped(), child_frame_id="base_link",
+        pose=wire.of("geometry_msgs/msg/PoseWithCovariance")(pose=pose, covariance=36 * [0.0]),
+        twist=wire.of("geometry_msgs/msg/TwistWithCovariance")(twist=twist, covariance=36 * [0.0]),
+    ))
+    point = wire.of("uvdar_core/msg/Point2DWithCovariance")(
+        x=20.5, y=30.25, covariance_00=1.0, covariance_01=0.0, covariance_10=0.0, covariance_11=1.0
+    )
+    points.write(wire.of("uvdar_core/msg/ImagePointsWithCovariancesStamped")(
+        stamp=header.stamp, image_height=48, image_width=64, points=[point]
+    ))
+
+
 heard, end = {}, time.monotonic() + 40
 while len(heard) < len(readers) and time.monotonic() < end:
     writer.write(image)
+    write_motion()
     for name, reader in readers.items():
         for message in reader.take(10):
             if name not in heard:
@@ -40,4 +79,5 @@ print(json.dumps(heard), flush=True)
 # Images are sent until nobody wants them any more.
 while time.monotonic() < end:
     writer.write(image)
+    write_motion()
     time.sleep(0.02)

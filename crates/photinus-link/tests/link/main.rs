@@ -7,6 +7,8 @@ mod dds;
 #[cfg(feature = "recording")]
 mod killed;
 #[cfg(feature = "recording")]
+mod motion;
+#[cfg(feature = "recording")]
 mod poses;
 #[cfg(feature = "recording")]
 mod read_by_others;

@@ -141,7 +141,6 @@ impl Reading<'_> {
             side_illumination: within("side_illumination", lens.side_illumination, 0.0, 1.0)?,
             falloff: None,
             vignette: None,
-            falloff: None,
             spread,
             veiling_glare: 0.0,
         })

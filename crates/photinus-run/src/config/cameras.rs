@@ -26,6 +26,9 @@ use crate::{HostClock, View};
 /// The exposure of frames of which nobody says it, us.
 const EXPOSURE_US: f64 = 1000.0;
 
+/// Opens a topic of ROS 2 with images, or with spots where that is said; `None` where nothing is linked that can.
+pub type Linked<'a> = &'a dyn Fn(&str, bool) -> Option<Opener>;
+
 /// A camera of the configuration, with the dataset that it is of.
 struct Named<'a> {
     keys: &'a CameraKeys,
@@ -50,11 +53,17 @@ impl Named<'_> {
 }
 
 impl Config {
-    /// The cameras, ready to run. `motion` is what arrives of the vehicle's own motion; `note` takes what was read otherwise than it stands in a file.
+    /// The cameras, ready to run. `motion` is what arrives of the vehicle's own motion; `linked` opens topics of ROS 2, where it can; `note` takes what
+    /// was read otherwise than it stands in a file.
     ///
     /// # Errors
     /// [`Error`] when a file that is named is missing or not in order, or settings have no meaning.
-    pub fn cameras(&self, motion: &Motion, note: &mut dyn FnMut(String)) -> Result<Vec<Camera>> {
+    pub fn cameras(
+        &self,
+        motion: &Motion,
+        linked: Linked<'_>,
+        note: &mut dyn FnMut(String),
+    ) -> Result<Vec<Camera>> {
         let named = self.keys.camera.iter().enumerate().map(|(number, keys)| self.named(number, keys));
         let named: Vec<Named<'_>> = named.collect::<Result<_>>()?;
         let first = named.iter().find_map(|camera| camera.recording.as_ref());
@@ -70,7 +79,7 @@ impl Config {
         let start_s = start_s.reduce(f64::min).unwrap_or(0.0);
         named
             .iter()
-            .map(|camera| self.camera(camera, (&kinds, &fleets), motion, (clock, start_s), note))
+            .map(|camera| self.camera(camera, (&kinds, &fleets), (motion, linked), (clock, start_s), note))
             .collect()
     }
 
@@ -141,7 +150,7 @@ impl Config {
         &self,
         named: &Named<'_>,
         (kinds, fleets): (&[Kind], &[Option<Fleet>]),
-        motion: &Motion,
+        (motion, linked): (&Motion, Linked<'_>),
         (clock, start_s): (HostClock, f64),
         note: &mut dyn FnMut(String),
     ) -> Result<Camera> {
@@ -200,7 +209,18 @@ impl Config {
                 .map_err(|error| refuse(error.to_string()))?;
             view = view.following(watch);
         }
-        let source = self.opener(named, exposure_us, (clock, start_s));
+        let source = match (&keys.source.v4l2, &keys.source.ros2) {
+            (Some(path), _) => self.v4l2(named, path, [camera.width(), camera.height()], clock)?,
+            (_, Some(topic)) => linked(topic, keys.source.spots).ok_or_else(|| {
+                let advice = "build with --features ros2, or name another source";
+                self.refuse(
+                    &format!("camera {}", keys.name),
+                    "topics of ROS 2 are not in this program",
+                    advice,
+                )
+            })?,
+            _ => self.opener(named, exposure_us, (clock, start_s)),
+        };
         let exposure = self.wanted_exposure().map(Exposure::new);
         Ok(Camera { name: keys.name.clone(), source, view, exposure })
     }
@@ -232,13 +252,44 @@ impl Config {
         }
         let source = named.keys.source.clone();
         let carrier = self.carrier(&source);
-        let format = source.raw.map_or(StreamFormat::Y4m, |raw| StreamFormat::Raw(raw.into()));
-        let is_live = self.pace() == Pace::Live;
-        let times = match source.times.unwrap_or(if is_live { TimesKey::Arrival } else { TimesKey::Stream }) {
-            TimesKey::Stream => Times::Stream,
-            TimesKey::Arrival => Times::Arrival(clock, 1e-6 * exposure_us.unwrap_or(EXPOSURE_US)),
+        let format = match source.raw {
+            _ if source.spots => StreamFormat::Spots,
+            Some(raw) => StreamFormat::Raw(raw.into()),
+            None => StreamFormat::Y4m,
         };
+        // Whoever finds spots knows when they were seen.
+        let is_arrival = self.pace() == Pace::Live && !source.spots;
+        let times =
+            match source.times.unwrap_or(if is_arrival { TimesKey::Arrival } else { TimesKey::Stream }) {
+                TimesKey::Stream => Times::Stream,
+                TimesKey::Arrival => Times::Arrival(clock, 1e-6 * exposure_us.unwrap_or(EXPOSURE_US)),
+            };
         Box::new(move || Ok(Box::new(Stream::open(&carrier, format, times)?) as Box<dyn Source>))
+    }
+
+    #[cfg(all(feature = "v4l2", target_os = "linux"))]
+    fn v4l2(&self, named: &Named<'_>, path: &Path, size: [usize; 2], clock: HostClock) -> Result<Opener> {
+        use crate::source::{PixelFormat, V4l2, V4l2Wanted};
+        let SourceKeys { format, rate_hz, gain, .. } = &named.keys.source;
+        let wanted = V4l2Wanted {
+            path: self.located(path),
+            size,
+            format: format.as_deref().and_then(PixelFormat::of_code),
+            rate_hz: *rate_hz,
+            exposure_us: named.keys.exposure_us,
+            gain: *gain,
+        };
+        Ok(Box::new(move || Ok(Box::new(V4l2::open(wanted.clone(), clock, EXPOSURE_US)?) as Box<dyn Source>)))
+    }
+
+    #[cfg(not(all(feature = "v4l2", target_os = "linux")))]
+    fn v4l2(&self, named: &Named<'_>, _path: &Path, _size: [usize; 2], _clock: HostClock) -> Result<Opener> {
+        let advice = "build with --features v4l2 on Linux, or take its frames by a `command`";
+        Err(self.refuse(
+            &format!("camera {}", named.keys.name),
+            "V4L2 cameras are not in this program",
+            advice,
+        ))
     }
 
     fn carrier(&self, source: &SourceKeys) -> Carrier {

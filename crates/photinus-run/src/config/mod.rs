@@ -19,9 +19,12 @@ use photinus_io::video::RawFormat;
 use photinus_io::{Cause, Error, Place, Result, table, whole};
 use serde::Deserialize;
 
+pub use cameras::Linked;
+
 use crate::exposure::Wanted;
 use crate::live::Pace;
 use crate::sink::{Address, HealthLines, JsonLines, Sink};
+use crate::source::PixelFormat;
 
 /// An example with every key, to be written to a file and changed.
 pub const EXAMPLE: &str = include_str!("example.toml");
@@ -89,6 +92,16 @@ struct SourceKeys {
     unix: Option<PathBuf>,
     raw: Option<RawKeys>,
     times: Option<TimesKey>,
+    /// Lines of spots come in place of frames.
+    #[serde(default)]
+    spots: bool,
+    /// A topic of ROS 2.
+    ros2: Option<String>,
+    v4l2: Option<PathBuf>,
+    /// How a V4L2 camera lays out its pixels.
+    format: Option<String>,
+    rate_hz: Option<f64>,
+    gain: Option<i64>,
 }
 
 #[derive(Clone, Copy, Debug, Deserialize)]
@@ -333,23 +346,54 @@ impl Config {
     }
 
     fn check_source(&self, source: &SourceKeys, key: &str) -> Result<()> {
-        let SourceKeys { dataset, camera, repeat, command, stdin, tcp, unix, raw, times } = source;
-        let kinds =
-            [dataset.is_some(), command.is_some(), *stdin == Some(true), tcp.is_some(), unix.is_some()];
+        let SourceKeys { dataset, camera, repeat, command, stdin, tcp, unix, raw, times, spots, .. } = source;
+        let SourceKeys { ros2, v4l2, format, rate_hz, gain, .. } = source;
+        let is_stream = command.is_some() || *stdin == Some(true) || tcp.is_some() || unix.is_some();
+        let kinds = [
+            dataset.is_some(),
+            command.is_some(),
+            *stdin == Some(true),
+            tcp.is_some(),
+            unix.is_some(),
+            v4l2.is_some(),
+            ros2.is_some(),
+        ];
         if kinds.into_iter().filter(|there| *there).count() != 1 {
             return Err(self.refuse(
                 key,
                 "it needs exactly one source",
-                "give one of dataset, command, stdin = true, tcp, unix",
+                "give one of dataset, command, stdin = true, tcp, unix, v4l2, ros2",
             ));
         }
-        if dataset.is_some() && (raw.is_some() || times.is_some())
-            || dataset.is_none() && (camera.is_some() || *repeat)
+        let of_dataset = camera.is_some() || *repeat;
+        let of_stream = raw.is_some() || times.is_some();
+        let is_lost = *spots && !is_stream && ros2.is_none();
+        let of_v4l2 = format.is_some() || rate_hz.is_some() || gain.is_some();
+        if of_dataset && dataset.is_none() || of_stream && !is_stream || of_v4l2 && v4l2.is_none() || is_lost
         {
             return Err(self.refuse(
                 key,
                 "these keys do not go together",
-                "`camera` and `repeat` are of a dataset, `raw` and `times` of a stream",
+                "`camera` and `repeat` are of a dataset, `raw` and `times` of a stream, `spots` of a stream or of ros2, `format`, `rate_hz` and `gain` of v4l2",
+            ));
+        }
+        if *spots && raw.is_some() {
+            return Err(self.refuse(key, "spots are no raw frames", "keep `spots` or `raw`"));
+        }
+        if let Some(code) = format
+            && PixelFormat::of_code(code).is_none()
+        {
+            return Err(self.refuse(
+                &format!("{key}.format"),
+                &format!("no grey frame is known to be in {code}"),
+                "give GREY, Y10, Y12, Y16, Y10P, Y12P, YUYV, UYVY or MJPG, or leave it out",
+            ));
+        }
+        if rate_hz.is_some_and(|hz| !(0.001..=1e5).contains(&hz)) {
+            return Err(self.refuse(
+                &format!("{key}.rate_hz"),
+                "no camera has this rate",
+                "give frames a second",
             ));
         }
         Ok(())

@@ -78,6 +78,10 @@ fn what_has_no_meaning_is_refused_with_what_to_do() {
     let of = |source: &str| told(&format!("[[camera]]\nname = \"a\"\nsource = {{ {source} }}\n"));
     assert!(of("").contains("exactly one source"));
     assert!(of("dataset = \"a\", tcp = \"b:1\"").contains("exactly one source"));
+    assert!(of("v4l2 = \"/dev/video0\", spots = true").contains("do not go together"));
+    assert!(of("stdin = true, gain = 3").contains("do not go together"));
+    assert!(of("v4l2 = \"/dev/video0\", format = \"H264\"").contains("no grey frame is known to be in H264"));
+    assert!(of("v4l2 = \"/dev/video0\", rate_hz = 0").contains("no camera has this rate"));
     assert!(of("tcp = \"b:1\", camera = \"left\"").contains("do not go together"));
     assert!(
         told(&format!("{CAMERA}[exposure]\nreach_m = -1\nshortest_us = 1\nlongest_us = 2\n"))

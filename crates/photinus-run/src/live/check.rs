@@ -21,15 +21,15 @@ impl Camera {
         let Self { name, mut source, mut view, .. } = self;
         let (sender, first) = channel();
         let _ = std::thread::Builder::new().name("check".to_owned()).spawn(move || {
-            let first = source().map(|mut source| source.next());
+            let first = source().map(|mut source| (source.told(), source.next()));
             // Who asked may have given up.
             let _ = sender.send(first);
         });
         let refuse = |reason: &str, advice: &str| Err(Error::format(&name, reason).advise(advice));
-        let mut entry = match first.recv_timeout(PATIENCE) {
-            Ok(Ok(Next::Frame(entry))) => entry,
-            Ok(Ok(Next::Bad(error) | Next::Lost(error)) | Err(error)) => return Err(error),
-            Ok(Ok(Next::End)) => return refuse("it holds no frame", "check where its frames come from"),
+        let (told, mut entry) = match first.recv_timeout(PATIENCE) {
+            Ok(Ok((told, Next::Frame(entry)))) => (told, entry),
+            Ok(Ok((_, Next::Bad(error) | Next::Lost(error))) | Err(error)) => return Err(error),
+            Ok(Ok((_, Next::End))) => return refuse("it holds no frame", "check where its frames come from"),
             Err(RecvTimeoutError::Timeout | RecvTimeoutError::Disconnected) => {
                 return refuse("no frame came within 10 s", "check the cable, and what sends the frames");
             }
@@ -39,6 +39,7 @@ impl Camera {
         let size = size.map_or("spots".to_owned(), |view| format!("{} x {} px", view.width(), view.height()));
         let (spots, neighbours) = (entry.record.spots.len(), entry.record.neighbours.len());
         let _ = view.remarks();
-        Ok(format!("{size}, {spots} spots, {neighbours} neighbours"))
+        let told = told.map_or(String::new(), |told| format!(", {told}"));
+        Ok(format!("{size}, {spots} spots, {neighbours} neighbours{told}"))
     }
 }

@@ -1,11 +1,13 @@
 //! The thread that reads one camera: opens it, puts its frames into the slot, and opens it anew when it is lost, with growing pauses.
 
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::{Duration, Instant};
 
 use photinus_io::Error;
 
 use super::Shared;
 use super::lane::Lane;
+use crate::fault;
 use crate::health::Level;
 use crate::source::{Next, Opener, Source};
 
@@ -20,17 +22,22 @@ const LOOK: Duration = Duration::from_millis(20);
 pub(super) fn read(lane: &Lane, mut open: Opener, shared: &Shared) {
     let mut pause = FIRST_PAUSE;
     while !shared.is_over() {
-        let why = match open() {
-            Ok(mut source) => match frames(lane, source.as_mut(), shared, &mut pause) {
-                Some(error) => error,
-                None if shared.is_over() => break,
-                None => {
-                    lane.end();
-                    shared.tell(Level::Note, format!("{}: its frames are at their end", lane.name));
-                    break;
-                }
-            },
-            Err(error) => error,
+        // A driver's library that panics is a camera that is lost, not the end of the run.
+        let ended = catch_unwind(AssertUnwindSafe(|| {
+            let mut source = open()?;
+            Ok(frames(lane, source.as_mut(), shared, &mut pause))
+        }));
+        let ended = ended.unwrap_or_else(|payload| {
+            Err(Error::format(&lane.name, fault::told(payload.as_ref())).advise(fault::ADVICE))
+        });
+        let why = match ended {
+            Ok(Some(error)) | Err(error) => error,
+            Ok(None) if shared.is_over() => break,
+            Ok(None) => {
+                lane.end();
+                shared.tell(Level::Note, format!("{}: its frames are at their end", lane.name));
+                break;
+            }
         };
         if lane.lose() {
             let told = format!("{}: {why}; tried again until it is back", lane.name);
@@ -46,6 +53,7 @@ pub(super) fn read(lane: &Lane, mut open: Opener, shared: &Shared) {
 /// Takes frames as long as they come; why they do not any more, unless that is their end.
 fn frames(lane: &Lane, source: &mut dyn Source, shared: &Shared, pause: &mut Duration) -> Option<Error> {
     lane.set_interrupter(source.interrupter());
+    let mut told = source.told();
     while !shared.is_over() {
         if let Some(exposure_us) = lane.slot.take_wish() {
             // Frames say how they were exposed.
@@ -55,6 +63,9 @@ fn frames(lane: &Lane, source: &mut dyn Source, shared: &Shared, pause: &mut Dur
             Next::Frame(mut entry) => {
                 if lane.find() {
                     shared.tell(Level::Note, format!("{}: it is back", lane.name));
+                }
+                if let Some(told) = told.take() {
+                    shared.tell(Level::Note, format!("{}: {told}", lane.name));
                 }
                 *pause = FIRST_PAUSE;
                 entry.camera = lane.number;

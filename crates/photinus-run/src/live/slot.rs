@@ -32,6 +32,8 @@ impl Slot {
     /// Puts a frame in; the one that is there gives way.
     pub(super) fn put(&self, mut entry: Entry) {
         let mut state = self.state();
+        // What the camera itself dropped.
+        state.dropped += entry.dropped;
         if let Some(older) = state.frame.take() {
             state.dropped += 1;
             entry.dropped += older.dropped + 1;
@@ -55,7 +57,7 @@ impl Slot {
         self.came.notify_all();
     }
 
-    /// Frames that gave way to newer ones.
+    /// Frames that gave way to newer ones, here or in the camera.
     pub(super) fn dropped(&self) -> u64 {
         self.state().dropped
     }

@@ -44,6 +44,7 @@ enum Step {
     Frame(u64, f64),
     Wait(Duration),
     Lose,
+    Panic,
 }
 
 impl Source for Script {
@@ -53,6 +54,7 @@ impl Source for Script {
                 Some(Step::Frame(index, time_s)) => return Next::Frame(frame(index, time_s)),
                 Some(Step::Wait(pause)) => std::thread::sleep(pause),
                 Some(Step::Lose) => return Next::Lost(Error::format("fake", "somebody pulled the plug")),
+                Some(Step::Panic) => panic!("a driver does not know what to do"),
                 None => return Next::End,
             }
         }
@@ -244,4 +246,37 @@ fn a_run_ends_when_it_is_asked_even_where_a_camera_waits_for_ever() {
     let report = run(vec![camera("a", steps)], sinks, Pace::Live, is_over, &mut |_| ()).unwrap();
     assert!(report.stuck.is_empty() && finished.load(Ordering::Relaxed));
     assert_eq!(given.lock().unwrap().len(), 1);
+}
+
+#[test]
+fn a_source_that_panics_is_a_camera_that_is_lost() {
+    let mut opened = 0;
+    let source: Opener = Box::new(move || {
+        opened += 1;
+        let steps = match opened {
+            1 => VecDeque::from([Step::Frame(0, 0.0), Step::Panic]),
+            _ => VecDeque::from([Step::Frame(1, 1.0)]),
+        };
+        Ok(Box::new(Script(steps)) as Box<dyn Source>)
+    });
+    let camera = Camera { name: "a".to_owned(), source, view: view(), exposure: None };
+    let mut told = Vec::new();
+    let sinks: Vec<Box<dyn Sink>> = vec![Box::new(Good(Given::default(), Arc::default()))];
+    let report = run(vec![camera], sinks, Pace::Live, until_the_end(), &mut |notice| {
+        told.push(notice.text.clone());
+    });
+    let report = report.unwrap();
+    let [camera] = &report.health.cameras[..] else { panic!("one") };
+    assert_eq!((camera.lost, camera.state), (1, CameraState::Ended));
+    assert!(told.iter().any(|text| text.contains("does not know what to do")), "{told:?}");
+}
+
+#[test]
+fn what_a_camera_dropped_by_itself_is_counted_with_what_gave_way() {
+    let slot = Slot::default();
+    for dropped in [0, 3, 2] {
+        slot.put(Entry { dropped, ..frame(0, 0.0) });
+    }
+    let last = slot.take(&|| false).unwrap().unwrap();
+    assert_eq!((slot.dropped(), last.dropped), (7, 7));
 }

@@ -1,19 +1,27 @@
 //! Where frames come from, one after the other. A source is called by one thread that is its own.
 //!
 //! ```text
-//! recorded   a dataset folder, at its own pace or as fast as it is asked
-//! stream     Y4M or raw frames: standard input, a socket, the output of a command
+//! recorded      a dataset folder, at its own pace or as fast as it is asked
+//! stream        Y4M or raw frames: standard input, a socket, the output of a command
+//! v4l2          a camera of this machine, feature `v4l2`
+//! pixel_format  how its pixels are laid out
 //! ```
 
+mod pixel_format;
 mod recorded;
 mod stream;
+#[cfg(all(feature = "v4l2", target_os = "linux"))]
+mod v4l2;
 
 use photinus_io::{Error, Result};
 
 use crate::Entry;
 
+pub use pixel_format::PixelFormat;
 pub use recorded::Recorded;
 pub use stream::{Carrier, Stream, StreamFormat, Times};
+#[cfg(all(feature = "v4l2", target_os = "linux"))]
+pub use v4l2::{V4l2, Wanted as V4l2Wanted};
 
 /// What comes next.
 #[derive(Debug)]
@@ -36,6 +44,11 @@ pub trait Source: Send {
 
     /// What ends a wait for the next frame from another thread, where something must: a child process is killed, a socket closed.
     fn interrupter(&self) -> Option<Box<dyn Fn() + Send>> {
+        None
+    }
+
+    /// How it was truly set, in words, where it can be set at all.
+    fn told(&self) -> Option<String> {
         None
     }
 

@@ -1,4 +1,4 @@
-//! Y4M or raw grey frames out of a pipe: standard input, a socket, the output of a command such as `gst-launch-1.0` or `ffmpeg`.
+//! Y4M or raw grey frames, or spots of another detector, out of a pipe: standard input, a socket, the output of a command such as `gst-launch-1.0`.
 
 use std::io::Read;
 use std::net::{Shutdown, TcpStream};
@@ -8,6 +8,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
 
 use photinus_io::frames::FrameSource;
+use photinus_io::results::ResultsReader;
 use photinus_io::video::RawFormat;
 use photinus_io::{Error, Result};
 
@@ -34,12 +35,14 @@ pub enum StreamFormat {
     Y4m,
     /// Nothing but pixels.
     Raw(RawFormat),
+    /// No frames, but the spots of each: a line of JSON, as results are written.
+    Spots,
 }
 
 /// Where the times of frames come from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Times {
-    /// The number of the frame over the rate that the stream states: what of a pipeline drops frames is told wrong.
+    /// What the stream says: of frames their number over its rate, which is wrong where a pipeline drops frames; of spots their own time.
     Stream,
     /// When a frame was here as a whole, less its exposure, s: what is on the way as long as another is off by the same.
     Arrival(HostClock, f64),
@@ -50,10 +53,27 @@ type Pipe = Box<dyn Read + Send>;
 
 /// Frames out of a pipe.
 pub struct Stream {
-    frames: FrameSource,
+    frames: Carried,
     times: Times,
     name: String,
     ending: Ending,
+}
+
+/// What comes out of it.
+enum Carried {
+    Frames(FrameSource),
+    Spots(ResultsReader<Pipe>),
+}
+
+impl Carried {
+    /// The next entry, and whether others may follow one that cannot be used.
+    fn next(&mut self) -> (Option<Result<Entry>>, bool) {
+        match self {
+            // Of a stream of pixels there is nothing after an error.
+            Self::Frames(frames) => (frames.next().map(|frame| frame.map(Entry::from_frame)), false),
+            Self::Spots(records) => (records.next().map(|record| record.map(Entry::from_spots)), true),
+        }
+    }
 }
 
 /// What the end of the pipe means, and what ends it.
@@ -91,8 +111,9 @@ impl Stream {
             Carrier::Unix(path) => unix(path)?,
         };
         let frames = match format {
-            StreamFormat::Y4m => FrameSource::y4m(pipe, &name),
-            StreamFormat::Raw(format) => FrameSource::raw(pipe, &name, format),
+            StreamFormat::Y4m => FrameSource::y4m(pipe, &name).map(Carried::Frames),
+            StreamFormat::Raw(format) => FrameSource::raw(pipe, &name, format).map(Carried::Frames),
+            StreamFormat::Spots => Ok(Carried::Spots(ResultsReader::new(pipe, &name))),
         };
         let frames = frames.inspect_err(|_| drop(ending.exit(true)))?;
         Ok(Self { frames, times, name, ending })
@@ -101,23 +122,25 @@ impl Stream {
 
 impl Source for Stream {
     fn next(&mut self) -> Next {
-        let frame = match self.frames.next() {
-            Some(Ok(frame)) => frame,
-            // Of a stream there is nothing after an error.
-            Some(Err(error)) => return Next::Lost(error),
-            None => {
+        let mut entry = match self.frames.next() {
+            (Some(Ok(entry)), _) => entry,
+            (Some(Err(error)), true) => return Next::Bad(error),
+            (Some(Err(error)), false) => return Next::Lost(error),
+            (None, _) => {
                 return self
                     .ending
                     .exit(false)
                     .map_or(Next::End, |why| Next::Lost(Error::format(&self.name, why)));
             }
         };
-        let mut entry = Entry::from_frame(frame);
         let now = Instant::now();
         entry.taken = Some(now);
         if let Times::Arrival(clock, exposure_s) = &self.times {
             entry.record.time_s = Some(clock.unix_s(now) - exposure_s);
             entry.exposure_s = Some(*exposure_s);
+        }
+        if entry.record.source.is_empty() {
+            entry.record.source.clone_from(&self.name);
         }
         Next::Frame(entry)
     }

@@ -53,7 +53,7 @@ fn a_file_that_cannot_be_read_is_told_with_the_key_that_names_it() {
     let path = folder.join("run.toml");
     let told = |text: &str| {
         let config = Config::parse(text, &path).unwrap();
-        config.cameras(&Motion::default(), &mut |_| {}).err().unwrap().to_string()
+        config.cameras(&Motion::default(), &|_, _| None, &mut |_| {}).err().unwrap().to_string()
     };
     let missing = told(CAMERA);
     let [config, dataset] = [path.clone(), folder.join("rec")].map(|path| path.display().to_string());

@@ -57,6 +57,7 @@ mod tests {
     use super::*;
 
     #[test]
+    #[allow(clippy::float_cmp, reason = "rounded to whole percents")]
     fn a_measured_falloff_is_straight_between_its_angles_and_even_beyond() {
         let falloff = Falloff::new(vec![[0.0, 1.0], [0.5, 0.8], [1.0, 0.2]]).unwrap();
         let shares = [0.0, 0.25, 0.5, 0.9, 1.0, 2.0].map(|rad| (100.0 * falloff.share(rad)).round());

@@ -77,9 +77,9 @@ impl Starts {
         self.markers.resize(observations.len(), None);
         two.iter().for_each(|&(spot, marker)| self.markers[spot] = Some(marker as u16));
         let Some(pose) = self.place(observations, attitude) else { return };
-        for spot in 0..observations.len() {
+        for (spot, seen) in observations.iter().enumerate() {
             if self.markers[spot].is_none() {
-                self.markers[spot] = self.nearest(&observations[spot], &pose);
+                self.markers[spot] = self.nearest(seen, &pose);
             }
         }
         let Some(pose) = self.place(observations, attitude) else { return };
@@ -167,9 +167,9 @@ mod tests {
     fn pairs() -> Airframe {
         let led = |number: u32| {
             let arm = f64::from(number / 2) * TAU / 4.0 + TAU / 8.0;
-            let beside = if number % 2 == 0 { -0.03 } else { 0.03 };
-            let (outward, along) =
-                (Vector3::new(arm.cos(), arm.sin(), 0.0), Vector3::new(-arm.sin(), arm.cos(), 0.0));
+            let beside = if number.is_multiple_of(2) { -0.03 } else { 0.03 };
+            let (sin, cos) = libm::sincos(arm);
+            let (outward, along) = (Vector3::new(cos, sin, 0.0), Vector3::new(-sin, cos, 0.0));
             Led {
                 position_m: outward * 0.3 + along * beside,
                 axis: Unit::new_normalize(outward),

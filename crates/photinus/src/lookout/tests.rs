@@ -327,13 +327,7 @@ fn strangers_fly_beside_vehicles_with_several_signals() {
     let steady = Word::new(&[true]).unwrap();
     let mut blinkers = [
         Blinker::new([-1.2, 0.2, 4.5], [0.2, 0.0, 0.0], 0.3, vec![word(0), word(1), word(2)], 0.003),
-        Blinker::new(
-            [1.2, -0.2, 5.0],
-            [-0.1, 0.0, 0.0],
-            1.0,
-            vec![steady.clone(), steady.clone(), steady],
-            0.0,
-        ),
+        Blinker::new([1.2, -0.2, 5.0], [-0.1, 0.0, 0.0], 1.0, vec![steady, steady, steady], 0.0),
     ];
     for frame in 0..150 {
         let tracked = world.see(&mut blinkers);

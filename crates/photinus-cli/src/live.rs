@@ -70,7 +70,7 @@ fn fly(config: &Config, terminal: &mut Terminal) -> Result<(), Failure> {
     let motion = Motion::default();
     let cameras = config
         .cameras(&motion, &|topic, spots| protocols::source(config, topic, spots), &mut |text| {
-            terminal.note(text)
+            terminal.note(text);
         })
         .map_err(Failure::input)?;
     let (sinks, page) = sinks(config, &motion, &cameras)?;
@@ -100,7 +100,7 @@ fn check(config: &Config, terminal: &mut Terminal) -> Result<(), Failure> {
     let motion = Motion::default();
     let cameras = config
         .cameras(&motion, &|topic, spots| protocols::source(config, topic, spots), &mut |text| {
-            terminal.note(text)
+            terminal.note(text);
         })
         .map_err(Failure::input)?;
     // What was not there before is not left behind.

@@ -118,7 +118,7 @@ fn seen_from(camera: &Camera, left_deg: f64, camera_m: Vector3<f64>, led_m: Vect
 #[test]
 fn known_projections() {
     let Some(folder) = real_data("ocamcalib") else { return };
-    let camera = read_camera(&folder.join("calib_results_bf_uv_fe.txt")).expect("a calibration").camera;
+    let camera = read_camera(folder.join("calib_results_bf_uv_fe.txt")).expect("a calibration").camera;
     let (left_arm, right_arm) = (Vector3::new(4.788, 0.212, 0.0), Vector3::new(4.788, -0.212, 0.0));
     for (left_deg, led_m, expected) in [
         (70.0, left_arm, Pixel::new(669.0, 233.0)),
@@ -141,7 +141,7 @@ fn known_projections() {
 #[test]
 fn projections_through_the_files_own_inverse() {
     let Some(folder) = real_data("ocamcalib") else { return };
-    let camera = read_camera(&folder.join("calib_results_bf_uv_fe.txt")).expect("a calibration").camera;
+    let camera = read_camera(folder.join("calib_results_bf_uv_fe.txt")).expect("a calibration").camera;
     let origin = Vector3::zeros();
     for (left_deg, led_m, expected) in [
         (70.0, Vector3::new(4.788, 0.212, 0.0), Pixel::new(663.08352551, 229.57808816)),
@@ -162,7 +162,7 @@ fn the_files_beside_them_are_no_cameras() {
         ("../blink-codes/L8.txt", "blink sequences"),
         ("../masks/lemmy_25003811.png", "an image"),
     ] {
-        let refusal = read_camera(&folder.join(file)).unwrap_err().to_string();
+        let refusal = read_camera(folder.join(file)).unwrap_err().to_string();
         assert!(refusal.contains(what), "{refusal}");
     }
 }

@@ -91,7 +91,7 @@ fn one_camera_gives_the_layout_with_one_camera() {
     let row = &dataset.frames()[1];
     assert_eq!(read_image(dataset.path(&row.image)).unwrap().image, rendered[1].image);
     assert!((row.gravity.unwrap().into_inner() - rendered[1].gravity.into_inner()).norm() < 1e-12);
-    let camera = read_camera(&dataset.path(&dataset.info().camera)).unwrap().camera;
+    let camera = read_camera(dataset.path(&dataset.info().camera)).unwrap().camera;
     assert_eq!(camera, scene.cameras[0].camera);
     assert!(!dataset.path("vehicles.toml").exists() && !dataset.path("imu.csv").exists());
     assert!(SceneDataset::create(&folder.0, &scene, &[0], 2).is_err(), "a dataset is not written over");
@@ -111,7 +111,7 @@ fn a_point_seen_by_two_cameras_is_in_one_place() {
         let gap_m = (in_body[0].translation.vector - in_body[1].translation.vector).norm();
         assert!(gap_m < 1e-9 && in_body[0].rotation.angle_to(&in_body[1].rotation) < 1e-7, "{gap_m}");
         for (camera, neighbour) in [(front, &a.neighbours[0]), (left, &b.neighbours[0])] {
-            let model = read_camera(&dataset.path(&camera.camera)).unwrap().camera;
+            let model = read_camera(dataset.path(&camera.camera)).unwrap().camera;
             for led in &neighbour.leds {
                 // the ray of the pixel, carried to the body by the mounting, meets the LED where both cameras have it
                 let ray = model.bearing(Pixel::new(led.u_px, led.v_px)).unwrap();

@@ -70,7 +70,7 @@ fn of_camera(report: &mut Report, dataset: &Dataset, camera: &DatasetCamera) {
     report.fact("camera ran at", format!("{rate_hz} frames per second, {} us exposure", camera.exposure_us));
     let with_gravity = rows.iter().filter(|row| row.gravity.is_some()).count();
     report.fact("gravity", format!("known for {with_gravity} of {} frames", rows.len()));
-    let file = read_camera(&dataset.path(&camera.camera));
+    let file = read_camera(dataset.path(&camera.camera));
     let size = file.as_ref().ok().map(|file| (file.camera.width(), file.camera.height()));
     let told = file.map(|file| {
         let (width, height) = (file.camera.width(), file.camera.height());

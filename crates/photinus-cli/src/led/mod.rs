@@ -107,7 +107,7 @@ pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> Result<(), Failure> {
         match outcome {
             None => return Err(Failure::Interrupted(format!("{name}: the board was told a part"))),
             Some(Outcome::Acknowledged) => {
-                terminal.result(format_args!("{name}: the board acknowledged all of it"))?
+                terminal.result(format_args!("{name}: the board acknowledged all of it"))?;
             }
             Some(Outcome::Unanswered) => terminal.result(format_args!(
                 "{name}: all was said, the board answers nothing; --verify sees what the LEDs do"

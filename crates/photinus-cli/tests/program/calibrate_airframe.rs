@@ -12,7 +12,7 @@ const SQUARE: &str = "0.2 0.2 0 0 0 0 0\n0.2 -0.2 0 0 0 0 0\n-0.2 -0.2 0 0 0 0 0
 
 /// Photos of an airframe whose LED 5 sits 3 cm from where it should, and is not seen in every photo.
 pub(crate) fn sightings(stage: &Stage, airframe: &str) -> String {
-    let camera = read_camera(&stage.path("camera.toml")).unwrap().camera;
+    let camera = read_camera(stage.path("camera.toml")).unwrap().camera;
     let mut leds_m: Vec<Vector3<f64>> = read_airframe(stage.path(airframe))
         .unwrap()
         .airframe

@@ -14,7 +14,7 @@ fn body_from_camera() -> Rotation3<f64> {
 
 /// Places over the image of camera.toml with their directions in the body frame, to 0.1 px.
 pub(crate) fn directions(stage: &Stage) -> String {
-    let camera = read_camera(&stage.path("camera.toml")).unwrap().camera;
+    let camera = read_camera(stage.path("camera.toml")).unwrap().camera;
     let mut table = "u_px,v_px,x,y,z\n".to_owned();
     for index in 0..12 {
         let share = |step: f64| (f64::from(index) * step).fract();

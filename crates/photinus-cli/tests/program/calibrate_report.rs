@@ -12,7 +12,7 @@ const CAMERA: &str = "model = \"kannala_brandt\"\nwidth_px = 752\nheight_px = 48
 /// The corners of a board in photos all over the image, off by a few hundredths of a pixel.
 fn corners(stage: &Stage) -> String {
     stage.file("true.toml", CAMERA);
-    let camera = read_camera(&stage.path("true.toml")).unwrap().camera;
+    let camera = read_camera(stage.path("true.toml")).unwrap().camera;
     let mut table = "image,u,v,grid_i,grid_j\n".to_owned();
     for photo in 0..9 {
         let (across, down) = (f64::from(photo % 3) - 1.0, f64::from(photo / 3) - 1.0);

@@ -167,7 +167,7 @@ fn what_locate_says_of_exact_geometry_keeps_its_bounds() {
     let camera = "model = \"equidistant\"\nwidth_px = 752\nheight_px = 480\ncentre_px = [375.5, 239.5]\n\
                   focal_px = [265.0, 265.0]\n";
     stage.file("camera.toml", camera);
-    let camera = read_camera(&stage.path("camera.toml")).unwrap().camera;
+    let camera = read_camera(stage.path("camera.toml")).unwrap().camera;
     let airframe = read_airframe(stage.path("hexa.toml")).unwrap().airframe;
     let seen = (0..FRAMES).map(|frame| spinning(frame, &camera, &airframe));
     let (truth, spots): (Vec<String>, Vec<String>) =

@@ -57,7 +57,7 @@ fn a_seed_gives_the_same_bytes_and_other_files_are_copied() {
     let bytes = |name: &str| std::fs::read(stage.path(name).join("images/000003.png")).unwrap();
     assert!(bytes("a") == bytes("b") && bytes("a") != bytes("c"));
     assert_eq!(stage.read("a/camera.toml"), stage.read("flight/camera.toml"));
-    assert_eq!(read_camera(&stage.path("a/camera.toml")).unwrap().camera.width(), 96);
+    assert_eq!(read_camera(stage.path("a/camera.toml")).unwrap().camera.width(), 96);
 }
 
 #[test]

@@ -45,7 +45,7 @@ impl Board {
         match payload[0] {
             0x90 => self.is_lit = payload[1] == 1,
             0x96 => {
-                self.rate_hz = u16::from(payload[1]) + 256 * u16::from(payload.get(2).copied().unwrap_or(0))
+                self.rate_hz = u16::from(payload[1]) + 256 * u16::from(payload.get(2).copied().unwrap_or(0));
             }
             0x97 => self.length = usize::from(payload[1]),
             0x98 => self.selected = payload[1..].to_vec(),

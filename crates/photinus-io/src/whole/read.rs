@@ -86,6 +86,6 @@ mod tests {
     #[test]
     fn a_byte_order_mark_is_dropped() {
         let folder = crate::scratch::Folder::new("bom");
-        assert_eq!(read_text(&folder.file("bom", b"\xef\xbb\xbfname")).unwrap(), "name");
+        assert_eq!(read_text(folder.file("bom", b"\xef\xbb\xbfname")).unwrap(), "name");
     }
 }

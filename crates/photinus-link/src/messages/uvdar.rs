@@ -121,6 +121,7 @@ mod tests {
     use super::*;
 
     #[test]
+    #[allow(clippy::float_cmp, reason = "numbers pass through unchanged")]
     fn points_poses_and_bearings_are_those_of_the_results() {
         let line = r#"{"spots":[{"u_px":3.5,"v_px":4,"covariance_px2":[[0.04,0.01],[0.01,0.09]]}],"rejected":[{"u_px":9,"v_px":8,"area_px":700,"reason":"sun"},
             {"u_px":1,"v_px":1,"area_px":1,"reason":"reflection"}],"neighbours":[{"id":3,"track":7,"airframe":"a","spots":[0],"bearing":[0,0,1],

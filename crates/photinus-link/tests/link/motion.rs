@@ -56,7 +56,7 @@ fn rates_of_the_imu_and_attitudes_of_the_odometry_are_read_from_a_bag_of_rosbags
     let (time_s, attitude) = motions.attitudes[249];
     let turn = attitude.scaled_axis();
     assert!(
-        (time_s - 12.49).abs() < 1e-9 && (turn - Vector3::z() * 2.0 * 0.6_f64.asin()).norm() < 1e-12,
+        (time_s - 12.49).abs() < 1e-9 && (turn - Vector3::z() * 2.0 * libm::asin(0.6)).norm() < 1e-12,
         "{time_s}, {turn}"
     );
 }

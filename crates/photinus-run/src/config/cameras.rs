@@ -136,7 +136,7 @@ impl Config {
             Some(keys) => {
                 let codes = keys.codes.as_ref().map(|path| read_codes(self.located(path))).transpose()?;
                 let vehicles =
-                    dataset::read_vehicles(&self.located(Path::new("")), &keys.file, codes.as_ref())?;
+                    dataset::read_vehicles(self.located(Path::new("")), &keys.file, codes.as_ref())?;
                 match codes {
                     Some(book) => watch::fleets_of(&book, &vehicles, &self.located(&keys.file), kinds, note)?,
                     None => kinds.iter().map(|_| None).collect(),

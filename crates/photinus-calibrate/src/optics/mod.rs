@@ -65,6 +65,8 @@ use table::Shares;
 
 /// Fewest spots that make a point spread.
 pub const FEWEST_SPOTS: usize = 40;
+/// Of fewer spots a half makes no table that is worth comparing with.
+const FEWEST_HALVED: usize = 4 * FEWEST_SPOTS;
 /// Spots of a node of the grid over which the point spread may change.
 const SPOTS_PER_NODE: usize = 40;
 const ROUNDS_WHOLE: usize = 5;
@@ -125,11 +127,15 @@ pub fn learn(collection: &Collection) -> Result<Learned, LearnError> {
     place(&mut spots, &field, &noise, 2);
     let clear = clear_of_full(&spots, &field, &noise, full_from);
     let response = response::learn(&clear, &field, &noise).map(|bend_per_dn| Response { bend_per_dn });
-    let halves = [0, 1].map(|half| {
-        let start = Field::new(start.table(), size_px, nodes);
-        field_of_half(&clear, start, &noise, half)
-    });
-    let residuals = light::free_residuals(&clear, &field, halves.each_ref(), &noise);
+    let residuals = if clear.len() < FEWEST_HALVED {
+        light::residuals(&clear, &field, &noise)
+    } else {
+        let halves = [0, 1].map(|half| {
+            let start = Field::new(start.table(), size_px, nodes);
+            field_of_half(&clear, start, &noise, half)
+        });
+        light::free_residuals(&clear, &field, halves.each_ref(), &noise)
+    };
     let light = light::explain(&residuals, darkness.noise_dn, &noise);
     let used = spots.iter().filter(|spot| spot.is_used).count();
     if used < FEWEST_SPOTS {

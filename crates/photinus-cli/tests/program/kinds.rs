@@ -91,7 +91,7 @@ fn kinds_are_named_on_the_command_line_or_by_the_dataset() {
     );
     assert_eq!(stage.run("locate flight --no-time -q --out listed.jsonl").code, 0);
     assert_eq!(stage.read("listed.jsonl"), stage.read("told.jsonl"));
-    assert_eq!(stage.run("convert flight --out copy -q").code, 0);
+    assert_eq!(stage.run("convert flight copy").code, 0);
     let copy = Dataset::read(stage.path("copy")).unwrap();
     assert_eq!(copy.info().airframe.iter().count(), 2);
     assert!(copy.airframes().iter().all(|file| file.is_file()), "{:?}", copy.airframes());

@@ -1,6 +1,6 @@
 //! `locate` of frames with times: who is followed, where it is going, and who it is.
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Vector3;
 use photinus_io::dataset::Dataset;
 use photinus_io::results::{FrameRecord, NeighbourRecord, TrackRecord, read_results};
 
@@ -209,9 +209,7 @@ fn vehicles_whose_arms_blink_different_words_are_named() {
             let Some(id) = track.id else { continue };
             let there = truth.neighbours.iter().find(|there| there.id == id).unwrap();
             let off = Vector3::from(track.position_m) - Vector3::from(there.position_m);
-            let sigmas =
-                off.dot(&(Matrix3::from(track.position_covariance_m2).try_inverse().unwrap() * off)).sqrt();
-            assert!(sigmas < 6.0, "{:?}: vehicle {id} is {off:?} m off, {sigmas} sigma", frame.frame);
+            assert!(off.norm() < 0.1 * there.distance_m, "{:?}: vehicle {id} is {off:?} m off", frame.frame);
             named += 1;
         }
     }

@@ -77,6 +77,9 @@ impl Store {
             ["flight", "morning", "evening"].iter().for_each(|name| put("alone", name));
             std::fs::copy(stage.path("flight/airframe.toml"), stage.path("quad.toml")).unwrap();
         }
+        if example.contains("calibrate mask") {
+            put("alone", "recording");
+        }
         if example.contains("calibrate optics") {
             put("alone", "flight");
             put("alone/images", "photos");
@@ -141,6 +144,7 @@ fn base() -> Stage {
     ] {
         make(&stage, made);
     }
+    stage.file("set-up.toml", stage.run("plan --example").out);
     for (from, to) in [
         ("flight/truth.jsonl", "photinus-demo/truth.jsonl"),
         ("results.jsonl", "photinus-demo/results.jsonl"),

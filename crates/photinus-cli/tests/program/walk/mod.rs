@@ -8,7 +8,7 @@ use crate::stage::Stage;
 use files::Store;
 
 /// Commands whose examples are walked; the empty one is the program itself.
-const COMMANDS: [&str; 24] = [
+const COMMANDS: [&str; 26] = [
     "",
     "locate",
     "detect",
@@ -20,6 +20,7 @@ const COMMANDS: [&str; 24] = [
     "completions",
     "run",
     "recover",
+    "plan",
     "simulate",
     "swarm",
     "reproduce",
@@ -29,6 +30,7 @@ const COMMANDS: [&str; 24] = [
     "calibrate camera",
     "calibrate coverage",
     "calibrate optics",
+    "calibrate mask",
     "calibrate spot-size",
     "calibrate mounting",
     "calibrate airframe",
@@ -77,7 +79,7 @@ fn written(example: &str) -> BTreeSet<String> {
     let words: Vec<&str> = example.split(' ').collect();
     let mut written: BTreeSet<String> = words
         .windows(2)
-        .filter(|pair| WRITES.contains(&pair[0]) && !example.contains("--resume"))
+        .filter(|pair| WRITES.contains(&pair[0]) && pair[1] != ">" && !example.contains("--resume"))
         .map(|pair| pair[1].replace("~/", ""))
         .collect();
     if let Some(options) = example.strip_prefix("photinus convert ") {

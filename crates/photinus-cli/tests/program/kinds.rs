@@ -43,6 +43,7 @@ fn a_mixed_fleet_is_named_by_kind_and_id() {
     // After a code length and a half both are known, and each by one track.
     let mut tracks = BTreeMap::new();
     for frame in &frames[30..] {
+        assert_eq!(frame.tracks.len(), 2, "{:?}: {:?}", frame.frame, frame.tracks);
         for track in &frame.tracks {
             let expected = if track.airframe.starts_with("hexarotor") { 4 } else { 7 };
             assert!(track.id.is_none_or(|id| id == expected), "{:?}: {track:?}", frame.frame);

@@ -3,7 +3,7 @@
 //! ```text
 //! frame -> spots     what is bright                         crate::spots
 //!       -> sightings where each spot lies, how sure, how far  sighting; how bright, brightness
-//!       -> groups    which spots are one neighbour          grouping, by matching
+//!       -> groups    which spots are one neighbour          grouping, by kinds, each by its matching
 //!       -> poses     where, how turned, between which bounds  posing, by matching, crate::pose and crate::ranging
 //! ```
 //!

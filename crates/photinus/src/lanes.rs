@@ -17,6 +17,12 @@ pub(crate) fn counting_from(first: f32) -> Lanes {
     Lanes::splat(first) + Lanes::new([0.0, 1.0, 2.0, 3.0])
 }
 
+/// Four bytes as numbers.
+#[inline(always)]
+pub(crate) fn of_bytes(bytes: [u8; LANES]) -> Lanes {
+    Lanes::from_i32x4(i32x4::new(bytes.map(i32::from)))
+}
+
 /// The number where it is above zero, else zero.
 #[inline(always)]
 pub(crate) fn positive(numbers: Lanes) -> Lanes {

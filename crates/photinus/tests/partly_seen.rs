@@ -25,6 +25,8 @@ const POWER: f64 = 25_000.0;
 const FAINTEST: f64 = 60.0;
 const SIGMA_PX: f64 = 0.1;
 const TILT_RAD: f64 = 0.08;
+/// Twice the resolution of a detector whose point spread is not known.
+const LEANING_PX: f64 = 5.0;
 
 fn uniform(rng: &mut Pcg64, low: f64, high: f64) -> f64 {
     Uniform::new(low, high).expect("a range").sample(rng)
@@ -81,7 +83,7 @@ fn partly_seen(airframe: &Airframe, views: usize, masked: bool) -> [Tally; 7] {
         let yaw = Rotation3::from_axis_angle(&Vector3::z_axis(), uniform(&mut rng, 0.0, TAU));
         let camera_from_body = tilt * upright * yaw;
         let camera_m = -(camera_from_body.inverse() * position_m);
-        let (mut spots, mut hidden) = (Vec::new(), false);
+        let (mut spots, mut hidden, mut shining) = (Vec::new(), false, Vec::new());
         for (number, marker) in airframe.markers().iter().enumerate() {
             let place_m = camera_from_body * marker.position_m + position_m;
             let flux = POWER * airframe.intensity(number, &camera_m) / place_m.norm_squared()
@@ -95,12 +97,14 @@ fn partly_seen(airframe: &Airframe, views: usize, masked: bool) -> [Tally; 7] {
                     .is_some_and(|mask| mask.ignores(pixel.u.round() as usize, pixel.v.round() as usize));
                 (2.0..749.0).contains(&pixel.u) && (2.0..477.0).contains(&pixel.v) && !ignored
             };
-            match Bearing::new(place_m).and_then(|bearing| camera.pixel(&bearing)).filter(inside) {
+            let pixel = Bearing::new(place_m).and_then(|bearing| camera.pixel(&bearing));
+            shining.extend(pixel);
+            match pixel.filter(inside) {
                 Some(pixel) => spots.push(spot(pixel, flux, distance_m, &mut rng)),
                 None => hidden = true,
             }
         }
-        if !hidden || spots.is_empty() {
+        if !hidden || spots.is_empty() || lean_on_each_other(&shining) {
             continue;
         }
         count += 1;
@@ -127,6 +131,13 @@ fn partly_seen(airframe: &Airframe, views: usize, masked: bool) -> [Tally; 7] {
         tally.inside += f64::from(u8::from(squared < 7.815));
     }
     tallies
+}
+
+/// Whether any two of these are so near to each other that a detector would make one spot of them, or see each beside its place: what is made here
+/// are points, which do neither.
+fn lean_on_each_other(pixels: &[Pixel]) -> bool {
+    let are_near = |a: &Pixel, b: &Pixel| libm::hypot(a.u - b.u, a.v - b.v) < LEANING_PX;
+    pixels.iter().enumerate().any(|(index, pixel)| pixels[..index].iter().any(|other| are_near(pixel, other)))
 }
 
 fn spot(pixel: Pixel, flux: f64, distance_m: f64, rng: &mut Pcg64) -> Spot {

@@ -47,17 +47,24 @@ fn times_over(rounds: usize, contenders: &mut [Contender<'_>], calls: usize) -> 
 pub(crate) struct Contest<'a> {
     title: String,
     floor: String,
+    /// Only contenders with this in their name run, beside the first.
+    only: Option<String>,
     names: Vec<String>,
     contenders: Vec<Contender<'a>>,
 }
 
 impl<'a> Contest<'a> {
     pub(crate) fn new(title: &str, floor: &str) -> Self {
-        Self { title: title.to_owned(), floor: floor.to_owned(), names: Vec::new(), contenders: Vec::new() }
+        let only = std::env::args().skip(1).filter(|argument| !argument.starts_with('-')).nth(1);
+        let (title, floor) = (title.to_owned(), floor.to_owned());
+        Self { title, floor, only, names: Vec::new(), contenders: Vec::new() }
     }
 
     /// A contender is called with the number of its call, to choose among its inputs.
     pub(crate) fn add(&mut self, name: &str, mut call: impl FnMut(usize) + 'a) {
+        if !self.names.is_empty() && self.only.as_ref().is_some_and(|only| !name.contains(only.as_str())) {
+            return;
+        }
         self.names.push(name.to_owned());
         let mut calls = 0;
         self.contenders.push(Box::new(move |_| {

@@ -15,6 +15,7 @@ use super::companions::Companions;
 use super::fixtures::Fixtures;
 use super::grouping::Groups;
 use super::memory::Memory;
+use super::sun::Sun;
 
 /// Clutter of a frame before any was seen: this many points, worth this many frames.
 const BEFOREHAND: f64 = 0.2;
@@ -41,18 +42,37 @@ pub(super) struct Surroundings<'a> {
     pub(super) companions: &'a Companions,
     pub(super) fixtures: &'a Fixtures,
     pub(super) memory: &'a Memory,
+    pub(super) sun: Option<Sun>,
+    /// Whether densities are of light, too.
+    pub(super) with_light: bool,
 }
 
 impl Surroundings<'_> {
-    /// Logarithm of the density of clutter at an observation, of what comes and goes and of what stays where it is, as it looks.
-    fn with_fixture(&self, log_of_others: f64, observation: usize) -> f64 {
+    /// Logarithm of the density of clutter at an observation, of what comes and goes, of the sun and of what stays where it is, as it looks.
+    fn with_what_stands(&self, log_of_others: f64, observation: usize) -> f64 {
         let sighting = &self.sightings[observation];
+        let log_of_others = self.with_sun(log_of_others, sighting);
         let there = self.fixtures.density(sighting, observation) / rad2_per_px2(sighting);
         if there == 0.0 {
             return log_of_others + log_of_look(sighting);
         }
         let gain = libm::log(libm::exp(log_of_others) + there) - log_of_others;
         log_of_others + gain.min(self.fixtures.log_odds(observation).max(0.0)) + log_of_look(sighting)
+    }
+
+    /// How much of an observation, if it is clutter, is clutter that comes and goes: what stays where it is and the sun tell nothing of other places.
+    fn comes_and_goes(&self, observation: usize, frame_px: f64) -> f64 {
+        let sighting = &self.sightings[observation];
+        let suns = self.sun.map_or(0.0, |sun| sun.per_sr(&sighting.bearing));
+        let beforehand = BEFOREHAND / (frame_px * rad2_per_px2(sighting));
+        (1.0 - self.fixtures.share(observation)) * beforehand / (beforehand + suns)
+    }
+
+    /// The same of what comes and goes with the sun, whose light may be any.
+    fn with_sun(&self, log_of_others: f64, sighting: &Sighting) -> f64 {
+        let Some(sun) = &self.sun else { return log_of_others };
+        let of_light = if self.with_light && sighting.log_light.is_some() { LIGHT_RANGE } else { 1.0 };
+        libm::log(libm::exp(log_of_others) + sun.per_sr(&sighting.bearing) / of_light)
     }
 }
 
@@ -101,9 +121,9 @@ impl Clutter {
         groups: &Groups,
         share: impl Fn(usize) -> f64,
     ) {
-        let Surroundings { sightings, besides, companions, fixtures, .. } = *frame;
-        // What stays where it is tells nothing of other places.
-        let share = |index: usize| share(index) * (1.0 - fixtures.share(index));
+        let Surroundings { sightings, besides, companions, .. } = *frame;
+        let frame_px = self.frame_px;
+        let share = |index: usize| share(index) * frame.comes_and_goes(index, frame_px);
         self.counts.list.copy_from_slice(&besides.list);
         for (index, sighting) in sightings.iter().enumerate() {
             self.counts.add(sighting, share(index));
@@ -127,7 +147,7 @@ impl Clutter {
             let mean =
                 members.iter().enumerate().map(one_after_the_other).sum::<f64>() / members.len() as f64;
             for &index in members {
-                self.log_density[index] = frame.with_fixture(mean, index);
+                self.log_density[index] = frame.with_what_stands(mean, index);
                 self.counts.add(&sightings[index], share(index));
             }
         }
@@ -136,15 +156,16 @@ impl Clutter {
     /// How much less likely it is that all observations are clutter, as likely as `share` tells, than the densities measured have it: each of those is
     /// after all others, but a frame is drawn one after the other (chain rule).
     pub(super) fn excess(&mut self, frame: &Surroundings<'_>, share: impl Fn(usize) -> f64) -> f64 {
-        let Surroundings { sightings, besides, companions, fixtures, .. } = *frame;
-        let comes_and_goes = |index: usize| share(index) * (1.0 - fixtures.share(index));
+        let Surroundings { sightings, besides, companions, .. } = *frame;
+        let frame_px = self.frame_px;
+        let comes_and_goes = |index: usize| share(index) * frame.comes_and_goes(index, frame_px);
         self.before.list.copy_from_slice(&besides.list);
         let mut excess = 0.0;
         for (index, sighting) in sightings.iter().enumerate() {
             let earlier = companions.of(index).iter().filter(|near| near.observation < index);
             let beside: f64 = earlier.map(|near| comes_and_goes(near.observation) * near.density).sum();
             let first =
-                frame.with_fixture(self.log_per_sr(&self.before, frame, sighting, 0.0, beside), index);
+                frame.with_what_stands(self.log_per_sr(&self.before, frame, sighting, 0.0, beside), index);
             excess += share(index) * (self.log_density[index] - first);
             self.before.add(sighting, comes_and_goes(index));
         }

@@ -28,6 +28,7 @@ use super::memory::Memory;
 use super::near::Near;
 use super::neighbour::Located;
 use super::settings::Settings;
+use super::sun::Sun;
 use super::telling::Telling;
 use super::{LocatorError, Sighting, Stage};
 use crate::camera::{Camera, Watched};
@@ -133,10 +134,11 @@ impl Inference {
             clutter: &[],
             log_neighbours: 0.0,
         };
+        self.kinds.begin();
         let of_frame = self.groups.sort_out(&context, &mut self.kinds);
         self.companions.find(sightings, self.size, self.with_light);
         self.fixtures.find(sightings);
-        self.look(&context);
+        self.look(&context, input.sun);
         let clear_power = self.groups.clear_log_power(&context, &mut self.kinds);
         input.tell(Stage::Grouping);
         let context = Context { power: self.memory.power().or(of_frame), ..context };
@@ -147,7 +149,7 @@ impl Inference {
         for round in 0..ROUNDS {
             self.doubt(sightings, round);
             self.look_for_others(&context, round, &mut work);
-            self.settle(sightings);
+            self.settle(sightings, input.sun);
         }
         self.fixtures.remember(sightings, |spot| self.explanation.clutter(spot));
         self.memory.remember(self.clutter.counts(), self.explanation.neighbours(), clear_power);
@@ -165,9 +167,12 @@ impl Inference {
     }
 
     /// Takes a first look at each group, and tells from that how dense clutter is.
-    fn look(&mut self, context: &Context<'_>) {
-        let Self { groups, first_clutter, besides, companions, fixtures, memory, kinds, .. } = self;
-        let frame = Surroundings { sightings: context.sightings, besides, companions, fixtures, memory };
+    fn look(&mut self, context: &Context<'_>, sun: Option<Sun>) {
+        let Self { groups, first_clutter, besides, companions, fixtures, memory, kinds, with_light, .. } =
+            self;
+        let with_light = *with_light;
+        let sightings = context.sightings;
+        let frame = Surroundings { sightings, besides, companions, fixtures, memory, sun, with_light };
         groups.look(context, kinds);
         let mut supposed = |share: f64| {
             groups.suppose(context.sightings.len(), share);
@@ -249,10 +254,11 @@ impl Inference {
     }
 
     /// Explains the frame by its candidates, with clutter and neighbours as dense as the explanation itself has them.
-    fn settle(&mut self, sightings: &[Sighting]) {
+    fn settle(&mut self, sightings: &[Sighting], sun: Option<Sun>) {
         let Self { explanation, clutter, groups, candidates, besides, companions, fixtures, memory, .. } =
             self;
-        let frame = Surroundings { sightings, besides, companions, fixtures, memory };
+        let with_light = self.with_light;
+        let frame = Surroundings { sightings, besides, companions, fixtures, memory, sun, with_light };
         let mut supposed = |share: Option<f64>| {
             clutter.measure(&frame, groups, |spot| share.unwrap_or(groups.clutter(spot)));
             let mut density = log_neighbours(groups.neighbours(), memory);

@@ -2,7 +2,7 @@
 
 use nalgebra::{Unit, Vector3};
 
-use super::Stage;
+use super::{Stage, Sun};
 use crate::frame::FrameView;
 use crate::spots::Spot;
 
@@ -20,6 +20,7 @@ use crate::spots::Spot;
 pub struct Input<'a> {
     pub(super) seen: Seen<'a>,
     pub(super) gravity: Option<&'a Unit<Vector3<f64>>>,
+    pub(super) sun: Option<Sun>,
     finished: Option<&'a mut dyn FnMut(Stage)>,
 }
 
@@ -49,12 +50,17 @@ impl<'a> Input<'a> {
     }
 
     fn of(seen: Seen<'a>) -> Self {
-        Self { seen, gravity: None, finished: None }
+        Self { seen, gravity: None, sun: None, finished: None }
     }
 
     /// Down in the camera frame, where it is known.
     pub fn gravity(self, down: impl Into<Option<&'a Unit<Vector3<f64>>>>) -> Self {
         Self { gravity: down.into(), ..self }
+    }
+
+    /// The sun, where it is known where it stands.
+    pub fn sun(self, sun: impl Into<Option<Sun>>) -> Self {
+        Self { sun: sun.into(), ..self }
     }
 
     /// Who is told each stage as it ends, so that a caller with a clock can time it.

@@ -73,6 +73,11 @@ impl Kinds {
         Ok(Self { each, looks: Vec::with_capacity(kinds.len()) })
     }
 
+    /// Begins a frame.
+    pub(super) fn begin(&mut self) {
+        self.each.iter_mut().for_each(|kind| kind.matcher.begin());
+    }
+
     /// Most spots that one neighbour can show.
     pub(super) fn most_visible(&self) -> usize {
         self.each.iter().map(|kind| kind.matcher.most_visible()).max().unwrap_or(0)

@@ -35,6 +35,7 @@ mod pairs;
 mod posing;
 mod settings;
 mod sighting;
+mod sun;
 mod telling;
 mod views;
 
@@ -53,6 +54,7 @@ pub use neighbour::{Distance, Located, Neighbour, Orientation, Position, RunnerU
 pub(crate) use posing::{faintest_light, of_mean_calibration};
 pub use settings::Settings;
 pub use sighting::Sighting;
+pub use sun::Sun;
 
 /// A stage of the flow, named when it ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

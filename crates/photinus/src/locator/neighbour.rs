@@ -26,7 +26,7 @@ pub struct Distance {
 /// Where a neighbour is, in the camera frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Position {
-    /// Mean, m.
+    /// Mean, m: as long as [`Distance::estimate`].
     pub mean_m: Vector3<f64>,
     /// Covariance, m^2.
     pub covariance_m2: Matrix3<f64>,

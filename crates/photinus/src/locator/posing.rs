@@ -194,14 +194,14 @@ impl Poser {
         let of_scale_m2 = of_scale * length_m * length_m;
         distance.sigma_m = (distance.sigma_m * distance.sigma_m + of_distance_m2 + of_scale_m2).sqrt();
         distance.distance_m = distance.distance_m.clamp(bounds.min_m(), bounds.max_m());
-        let within_m = length_m.clamp(bounds.min_m(), bounds.max_m());
         let [perpendicular_m, inline_m] = self.pairs.distances_m(context.sightings, group, markers);
         let told = Told {
             kind: self.kind,
             bearing: Bearing::new(pose.position_m).unwrap_or(context.sightings[group[0]].bearing),
             distance: Distance { estimate: Some(distance), bounds, perpendicular_m, inline_m },
             position: Some(Position {
-                mean_m: pose.position_m * (within_m / length_m),
+                // As far away as the distance says, which is not quite the length of a mean of places.
+                mean_m: pose.position_m * (distance.distance_m / length_m),
                 covariance_m2: position_covariance_m2,
             }),
             orientation: Some(Orientation {

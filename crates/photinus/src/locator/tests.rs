@@ -33,6 +33,13 @@ fn quadrotor() -> Airframe {
     Airframe::from_ring("quadrotor", ring).unwrap()
 }
 
+/// An airframe of one LED that shines everywhere.
+fn lamp(position_m: Vector3<f64>) -> Airframe {
+    let lobe = crate::airframe::Lobe::Omni;
+    let led = crate::airframe::Led { position_m, axis: Vector3::z_axis(), lobe, power: 1.0, signal: None };
+    Airframe::new("lamp", vec![led]).unwrap()
+}
+
 /// Down in the frame of a camera that looks along the horizon.
 fn level() -> Unit<Vector3<f64>> {
     Vector3::y_axis()
@@ -143,7 +150,7 @@ fn locator(airframe: &Airframe) -> Locator {
 #[test]
 fn one_neighbour_is_one_whatever_its_yaw_and_its_bounds_hold() {
     let mut rng = Pcg64::new(1, 1);
-    for (airframe, reached) in [(hexarotor(), 0.0140), (quadrotor(), 0.0110)] {
+    for (airframe, reached) in [(hexarotor(), 0.0110), (quadrotor(), 0.0110)] {
         let mut locator = locator(&airframe);
         let (yaw, tilt) = (Uniform::new(0.0, TAU).unwrap(), Uniform::new(-0.15, 0.15).unwrap());
         for gravity in [None, Some(level())] {
@@ -290,6 +297,8 @@ fn any_number_of_spots_anywhere_gives_finite_answers() {
             for neighbour in &located.neighbours {
                 let Some(Position { mean_m, covariance_m2 }) = neighbour.position else { continue };
                 assert!(mean_m.iter().chain(covariance_m2.iter()).all(|number| number.is_finite()));
+                let distance_m = neighbour.distance.estimate.unwrap().distance_m;
+                assert!((mean_m.norm() - distance_m).abs() <= 1e-9 * distance_m, "{mean_m} {distance_m}");
                 assert!(neighbour.distance.bounds.contains(neighbour.distance.estimate.unwrap().distance_m));
             }
         }
@@ -321,16 +330,8 @@ fn of_more_spots_than_there_is_work_for_the_brightest_are_explained_and_that_is_
 
 #[test]
 fn an_airframe_of_one_led_is_told_by_the_size_of_its_spot() {
-    let axis = Vector3::z_axis();
-    let led = |position_m| crate::airframe::Led {
-        position_m,
-        axis,
-        lobe: crate::airframe::Lobe::Omni,
-        power: 1.0,
-        signal: None,
-    };
     for position_m in [Vector3::zeros(), Vector3::new(0.1, 0.05, 0.08)] {
-        let lamp = Airframe::new("lamp", vec![led(position_m)]).unwrap();
+        let lamp = lamp(position_m);
         for curve in [None, Some(SpotCurve::paper_1000_us())] {
             let sized = curve.is_some();
             let mut locator = Locator::new(camera(), &lamp, curve, Settings::default()).unwrap();
@@ -355,4 +356,42 @@ fn an_airframe_of_one_led_is_told_by_the_size_of_its_spot() {
             }
         }
     }
+}
+
+#[test]
+fn a_lone_spot_where_the_sun_stands_is_the_sun_and_a_neighbour_before_it_stays_one() {
+    let lamp = lamp(Vector3::zeros());
+    let spots = [(200.0, 160.0), (500.0, 260.0)].map(|(u, v)| spot(Pixel::new(u, v), 1.0, 4.0));
+    let towards = |pixel: Pixel| Unit::new_normalize(*camera().bearing(pixel).unwrap().vector());
+    let sun = |towards| Sun::new(towards, -level(), 0.02, 0.05);
+    let probabilities = |sun: Option<Sun>| {
+        let settings = Settings { min_probability: 0.0, ..Settings::default() };
+        let mut locator = Locator::new(camera(), &lamp, None, settings).unwrap();
+        let located = locator.locate(Input::spots(&spots).gravity(&level()).sun(sun)).unwrap();
+        let of = |spot: usize| {
+            located
+                .neighbours
+                .iter()
+                .find(|seen| seen.sightings == [spot])
+                .map_or(0.0, |seen| seen.probability)
+        };
+        [of(0), of(1)]
+    };
+    let without = probabilities(None);
+    let there = probabilities(Some(sun(towards(spots[0].centre))));
+    assert!(without[0] > 0.5 && there[0] < 0.2 && there[1] > 0.5, "{without:?} {there:?}");
+    let elsewhere = probabilities(Some(sun(towards(Pixel::new(350.0, 50.0)))));
+    assert!((elsewhere[0] - without[0]).abs() < 1e-3, "{without:?} {elsewhere:?}");
+    let mut rng = Pcg64::new(6, 1);
+    let (airframe, place) = (hexarotor(), ahead(5.0, 0.2, 0.1));
+    let spots = Placed::new(place, 0.3, Vector3::zeros()).spots(&airframe, &camera(), &mut rng);
+    let mut locator = locator(&airframe);
+    let behind = sun(towards(spots[0].centre));
+    let located = locator.locate(Input::spots(&spots).gravity(&level()).sun(behind)).unwrap();
+    assert!(located.neighbours.len() == 1 && located.neighbours[0].probability > 0.99);
+    assert_eq!(
+        located.neighbours[0].sightings.len(),
+        spots.len(),
+        "a marker before the sun is still its own"
+    );
 }

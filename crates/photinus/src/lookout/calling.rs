@@ -21,7 +21,6 @@ use crate::camera::Watched;
 use crate::following::MarkerTrack;
 use crate::locator::{Settings, faintest_light};
 use crate::pose::{Estimator, Hypotheses, Known, LogLight, Observation, POWER_RANGE, SettingsError, Visible};
-use crate::ranging::Interval;
 use crate::tracking::Called;
 
 /// A marker tells whose it is from this probability on, ...
@@ -137,7 +136,7 @@ impl Calling {
             others: &[],
             lit: &self.lit,
         };
-        let known = Known { up, bounds: Interval::ANY, size: None, power: None, visible };
+        let known = Known { up, bounds: self.starts.reach(), size: None, power: None, visible };
         let posterior = self.estimator.estimate(&self.observations, &mut self.hypotheses, &known);
         if posterior.summary.is_none() || posterior.worst_sigma > MOST_MISFIT_SIGMA {
             return;

@@ -12,6 +12,7 @@ use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 
 use crate::airframe::Airframe;
 use crate::pose::{Hypotheses, Observation, Pose};
+use crate::ranging::Interval;
 
 /// Yaws that are tried.
 const YAWS: u32 = 24;
@@ -33,6 +34,12 @@ pub(super) struct Starts {
 impl Starts {
     pub(super) fn new(airframe: &Airframe) -> Self {
         Self { airframe: airframe.clone(), markers: Vec::new() }
+    }
+
+    /// The distances at which vehicles are looked for.
+    pub(super) fn reach(&self) -> Interval {
+        let radius_m = self.airframe.max_radius_m();
+        Interval::new(radius_m, FARTHEST_RADII * radius_m).unwrap_or(Interval::ANY)
     }
 
     /// Offers the poses in which these, at least two, may be markers of an airframe that is upright against `up`, or in the image.

@@ -8,11 +8,11 @@
 use alloc::vec::Vec;
 use core::f64::consts::{PI, TAU};
 
-use nalgebra::{Matrix3, SMatrix, Vector3};
+use nalgebra::{Cholesky, Const, Matrix3, SMatrix, Vector3};
 
 use super::mixture::Component;
 use super::problem::{Pose, Problem};
-use super::refine::{Refined, following, turned, without_yaw, yaw_sigma_rad};
+use super::refine::{Held, Refined};
 
 /// Yaw surer than this needs no slices, rad.
 const NARROW_RAD: f64 = 0.03;
@@ -41,28 +41,29 @@ pub(super) fn spread(
     hypothesis: usize,
     components: &mut Vec<Component>,
 ) {
-    let Some(yaw_sigma_rad) = yaw_sigma_rad(mode) else { return };
+    let Some(held) = Held::of(*mode) else { return };
+    let yaw_sigma_rad = held.yaw_sigma_rad();
     if yaw_sigma_rad < NARROW_RAD {
         components.extend(whole(problem, mode, hypothesis));
         return;
     }
     let mut step_rad = (STEP_SIGMAS * yaw_sigma_rad).min(WIDEST_STEP_RAD);
-    while step_rad > FINEST_STEP_RAD && changes_abruptly(problem, mode, step_rad) {
+    while step_rad > FINEST_STEP_RAD && changes_abruptly(problem, &held, step_rad) {
         step_rad *= 0.5;
     }
-    let Some(middle) = slice(problem, mode, hypothesis, 0.0, step_rad) else { return };
+    let middle = slice(problem, &held, hypothesis, 0.0, step_rad);
     components.push(middle);
     let most_poor = if problem.used().nth(1).is_some() { 2 } else { MOST_POOR_ALONE };
     for side in [step_rad, -step_rad] {
         // Each side has a summit of its own: a spot alone is likelier a marker at the edge of those that show.
-        let (mut here, mut poor, mut best) = (*mode, 0, middle.log_weight);
+        let (mut here, mut poor, mut best) = (held.clone(), 0, middle.log_weight);
         for number in 1..=MOST_SLICES {
             let yaw_rad = side * number as f64;
             if yaw_rad.abs() > PI || poor == most_poor {
                 break;
             }
-            let Some(there) = turned(problem, &here, side) else { break };
-            let Some(component) = slice(problem, &there, hypothesis, yaw_rad, step_rad) else { break };
+            let Some(there) = here.turned(problem, side) else { break };
+            let component = slice(problem, &there, hypothesis, yaw_rad, step_rad);
             best = best.max(component.log_weight);
             poor = if component.log_weight < best - LITTLE_NATS { poor + 1 } else { 0 };
             components.push(component);
@@ -72,37 +73,30 @@ pub(super) fn spread(
 }
 
 /// Whether a marker comes into sight or goes out of it within a slice of the mode: by more than a normal distribution falls.
-fn changes_abruptly(problem: &Problem<'_>, mode: &Refined, step_rad: f64) -> bool {
-    let nats = |pose: &Pose| problem.visibility_nats(pose, mode.normal.log_power);
-    let here = nats(&mode.pose);
-    let changes = |there| (nats(&there) - here).abs() > ABRUPT_NATS;
-    [step_rad, -step_rad].into_iter().any(|side| following(mode, side).is_some_and(changes))
+fn changes_abruptly(problem: &Problem<'_>, mode: &Held, step_rad: f64) -> bool {
+    let nats = |pose: &Pose| problem.visibility_nats(pose, mode.at.normal.log_power);
+    let here = nats(&mode.at.pose);
+    [step_rad, -step_rad].into_iter().any(|side| (nats(&mode.following(side)) - here).abs() > ABRUPT_NATS)
 }
 
 /// A mode as one normal distribution.
 fn whole(problem: &Problem<'_>, mode: &Refined, hypothesis: usize) -> Option<Component> {
-    let Laplace { covariance, log_volume } = Laplace::of(mode.normal.information)?;
+    let Laplace { covariance, log_volume } = Laplace::of(&mode.normal.information.cholesky()?);
     let block = |row, column| covariance.fixed_view::<3, 3>(row, column).into_owned();
     let spread = Spread { delta: block(0, 0), turn: block(3, 3), both: block(0, 3) };
     Some(component(problem, mode, hypothesis, log_volume, &spread))
 }
 
 /// One slice of a valley, `step_rad` wide.
-fn slice(
-    problem: &Problem<'_>,
-    at: &Refined,
-    hypothesis: usize,
-    yaw_rad: f64,
-    step_rad: f64,
-) -> Option<Component> {
-    let Laplace { covariance, log_volume } = Laplace::of(without_yaw(&at.normal).0)?;
+fn slice(problem: &Problem<'_>, held: &Held, hypothesis: usize, yaw_rad: f64, step_rad: f64) -> Component {
+    let Laplace { covariance, log_volume } = Laplace::of(&held.rest);
     let mut turn = Matrix3::from_diagonal(&Vector3::new(0.0, 0.0, step_rad * step_rad / 12.0));
     turn.fixed_view_mut::<2, 2>(0, 0).copy_from(&covariance.fixed_view::<2, 2>(3, 3));
     let log_volume = log_volume + libm::log(step_rad);
     let mut both = Matrix3::zeros();
     both.fixed_view_mut::<3, 2>(0, 0).copy_from(&covariance.fixed_view::<3, 2>(0, 3));
     let spread = Spread { delta: covariance.fixed_view::<3, 3>(0, 0).into_owned(), turn, both };
-    Some(Component { yaw_rad, ..component(problem, at, hypothesis, log_volume, &spread) })
+    Component { yaw_rad, ..component(problem, &held.at, hypothesis, log_volume, &spread) }
 }
 
 /// The normal distribution around a minimum of the cost.
@@ -113,12 +107,11 @@ struct Laplace<const D: usize> {
 }
 
 impl<const D: usize> Laplace<D> {
-    /// `None` where the information leaves a direction open.
-    fn of(information: SMatrix<f64, D, D>) -> Option<Self> {
-        let factor = information.cholesky()?;
+    /// From the information there, factored.
+    fn of(factor: &Cholesky<f64, Const<D>>) -> Self {
         let log_root: f64 = (0..D).map(|axis| libm::log(factor.l_dirty()[(axis, axis)])).sum();
         let log_volume = 0.5 * D as f64 * libm::log(TAU) - log_root;
-        Some(Self { covariance: factor.inverse(), log_volume })
+        Self { covariance: factor.inverse(), log_volume }
     }
 }
 

@@ -11,7 +11,7 @@ use super::misfit::Misfit;
 use super::mixture::{self, Component, Mode, Summary};
 use super::observation::{Observation, Whitened};
 use super::problem::{Pose, Problem};
-use super::refine::{Refined, following, refine, yaw_sigma_rad};
+use super::refine::{Held, Refined, refine};
 use super::settings::{Settings, SettingsError};
 use super::symmetry::Symmetry;
 use crate::airframe::Airframe;
@@ -166,12 +166,12 @@ impl Estimator {
             if unseen > HOPELESS_NATS {
                 // Light pulls little on a marker that hardly shows: the mode may sit where it no longer does, a sigma beside
                 // where it must.
-                let sigma_rad = yaw_sigma_rad(&mode).unwrap_or(0.0);
-                for beside in [sigma_rad, -sigma_rad].map(|yaw_rad| following(&mode, yaw_rad)) {
-                    let nats = beside.map_or(f64::INFINITY, |pose| {
-                        0.5 + problem.visibility_nats(&pose, mode.normal.log_power)
-                    });
-                    unseen = unseen.min(nats);
+                if let Some(held) = Held::of(mode) {
+                    let sigma_rad = held.yaw_sigma_rad();
+                    for side in [sigma_rad, -sigma_rad] {
+                        let beside = held.following(side);
+                        unseen = unseen.min(0.5 + problem.visibility_nats(&beside, mode.normal.log_power));
+                    }
                 }
             }
             let signals = observations.iter().map(|seen| seen.signal);

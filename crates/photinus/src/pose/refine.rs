@@ -1,6 +1,6 @@
 //! Downhill from a start to the nearest mode: Levenberg-Marquardt, and Gauss-Newton with the yaw held.
 
-use nalgebra::{Matrix5, Vector5, Vector6};
+use nalgebra::{Cholesky, U5, Vector5, Vector6};
 
 use super::problem::{Normal, Pose, Problem};
 #[cfg(not(feature = "std"))]
@@ -12,6 +12,8 @@ const MOST_STEPS: usize = 80;
 const SMALL_GAIN: f64 = 1e-4;
 /// The same for a slice, which is one of many.
 const SMALL_SLICE_GAIN: f64 = 1e-2;
+/// Most steps towards the least cost of a slice.
+const MOST_SLICE_STEPS: usize = 12;
 /// Longest step of the position, in distances, and of the attitude, rad.
 const LONGEST: f64 = 0.5;
 
@@ -62,42 +64,55 @@ fn shortened(step: Vector6<f64>) -> Vector6<f64> {
     if longest > LONGEST { step * (LONGEST / longest) } else { step }
 }
 
-/// The information of all but yaw, and its coupling with yaw.
-pub(super) fn without_yaw(normal: &Normal) -> (Matrix5<f64>, Vector5<f64>) {
-    let all = &normal.information;
-    (all.fixed_view::<5, 5>(0, 0).into_owned(), all.fixed_view::<5, 1>(0, 5).into_owned())
+/// A pose with its yaw held: what all else is told to.
+#[derive(Clone, Debug)]
+pub(super) struct Held {
+    pub(super) at: Refined,
+    /// The information of all but yaw, factored.
+    pub(super) rest: Cholesky<f64, U5>,
 }
 
-/// The standard deviation of the yaw of a mode, all else free, rad; `None` where the rest is not determined.
-pub(super) fn yaw_sigma_rad(mode: &Refined) -> Option<f64> {
-    let (information, coupling) = without_yaw(&mode.normal);
-    let explained = coupling.dot(&information.cholesky()?.solve(&coupling));
-    Some(1.0 / (mode.normal.information[(5, 5)] - explained).max(1e-6).sqrt())
-}
-
-/// A pose with the yaw turned by `yaw_rad`, all else following as far as it is coupled with yaw: `turned` to first order.
-pub(super) fn following(here: &Refined, yaw_rad: f64) -> Option<Pose> {
-    let (information, coupling) = without_yaw(&here.normal);
-    let step = information.cholesky()?.solve(&(coupling * -yaw_rad)).push(yaw_rad);
-    Some(here.pose.stepped(&shortened(step)))
-}
-
-/// The pose that costs least beside `here` with the yaw turned by `yaw_rad`.
-pub(super) fn turned(problem: &Problem<'_>, here: &Refined, yaw_rad: f64) -> Option<Refined> {
-    let mut there = Refined::at(problem, following(here, yaw_rad)?);
-    for _ in 0..12 {
-        let (information, _) = without_yaw(&there.normal);
-        let gradient = there.normal.gradient.fixed_rows::<5>(0).into_owned();
-        let rest = -information.cholesky()?.solve(&gradient);
-        let gain = -gradient.dot(&rest);
-        if gain.is_nan() || gain <= SMALL_SLICE_GAIN {
-            break;
-        }
-        let next = Refined::at(problem, there.pose.stepped(&shortened(rest.push(0.0))));
-        if next.normal.nats > there.normal.nats {
-            break;
-        }
-        there = next;
+impl Held {
+    /// `None` where the rest is not determined.
+    pub(super) fn of(at: Refined) -> Option<Self> {
+        let rest = at.normal.information.fixed_view::<5, 5>(0, 0).into_owned().cholesky()?;
+        Some(Self { at, rest })
     }
-    Some(there)
+
+    /// How the rest is coupled with yaw.
+    fn coupling(&self) -> Vector5<f64> {
+        self.at.normal.information.fixed_view::<5, 1>(0, 5).into_owned()
+    }
+
+    /// The standard deviation of the yaw, all else free, rad.
+    pub(super) fn yaw_sigma_rad(&self) -> f64 {
+        let coupling = self.coupling();
+        let explained = coupling.dot(&self.rest.solve(&coupling));
+        1.0 / (self.at.normal.information[(5, 5)] - explained).max(1e-6).sqrt()
+    }
+
+    /// The pose with the yaw turned by `yaw_rad`, all else following as far as it is coupled with yaw: [`Self::turned`] to first order.
+    pub(super) fn following(&self, yaw_rad: f64) -> Pose {
+        let step = self.rest.solve(&(self.coupling() * -yaw_rad)).push(yaw_rad);
+        self.at.pose.stepped(&shortened(step))
+    }
+
+    /// The pose that costs least beside this one with the yaw turned by `yaw_rad`; `None` where its rest is not determined.
+    pub(super) fn turned(&self, problem: &Problem<'_>, yaw_rad: f64) -> Option<Self> {
+        let mut there = Self::of(Refined::at(problem, self.following(yaw_rad)))?;
+        for _ in 0..MOST_SLICE_STEPS {
+            let gradient = there.at.normal.gradient.fixed_rows::<5>(0).into_owned();
+            let rest = -there.rest.solve(&gradient);
+            let gain = -gradient.dot(&rest);
+            if gain.is_nan() || gain <= SMALL_SLICE_GAIN {
+                break;
+            }
+            let next = Refined::at(problem, there.at.pose.stepped(&shortened(rest.push(0.0))));
+            if next.normal.nats > there.at.normal.nats {
+                break;
+            }
+            there = Self::of(next)?;
+        }
+        Some(there)
+    }
 }

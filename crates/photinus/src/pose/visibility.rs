@@ -43,7 +43,7 @@ impl Problem<'_> {
                 // How rarely a marker that is too faint is found all the same was never measured: it is taken to be no rarer than that a bright one is missed.
                 return -libm::log(found.max(self.settings.missed.max(1e-9)));
             }
-            if !self.is_watched(pose, marker) {
+            if found == 0.0 || !self.is_watched(pose, marker) {
                 return 0.0;
             }
             // Of two markers that merge the spot is said to be the brighter one.
@@ -87,7 +87,8 @@ impl Problem<'_> {
         one_spot(gaps.fold(f64::INFINITY, f64::min) / (resolution_rad * resolution_rad))
     }
 
-    fn is_watched(&self, pose: &Pose, marker: usize) -> bool {
+    /// Whether anybody looks where a marker is at this pose.
+    pub(super) fn is_watched(&self, pose: &Pose, marker: usize) -> bool {
         let Some(watched) = &self.known.visible.watched else { return true };
         let place_m = pose.camera_from_body * self.airframe.markers()[marker].position_m + pose.position_m;
         Bearing::new(place_m).is_some_and(|bearing| watched.sees(&bearing))

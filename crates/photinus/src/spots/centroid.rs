@@ -84,17 +84,16 @@ impl Sums {
 }
 
 fn sums<const NOISE: bool>(patch: &Patch, centre: Pixel, radius_px: f32, variance: PixelVariance) -> Sums {
-    let (x, y) = patch.local(centre);
     let inverse = Lanes::splat(1.0 / (radius_px * radius_px));
     let (dark, shot) = (Lanes::splat(variance.dark), Lanes::splat(variance.shot));
     let [mut weight, mut first_x, mut first_y] = [Lanes::default(); 3];
     let mut slope = [Lanes::default(); 3];
     let mut noise = [Lanes::default(); 3];
-    for column in patch.column_starts() {
-        let dx = lanes::counting_from(column as f32 - x);
+    for near in patch.near(patch.local(centre), radius_px) {
+        let dx = lanes::counting_from(near.dx);
         let across = dx * dx;
-        let mut row = -y;
-        for signal in patch.columns(column) {
+        let mut row = near.dy;
+        for &signal in near.signal {
             let dy = Lanes::splat(row);
             let down = dy * dy;
             let t = lanes::positive(Lanes::ONE - (across + down) * inverse);

@@ -163,7 +163,8 @@ impl Meter {
         let outline = &part.outline;
         let blur_px2 =
             SATURATION_BLUR_PX * SATURATION_BLUR_PX / (f64::from(outline.saturated_px.max(5)) + 4.0);
-        let is_crowded = room_px < part.most_room_px().min(3.5 * part.width_px(around.level));
+        let width_px = part.width_px(around.level);
+        let is_crowded = room_px < part.most_room_px().min(3.5 * width_px);
         let has_wings = outline.cut || outline.saturated_px > 0 || is_crowded;
         let by_wings = has_wings.then(|| self.wings(part, window_px, around));
         let tells = |fit: &Fit| {
@@ -180,7 +181,7 @@ impl Meter {
         let anywhere = Matrix2::from_diagonal_element(WITHIN_A_PIXEL * WITHIN_A_PIXEL);
         let balanced = centroid::balance(&self.patch, part.guess, window_px as f32, variance);
         let (centre, covariance) = balanced.unwrap_or((part.guess, anywhere));
-        let unclear = is_crowded || part.width_px(around.level) < NARROW_PX;
+        let unclear = is_crowded || width_px < NARROW_PX;
         let missing_px2 = match (outline.cut, outline.saturated_px > 0) {
             (true, _) => part.radius_px * part.radius_px / 4.0,
             (false, true) => blur_px2,
@@ -196,8 +197,11 @@ fn open_window(frame: &FrameView<'_>, part: &Part, room_px: f64) -> (f64, Surrou
     let room_px = room_px.max(part.radius_px + 0.8).max(1.9);
     let narrow_px = (part.radius_px + 2.5).min(room_px);
     let around = surroundings(frame, part, narrow_px);
+    if part.outline.saturated_px > 0 {
+        return (narrow_px, around);
+    }
     let whole_px = (3.5 * part.width_px(around.level) + 1.0).min(room_px);
-    if part.outline.saturated_px > 0 || whole_px <= narrow_px {
+    if whole_px <= narrow_px {
         return (narrow_px, around);
     }
     (whole_px, surroundings(frame, part, whole_px))

@@ -4,6 +4,7 @@
 //! vectorise alike on every machine, and the background with its noise from a frame of pixels around the window.
 
 use alloc::vec::Vec;
+use core::ops::Range;
 
 use super::ring::{self, Sums};
 use crate::camera::Pixel;
@@ -31,8 +32,17 @@ pub(super) struct Patch {
     left: i32,
     top: i32,
     rows: usize,
-    stride: usize,
-    signal: Vec<f32>,
+    /// Four columns beside each other from the first row to the last, then the next four.
+    signal: Vec<Lanes>,
+}
+
+/// As much of four columns of a patch as lies near a place.
+pub(super) struct NearColumns<'a> {
+    /// Columns and rows from the place to the first pixel.
+    pub(super) dx: f32,
+    pub(super) dy: f32,
+    /// Row by row.
+    pub(super) signal: &'a [Lanes],
 }
 
 impl Patch {
@@ -44,39 +54,52 @@ impl Patch {
         reach: i32,
         around: &Surroundings,
     ) {
-        let middle_v = v;
-        (self.left, self.top) = (u - reach, v - reach);
-        self.rows = (2 * reach + 1) as usize;
-        self.stride = self.rows.next_multiple_of(LANES);
-        self.signal.clear();
-        self.signal.resize(self.rows * self.stride, 0.0);
-        let first = self.left.max(0);
-        let end = (self.left + self.rows as i32).min(frame.width() as i32);
-        for (signal, v) in self.signal.chunks_exact_mut(self.stride).zip(self.top..) {
-            if v < 0 || v >= frame.height() as i32 || first >= end {
-                continue;
-            }
-            let pixels = &frame.row(v as usize)[first as usize..end as usize];
-            let [rise_u, rise_v] = around.slope;
-            let level = around.level + rise_v * (v - middle_v) as f32;
-            let columns = signal[(first - self.left) as usize..].iter_mut().zip(first - u..);
-            for ((signal, du), &pixel) in columns.zip(pixels) {
-                *signal = f32::from(pixel) - (level + rise_u * du as f32);
+        let side = 2 * reach + 1;
+        (self.left, self.top, self.rows) = (u - reach, v - reach, side as usize);
+        self.signal.resize(self.rows * self.rows.div_ceil(LANES), Lanes::ZERO);
+        let inside = |first: i32, length: usize| first.max(0)..(first + side).min(length as i32);
+        let (columns, rows) = (inside(self.left, frame.width()), inside(self.top, frame.height()));
+        if columns.is_empty() || rows.is_empty() {
+            self.signal.fill(Lanes::ZERO);
+            return;
+        }
+        let (pixels, pitch) = frame.rows_from(rows.start as usize);
+        let [above, below] = [rows.start, rows.end].map(|v| (v - self.top) as usize);
+        let [rise_u, rise_v] = around.slope;
+        for (signal, first) in self.signal.chunks_exact_mut(self.rows).zip((self.left..).step_by(LANES)) {
+            signal[..above].fill(Lanes::ZERO);
+            signal[below..].fill(Lanes::ZERO);
+            let tilt = Lanes::splat(rise_u) * lanes::counting_from((first - u) as f32);
+            let level = |dv: i32| Lanes::splat(around.level + rise_v * dv as f32) + tilt;
+            let signal = signal[above..below].iter_mut().zip(rows.start - v..);
+            if first >= columns.start && first + LANES as i32 <= columns.end {
+                let mut rest = &pixels[first as usize..];
+                for (signal, dv) in signal {
+                    *signal =
+                        rest.first_chunk().map_or(Lanes::ZERO, |&four| lanes::of_bytes(four)) - level(dv);
+                    rest = rest.get(pitch..).unwrap_or_default();
+                }
+            } else {
+                for ((signal, dv), line) in signal.zip(pixels.chunks(pitch)) {
+                    *signal = some_of_four(line, first, &columns, level(dv));
+                }
             }
         }
     }
 
-    /// The signal in columns `column` to `column` + 3, from the first row to the last.
-    pub(super) fn columns(&self, column: usize) -> impl Iterator<Item = Lanes> {
-        self.signal.chunks_exact(self.stride).map(move |row| {
-            let four = row[column..].first_chunk::<LANES>();
-            four.map_or(Lanes::default(), |&four| Lanes::new(four))
+    /// The signal in the square within `radius_px` of a place, as seen from the patch's first pixel, and in what completes four columns.
+    pub(super) fn near(&self, (x, y): (f32, f32), radius_px: f32) -> impl Iterator<Item = NearColumns<'_>> {
+        // Casts end at 0, where the patch does.
+        let within = |at: f32| {
+            let end = ((at + radius_px + 1.0) as usize).min(self.rows);
+            (((at - radius_px) as usize).min(end), end)
+        };
+        let ((left, right), (first, end)) = (within(x), within(y));
+        (left / LANES..right.div_ceil(LANES)).map(move |four| NearColumns {
+            dx: (four * LANES) as f32 - x,
+            dy: first as f32 - y,
+            signal: &self.signal[four * self.rows..][first..end],
         })
-    }
-
-    /// Where the first of each four columns lies.
-    pub(super) fn column_starts(&self) -> impl Iterator<Item = usize> {
-        (0..self.stride).step_by(LANES)
     }
 
     /// A place in the image as seen from the patch's first pixel.
@@ -90,7 +113,8 @@ impl Patch {
             let (column, row) = (u as i32 + du - self.left, v as i32 + dv - self.top);
             let inside = |at: i32| (0..self.rows as i32).contains(&at);
             if inside(column) && inside(row) {
-                self.signal[row as usize * self.stride + column as usize]
+                let (column, row) = (column as usize, row as usize);
+                self.signal[column / LANES * self.rows + row].to_array()[column % LANES]
             } else {
                 0.0
             }
@@ -101,20 +125,28 @@ impl Patch {
 
     /// Signal within `radius_px` of `centre`, grey levels.
     pub(super) fn flux(&self, centre: Pixel, radius_px: f32) -> f64 {
-        let (x, y) = self.local(centre);
         let room = Lanes::splat(radius_px * radius_px);
         let mut flux = Lanes::default();
-        for column in self.column_starts() {
-            let dx = lanes::counting_from(column as f32 - x);
+        for near in self.near(self.local(centre), radius_px) {
+            let dx = lanes::counting_from(near.dx);
             let across = dx * dx;
-            let mut dy = -y;
-            for signal in self.columns(column) {
-                flux += signal * lanes::less(across + Lanes::splat(dy * dy), room);
+            let mut dy = near.dy;
+            for &signal in near.signal {
+                flux += signal & (across + Lanes::splat(dy * dy)).simd_lt(room);
                 dy += 1.0;
             }
         }
         f64::from(lanes::sum(flux))
     }
+}
+
+/// Those of four pixels from column `first` of a row on that lie in `columns`, less their level.
+fn some_of_four(line: &[u8], first: i32, columns: &Range<i32>, level: Lanes) -> Lanes {
+    let level = level.to_array();
+    Lanes::new(core::array::from_fn(|lane| {
+        let column = first + lane as i32;
+        if columns.contains(&column) { f32::from(line[column as usize]) - level[lane] } else { 0.0 }
+    }))
 }
 
 /// The background from a ring of pixels just outside the window of `reach` around (`u`, `v`).
@@ -197,7 +229,7 @@ mod tests {
         let mut patch = Patch::default();
         let around = Surroundings { level: 10.0, slope: [0.0; 2], variance: 0.0 };
         patch.read(&frame, (0, 0), 3, &around);
-        let total: f32 = patch.signal.iter().sum();
+        let total: f32 = patch.signal.iter().flat_map(|four| four.to_array()).sum();
         assert_eq!((patch.left, patch.top, total), (-3, -3, 20.0 * 16.0));
         assert!(surroundings(&frame, (0, 0), 3, 60).is_some());
         assert_eq!(surroundings(&frame, (0, 0), 40, 60), None);
@@ -215,7 +247,7 @@ mod tests {
             assert!(found.variance < 1e-3);
             let mut patch = Patch::default();
             patch.read(&frame, (u, v), 5, &found);
-            assert!(patch.signal.iter().all(|signal| signal.abs() < 1e-2));
+            assert!(patch.signal.iter().flat_map(|four| four.to_array()).all(|signal| signal.abs() < 1e-2));
         }
     }
 }

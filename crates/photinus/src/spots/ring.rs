@@ -10,8 +10,8 @@ use crate::frame::FrameView;
 
 /// Width of a ring, px.
 const RING_PX: i32 = 2;
-/// Pixels added at once.
-const LANES: i32 = 16;
+/// Pixels added at once at each end of a row.
+const HALF: i32 = 8;
 /// Sums of a lane over rings up to so far from the middle fit into sixteen bits, px.
 const WIDEST_PX: i32 = 63;
 
@@ -31,51 +31,80 @@ pub(super) struct Sums {
 }
 
 /// The sums over the pixels that are less than `below` and lie in the frame, just outside the window of `reach` around (`u`, `v`).
+///
+/// Beside the window only columns near the ends of a row count: eight at each end are looked at together, and what lies between them in the
+/// rows above and below the window by itself.
 pub(super) fn sums(frame: &FrameView<'_>, (u, v): (i32, i32), reach: i32, below: u8) -> Sums {
     let outer = reach + RING_PX;
     if outer > WIDEST_PX {
         return pixel_by_pixel(frame, (u, v), reach, below);
     }
+    // Columns of the ring that lie in the frame.
+    let (from, to) = ((-outer).max(-u), outer.min(frame.width() as i32 - 1 - u));
+    let rows = (-outer).max(-v)..=outer.min(frame.height() as i32 - 1 - v);
     let mut sums = Sums::default();
-    for first in (-outer..=outer).step_by(LANES as usize) {
-        // Columns of the ring that lie in the frame, and those of them beside the window.
-        let whole = Columns { first, from: (-outer).max(-u), to: outer.min(frame.width() as i32 - 1 - u) };
-        let inner = Columns { first, from: -reach, to: reach };
-        let (above, beside) = (whole.mask(), whole.mask() & !inner.mask());
-        let mut lanes = LaneSums::default();
-        for y in (-outer).max(-v)..=outer.min(frame.height() as i32 - 1 - v) {
-            let counts = if y.abs() > reach { above } else { beside };
-            lanes.add(sixteen(frame.row((v + y) as usize), u + first), counts, below, y as i16);
-        }
-        lanes.add_up(first as i16, &mut sums);
+    // A short row's ends overlap: the second begins where the first ends.
+    let ends = [-outer, (outer - HALF + 1).max(-outer + HALF)];
+    let (above, beside) =
+        (mask(ends, |x| from <= x && x <= to), mask(ends, |x| from <= x && x <= to && x.abs() > reach));
+    let middle = Middle { frame, u, v, below };
+    middle.add(ends, rows.clone().map(|y| (y, if y.abs() > reach { above } else { beside })), &mut sums);
+    for first in (ends[0] + HALF..ends[1]).step_by(2 * HALF as usize) {
+        let halves = [first, first + HALF];
+        let counts = mask(halves, |x| from <= x && x <= to && x < ends[1]);
+        let rows = rows.clone().filter(|y| y.abs() > reach).map(|y| (y, counts));
+        middle.add(halves, rows, &mut sums);
     }
     sums
 }
 
-/// Some of the sixteen columns from `first` on.
-struct Columns {
-    first: i32,
-    from: i32,
-    to: i32,
+/// Where a ring lies, and which of its pixels are dark.
+struct Middle<'a> {
+    frame: &'a FrameView<'a>,
+    u: i32,
+    v: i32,
+    below: u8,
 }
 
-impl Columns {
-    fn mask(&self) -> u8x16 {
-        let lanes = u8x16::new(core::array::from_fn(|lane| lane as u8));
-        let [from, end] = [self.from, self.to + 1].map(|x| (x - self.first).clamp(0, LANES) as u8);
-        let reaches = |least: u8| lanes.max(u8x16::splat(least)).simd_eq(lanes);
-        reaches(from) & !reaches(end)
+impl Middle<'_> {
+    /// Adds the pixels of rows of eight columns from each of two on, as far as they count.
+    #[inline(always)]
+    fn add(&self, halves: [i32; 2], rows: impl Iterator<Item = (i32, u8x16)>, sums: &mut Sums) {
+        let mut lanes = LaneSums::default();
+        let columns = halves.map(|first| usize::try_from(self.u + first).ok());
+        let (pixels, pitch) = self.frame.rows_from(0);
+        match columns {
+            [Some(left), Some(right)] if right + HALF as usize <= self.frame.width() => {
+                for (y, counts) in rows {
+                    let row = &pixels[(self.v + y) as usize * pitch..];
+                    let eight = |first: usize| row[first..].first_chunk().copied().unwrap_or_default();
+                    lanes.add([eight(left), eight(right)], counts, self.below, y as i16);
+                }
+            }
+            _ => {
+                for (y, counts) in rows {
+                    let row = self.frame.row((self.v + y) as usize);
+                    lanes.add(halves.map(|first| eight(row, self.u + first)), counts, self.below, y as i16);
+                }
+            }
+        }
+        lanes.add_up(halves, sums);
     }
 }
 
-/// Sixteen pixels of a row from a column on, 0 outside the row.
+/// Which of eight columns from each of two on count.
 #[inline(always)]
-fn sixteen(row: &[u8], first: i32) -> u8x16 {
-    let inside = usize::try_from(first).ok().and_then(|first| row.get(first..)?.first_chunk());
-    u8x16::new(inside.copied().unwrap_or_else(|| {
-        let pixel = |i: usize| usize::try_from(first + i as i32).ok().and_then(|u| row.get(u));
-        core::array::from_fn(|i| pixel(i).copied().unwrap_or(0))
+fn mask(halves: [i32; 2], counts: impl Fn(i32) -> bool) -> u8x16 {
+    u8x16::new(core::array::from_fn(|lane| {
+        let x = halves[lane / HALF as usize] + lane as i32 % HALF;
+        if counts(x) { u8::MAX } else { 0 }
     }))
+}
+
+/// Eight pixels of a row from a column on, 0 outside the row.
+fn eight(row: &[u8], first: i32) -> [u8; HALF as usize] {
+    let pixel = |i: usize| usize::try_from(first + i as i32).ok().and_then(|u| row.get(u));
+    core::array::from_fn(|i| pixel(i).copied().unwrap_or(0))
 }
 
 /// Sums of each of sixteen columns, in two halves, and of what needs no column.
@@ -90,28 +119,31 @@ struct LaneSums {
 }
 
 impl LaneSums {
-    /// Adds those of sixteen pixels of row `y` that count and are less than `below`.
+    /// Adds those of two times eight pixels of row `y` that count and are less than `below`.
     #[inline(always)]
-    fn add(&mut self, pixels: u8x16, counts: u8x16, below: u8, y: i16) {
+    fn add(&mut self, [low, high]: [[u8; HALF as usize]; 2], counts: u8x16, below: u8, y: i16) {
+        let mut pixels = [0; 2 * HALF as usize];
+        pixels[..HALF as usize].copy_from_slice(&low);
+        pixels[HALF as usize..].copy_from_slice(&high);
+        let pixels = u8x16::new(pixels);
         let dark = counts & !pixels.max(u8x16::splat(below)).simd_eq(pixels);
         let (one, value) = (dark & u8x16::ONE, dark & pixels);
         let ones = [i16x8::from_u8x16_low(one), i16x8::from_u8x16_high(one)];
         let values = [i16x8::from_u8x16_low(value), i16x8::from_u8x16_high(value)];
-        let y = i16x8::splat(y);
+        let (y, square) = (i16x8::splat(y), i16x8::splat(y * y));
         for half in 0..2 {
-            let row = ones[half] * y;
             self.count[half] += ones[half];
-            self.y[half] += row;
+            self.y[half] += ones[half] * y;
             self.i[half] += values[half];
-            self.yy += row.dot(y);
-            self.yi += values[half].dot(y);
             self.ii += values[half].dot(values[half]);
         }
+        self.yy += (ones[0] + ones[1]).dot(square);
+        self.yi += (values[0] + values[1]).dot(y);
     }
 
-    /// Adds the lanes, the first in column `x`, to `sums`.
-    fn add_up(&self, x: i16, sums: &mut Sums) {
-        let columns = [0, 8].map(|from| i16x8::new(core::array::from_fn(|lane| x + from + lane as i16)));
+    /// Adds the lanes, whose halves begin in these columns, to `sums`.
+    fn add_up(&self, first: [i32; 2], sums: &mut Sums) {
+        let columns = first.map(|x| i16x8::new(core::array::from_fn(|lane| x as i16 + lane as i16)));
         let times = |lanes: &[i16x8; 2], by: &[i16x8; 2]| total(lanes[0].dot(by[0]) + lanes[1].dot(by[1]));
         let ones = [i16x8::ONE; 2];
         let by_column = [self.count[0] * columns[0], self.count[1] * columns[1]];

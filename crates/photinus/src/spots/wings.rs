@@ -45,17 +45,16 @@ pub(super) fn fit(
     saturation: f32,
     variance: PixelVariance,
 ) -> Option<Fit> {
-    let (x0, y0) = patch.local(guess);
     let faintest = Lanes::splat(FAINTEST_DN.max(FAINTEST_SIGMAS * variance.dark.sqrt()));
     let saturation = Lanes::splat(saturation);
     let (dark, shot) = (Lanes::splat(variance.dark), Lanes::splat(variance.shot));
     let mut normal = Normal::default();
-    for column in patch.column_starts() {
-        let x = lanes::counting_from(column as f32 - x0);
+    for columns in patch.near(patch.local(guess), radius_px) {
+        let x = lanes::counting_from(columns.dx);
         let across = x * x;
         let mut sums = ColumnSums::default();
-        let mut y = -y0;
-        for signal in patch.columns(column) {
+        let mut y = columns.dy;
+        for &signal in columns.signal {
             let near = lanes::less(across, Lanes::splat(radius_px * radius_px - y * y));
             let shows = lanes::less(faintest, signal) * lanes::less(signal, saturation) * near;
             if shows != Lanes::ZERO {

@@ -5,6 +5,7 @@
 //! the scale is the distance. With gravity the turn and the elevation are known but for the tilt.
 
 mod image;
+mod likeness;
 mod ordered;
 mod outlined;
 mod size;
@@ -19,14 +20,15 @@ use super::Sighting;
 use super::blinking::lit;
 use super::context::Context;
 use super::posing::LOG_RANGE;
-use super::views::{Arrangement, ELEVATION_STEP_RAD, Spread, Views};
+use super::views::{ELEVATION_STEP_RAD, Spread, Views};
 use crate::airframe::Airframe;
 #[cfg(not(feature = "std"))]
 use crate::float::Float as _;
-use crate::lanes::{self, LANES, Lanes};
+use crate::lanes::{LANES, Lanes};
 use crate::pose::{self, Hypotheses, LogDistance, LogLight, POWER_RANGE, Pose, Symmetry};
 use crate::ranging::{BoundedBearing, DistanceBounds, Interval};
 use image::Image;
+use likeness::{Handful, Likeness, Likenesses};
 use ordered::Ordered;
 use outlined::overlay;
 use size::{plausible_m, size_nats};
@@ -62,6 +64,7 @@ pub(super) struct Matcher {
     bearings: Vec<BoundedBearing>,
     places: Vec<Vector2<f64>>,
     costs: Vec<Lanes>,
+    likenesses: Likenesses,
 }
 
 impl Matcher {
@@ -88,7 +91,13 @@ impl Matcher {
             bearings: Vec::new(),
             places: Vec::new(),
             costs: Vec::new(),
+            likenesses: Likenesses::none(),
         }
+    }
+
+    /// Begins a frame: what handfuls of another looked like is forgotten.
+    pub(super) fn begin(&mut self) {
+        self.likenesses.forget();
     }
 
     /// Most spots that one neighbour can show.
@@ -140,12 +149,7 @@ impl Matcher {
 
     /// The light that an LED of a group would have straight ahead at 1 m if it is the neighbour it looks like, as a logarithm.
     pub(super) fn log_power(&mut self, context: &Context<'_>, group: &[usize]) -> Option<f64> {
-        let sightings = context.sightings;
-        let image = Image::of(context, group, &mut self.places)?;
-        let arrangements = self.views.arrangements(group.len())?;
-        let seen = Ordered::of(&image, sightings, group, self.log_flux_sigma);
-        let best = seen.costs(arrangements, &image, self.tilt_sigma_rad, &mut self.costs);
-        Likeness::of(&seen, &image, best.arrangement).log_power(sightings, group)
+        self.likeness(context, group)?.log_power(context.sightings, group)
     }
 
     /// What the claim costs that these spots, at least one, are one neighbour, nats.
@@ -153,34 +157,55 @@ impl Matcher {
         if group.len() == 1 {
             return NEIGHBOUR_NATS + self.views.lone_nats;
         }
-        if group.len() > self.views.most_visible || self.bounds(context, group).is_none() {
+        if group.len() > self.views.most_visible {
             return IMPOSSIBLE;
         }
         let sightings = context.sightings;
-        let Some(image) = Image::of(context, group, &mut self.places) else { return IMPOSSIBLE };
-        let Some(arrangements) = self.views.arrangements(group.len()) else {
-            let whole = outlined_nats(&self.views, &image, self.tilt_sigma_rad, self.unseen_nats);
-            let part = match whole {
-                Some((nats, _)) if nats < POOR_OUTLINE_NATS => None,
-                _ => self.partly_seen_nats(context, group),
-            };
-            let cheapest = whole.into_iter().chain(part).min_by(|a, b| a.0.total_cmp(&b.0));
-            return cheapest.map_or(IMPOSSIBLE, |(nats, distance_m)| {
+        if self.views.arrangements(group.len()).is_none() {
+            return self.outlined_nats(context, group).map_or(IMPOSSIBLE, |(nats, distance_m)| {
                 NEIGHBOUR_NATS + nats + size_nats(sightings, group, distance_m)
             });
+        }
+        self.likeness(context, group).map_or(IMPOSSIBLE, |likeness| {
+            NEIGHBOUR_NATS
+                + likeness.views_nats
+                + size_nats(sightings, group, likeness.distance_m)
+                + power_nats(context, group, &likeness)
+        })
+    }
+
+    /// What the outline of a group costs, nats, as a whole or as a part of what could be seen, and the distance at which it fits best, m.
+    fn outlined_nats(&mut self, context: &Context<'_>, group: &[usize]) -> Option<(f64, f64)> {
+        self.bounds(context, group)?;
+        let image = Image::of(context, group, &mut self.places)?;
+        let whole = outlined_nats(&self.views, &image, self.tilt_sigma_rad, self.unseen_nats);
+        let part = match whole {
+            Some((nats, _)) if nats < POOR_OUTLINE_NATS => None,
+            _ => self.partly_seen_nats(context, group),
         };
-        let seen = Ordered::of(&image, sightings, group, self.log_flux_sigma);
+        whole.into_iter().chain(part).min_by(|a, b| a.0.total_cmp(&b.0))
+    }
+
+    /// What a group of at least two looks like, worked out once a frame; `None` where it cannot be one neighbour, or too many show to be put in order.
+    fn likeness(&mut self, context: &Context<'_>, group: &[usize]) -> Option<Likeness> {
+        self.views.arrangements(group.len())?;
+        let handful = Handful::of(group)?;
+        if let Some(known) = self.likenesses.of(&handful) {
+            return known;
+        }
+        let likeness = self.compare(context, handful.spots());
+        self.likenesses.keep(handful, likeness);
+        likeness
+    }
+
+    /// Compares a group with the views.
+    fn compare(&mut self, context: &Context<'_>, group: &[usize]) -> Option<Likeness> {
+        self.bounds(context, group)?;
+        let image = Image::of(context, group, &mut self.places)?;
+        let arrangements = self.views.arrangements(group.len())?;
+        let seen = Ordered::of(&image, context.sightings, group, self.log_flux_sigma);
         let best = seen.costs(arrangements, &image, self.tilt_sigma_rad, &mut self.costs);
-        let weight = self
-            .costs
-            .iter()
-            .fold(Lanes::ZERO, |sum, &four| sum + lanes::exp(Lanes::splat(best.nats) - four));
-        let likeness = Likeness::of(&seen, &image, best.arrangement);
-        let views = f64::from(best.nats) - libm::log(f64::from(lanes::sum(weight)));
-        NEIGHBOUR_NATS
-            + views
-            + size_nats(sightings, group, likeness.distance_m)
-            + power_nats(context, group, &likeness)
+        Some(Likeness::of(&seen, &image, &best, &self.costs))
     }
 
     /// A first look at how likely a handful is one neighbour: the logarithm of its density, as [`crate::pose::Posterior::log_evidence`] has it but from the
@@ -191,35 +216,26 @@ impl Matcher {
         if group.len() == 1 {
             return Some(-libm::log(POWER_RANGE) - self.lone_nats(context, group[0]));
         }
-        if group.len() > self.views.most_visible || self.bounds(context, group).is_none() {
+        if group.len() > self.views.most_visible {
             return None;
         }
         let sightings = context.sightings;
-        let image = Image::of(context, group, &mut self.places)?;
-        let arrangements = self.views.arrangements(group.len())?;
-        let seen = Ordered::of(&image, sightings, group, self.log_flux_sigma);
-        let best = seen.costs(arrangements, &image, self.tilt_sigma_rad, &mut self.costs);
-        let weight = self
-            .costs
-            .iter()
-            .fold(Lanes::ZERO, |sum, &four| sum + lanes::exp(Lanes::splat(best.nats) - four));
-        let views = f64::from(best.nats) - libm::log(f64::from(lanes::sum(weight)));
-        let likeness = Likeness::of(&seen, &image, best.arrangement);
+        let likeness = self.likeness(context, group)?;
         let turn_sigma_rad = if context.gravity.is_some() { self.tilt_sigma_rad } else { TAU.sqrt() };
         let count = group.len() as f64;
-        let places = -(count - 2.0) * libm::log(TAU * seen.variance(&image))
+        let places = -(count - 2.0) * libm::log(TAU * likeness.variance)
             - libm::log(count)
-            - 2.0 * libm::log(image.size)
+            - 2.0 * libm::log(likeness.size)
             - 0.5 * libm::log(TAU * turn_sigma_rad * turn_sigma_rad);
         let lit = group.iter().filter(|&&spot| sightings[spot].log_light.is_some()).count();
         let light = if lit == 0 {
             0.0
         } else {
-            -(lit as f64 - 1.0) * seen.log_light_width() - libm::log(POWER_RANGE)
+            -(lit as f64 - 1.0) * likeness.log_light_width - libm::log(POWER_RANGE)
         };
         Some(
             places + light
-                - views
+                - likeness.views_nats
                 - power_nats(context, group, &likeness)
                 - size_nats(sightings, group, likeness.distance_m)
                 - libm::log(LOG_RANGE),
@@ -300,26 +316,6 @@ impl Matcher {
                 });
             }
         }
-    }
-}
-
-/// What a group is if it looks like an arrangement.
-struct Likeness {
-    distance_m: f64,
-    /// Mean of the logarithms of the markers' intensities.
-    log_intensity: f64,
-}
-
-impl Likeness {
-    fn of(seen: &Ordered, image: &Image<'_>, arrangement: &Arrangement) -> Self {
-        let distance_m = seen.place(arrangement, image).0.norm();
-        Self { distance_m, log_intensity: arrangement.mean_log_intensity }
-    }
-
-    /// Logarithm of the light that an LED of the group then has straight ahead at 1 m; `None` where a spot has no light.
-    fn log_power(&self, sightings: &[Sighting], group: &[usize]) -> Option<f64> {
-        let sum = group.iter().try_fold(0.0, |sum, &spot| Some(sum + sightings[spot].log_light?.value))?;
-        Some(sum / group.len() as f64 + 2.0 * libm::log(self.distance_m) - self.log_intensity)
     }
 }
 

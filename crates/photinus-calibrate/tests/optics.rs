@@ -40,6 +40,15 @@ fn a_sharp_lens_that_overflows_is_learned_from_its_frames() {
 }
 
 #[test]
+fn wells_that_are_never_full_spill_nothing_whatever_two_spots_gain_by_it() {
+    let eye = eye("gaussian-0.4");
+    let learned = learn(&eye.recorded(150, 6, 102)).expect("spots enough");
+    let spill = learned.optics.sensor.spill;
+    assert!(spill.value < 2.0 * spill.sigma && spill.sigma < 0.05, "{spill:?}");
+    assert!(!learned.unseen.contains(&Unseen::Spill) && learned.optics.sensor.full_well_dn.is_none());
+}
+
+#[test]
 fn what_frames_do_not_show_is_said_to_be_unseen() {
     let mut eye = eye("gaussian-0.6");
     // black is clipped, and nothing is full

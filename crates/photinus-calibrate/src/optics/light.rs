@@ -1,8 +1,10 @@
 //! Noise against light: what fits leave of pixels, squared, explained by darkness, light, and the error of the point spread.
 //!
 //! A table follows the noise of the pixels that it is made of, so that they are left with too little. A table of the other half of the
-//! spots follows none of it, but is wrong by its own noise, twice as much: two thirds of the one and a third of the other are left with
-//! what there is.
+//! spots follows none of it, but is wrong by its own noise, so that they are left with too much. What both leave, multiplied, is what there
+//! is: with x the row of a pixel, A the information of a half and B that of what is believed of tables beforehand, the one lacks
+//! x (2A + B)^-1 x of the pixel's variance, the noise that both tables share gives back x (2A + B)^-1 A (A + B)^-1 x, and what belief holds
+//! both back by, multiplied, is on average the rest, however strong the belief.
 
 use nalgebra::{SMatrix, SVector};
 use photinus::optics::Measured;
@@ -53,8 +55,8 @@ pub(super) fn residuals(spots: &[Spot<'_>], field: &Field, noise: &Noise) -> Vec
     residuals_by(spots, |_, spot| of_spot(spot, field, noise))
 }
 
-/// What is left of them by a table that was made of them and by one of the other half of the spots, mixed so that neither error
-/// stays: `halves` are the tables of spots of even and of odd number.
+/// What is left of them by a table that was made of them times what is left by one of the other half of the spots, so that the error of
+/// neither stays: `halves` are the tables of spots of even and of odd number.
 pub(super) fn free_residuals(
     spots: &[Spot<'_>],
     field: &Field,
@@ -71,11 +73,8 @@ pub(super) fn free_residuals(
         if aside.len() != within.len() {
             return Vec::new();
         }
-        let mix = |(within, aside): (&Left, &Left)| Left {
-            square: (2.0 * within.square + aside.square) / 3.0,
-            ..*within
-        };
-        within.iter().zip(&aside).map(mix).collect()
+        let both = |(within, aside): (&Left, &Left)| Left { square: within.left * aside.left, ..*within };
+        within.iter().zip(&aside).map(both).collect()
     })
 }
 
@@ -83,6 +82,8 @@ pub(super) fn free_residuals(
 #[derive(Clone, Copy)]
 struct Left {
     light: f64,
+    left: f64,
+    /// Its square, or what it is times what another table leaves.
     square: f64,
     /// Share of its noise that the fit took.
     taken: f64,
@@ -93,7 +94,9 @@ fn residuals_by(spots: &[Spot<'_>], mut left: impl FnMut(usize, &Spot<'_>) -> Ve
     let mut residuals = Vec::new();
     for (number, spot) in spots.iter().enumerate().filter(|(_, spot)| spot.is_used && spot.is_linear()) {
         let tells = |left: &&Left| {
-            left.taken < MOST_TAKEN && left.light > LEAST_DN && left.square < CLIP * CLIP * left.variance
+            left.taken < MOST_TAKEN
+                && left.light > LEAST_DN
+                && left.square.abs() < CLIP * CLIP * left.variance
         };
         let part = number % PARTS;
         let of = |left: &Left| Residual { light: left.light, square: left.square, part };
@@ -110,8 +113,9 @@ fn of_spot(spot: &Spot<'_>, field: &Field, noise: &Noise) -> Vec<Left> {
     let mut left = Vec::with_capacity(taken.len());
     spot.each_pixel(table, noise, usize::MAX, &mut shares, |pixel| {
         let taken = taken.next().copied().unwrap_or(1.0);
-        let square = pixel.left * pixel.left / (1.0 - taken.min(MOST_TAKEN));
-        left.push(Left { light: pixel.light, square, taken, variance: 1.0 / pixel.weight });
+        let own = pixel.left / (1.0 - taken.min(MOST_TAKEN)).sqrt();
+        let variance = 1.0 / pixel.weight;
+        left.push(Left { light: pixel.light, left: own, square: own * own, taken, variance });
     });
     left
 }

@@ -2,7 +2,7 @@
 //!
 //! Every spot with full pixels is explained by its light, spread by the point spread, overflowing: place, light and level are
 //! fitted for a spill and a well that all spots share, and these are where all together are explained best. How much a fit is
-//! worse without a tenth of the spots tells how sure they are.
+//! worse without a tenth of the spots tells how sure they are; a spill that only few spots gain by is none.
 
 use nalgebra::{Matrix4, Vector4};
 use photinus::optics::Measured;
@@ -32,6 +32,8 @@ const WELLS: [f64; 5] = [1.0, 1.6, 2.5, 4.0, 6.3];
 /// Spills tried first.
 const SHARES: [f64; 4] = [0.0, 0.33, 0.67, 1.0];
 const PARTS: usize = 10;
+/// What spots gain by a spill, summed, is more than this many sigmas of that.
+const TOLD_SIGMAS: f64 = 3.0;
 /// One spot counts at most this much against a spill: it may be two LEDs.
 const MOST_COST: f64 = 60.0;
 
@@ -42,6 +44,8 @@ struct Tried {
     /// Well over what a full pixel reads.
     well: f64,
 }
+
+const NO_SPILL: Tried = Tried { share: 0.0, well: 1.0 };
 
 /// A spot with full pixels on its way.
 #[derive(Clone)]
@@ -63,7 +67,7 @@ pub(super) fn learn(spots: &[Spot<'_>], field: &Field, noise: &Noise, pile: &Pil
     let step = all.len().div_ceil(MOST);
     let model = Model { field, noise, pile };
     let mut fulls: Vec<Full<'_, '_>> = all.into_iter().step_by(step).map(|spot| model.start(spot)).collect();
-    let mut best = (f64::INFINITY, Tried { share: 0.0, well: 1.0 });
+    let mut best = (f64::INFINITY, NO_SPILL);
     for well in WELLS {
         for share in SHARES {
             let tried = Tried { share, well };
@@ -92,6 +96,10 @@ pub(super) fn learn(spots: &[Spot<'_>], field: &Field, noise: &Noise, pile: &Pil
         }
     }
     model.costs(&mut fulls, Tried { share, well });
+    if !model.is_told(&fulls, Tried { share, well }) {
+        (share, well) = (NO_SPILL.share, NO_SPILL.well);
+        model.costs(&mut fulls, NO_SPILL);
+    }
     let [share, well] = model.jackknife(&fulls, Tried { share, well });
     let spills = share.value > 2.0 * share.sigma;
     let capacity_dn = pile.level_dn * well.value;
@@ -114,7 +122,7 @@ impl Model<'_> {
                 spot,
                 at: Vector4::from([spot.u, spot.v, libm::log(spot.light.max(50.0) * times), spot.level]),
             };
-            let cost = self.fit(&mut full, Tried { share: 0.0, well: 1.0 }, 5);
+            let cost = self.fit(&mut full, NO_SPILL, 5);
             (cost, full)
         };
         let starts = [0.7, 1.5, 3.0, 8.0].map(start);
@@ -188,6 +196,16 @@ impl Model<'_> {
                 (value - level - charge.min(reads)) / variance.sqrt()
             })
             .collect()
+    }
+
+    /// Whether spots together are explained better by a spill than without: a few that are two LEDs, or of no point spread that is known, may
+    /// gain by one that is none.
+    fn is_told(&self, fulls: &[Full<'_, '_>], found: Tried) -> bool {
+        let [without, with] = [NO_SPILL, found].map(|tried| self.costs(&mut fulls.to_vec(), tried));
+        let gains = without.iter().zip(&with).map(|(without, with)| without - with);
+        let (sum, squares) =
+            gains.fold((0.0, 0.0), |(sum, squares), gain| (sum + gain, squares + gain * gain));
+        sum > TOLD_SIGMAS * f64::sqrt(squares)
     }
 
     /// The place of the least cost by a parabola, and its scatter when tenths of the spots are left out.

@@ -5,7 +5,7 @@
 //! is known, whose steps are as long as makes the trails likeliest. What all trails share by angle is the lens's. Recordings in which
 //! a camera is turned tell it well; those in which lights only come and go do not, and the sigmas say so.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use photinus::camera::{Camera, Pixel};
 use photinus::optics::Vignetting;
 
@@ -15,8 +15,9 @@ use super::spot::Spot;
 
 /// Angles at which the share is told.
 const STEP_RAD: f64 = 0.0872;
-/// Second differences of the logarithm of the share from one angle to the next are believed to be within this, and slopes.
-const BENT: f64 = 0.06;
+/// Second differences of the logarithm of the share from one angle to the next: how far from 0 they are is tried between these, and is first believed to
+/// be the most. Slopes are believed to be within the last.
+const BENT: (f64, f64) = (0.004, 0.1);
 const STEEP: f64 = 1.0;
 /// Most sightings that are taken together: longer trails are cut, and say as much in two parts.
 const LONGEST: usize = 60;
@@ -47,22 +48,35 @@ struct Trails {
     knots: usize,
 }
 
+/// What lights and the lens are free to do.
+#[derive(Clone, Copy)]
+struct Freedom {
+    /// Step of the walk of a light from one frame to the next, as a share of it.
+    step: f64,
+    /// How far second differences of the logarithm of the share are from 0.
+    bent: f64,
+}
+
 /// The share of light by angle; `None` where the recording does not tell it.
 pub(super) fn learn(spots: &[Spot<'_>], field: &Field, noise: &Noise, camera: &Camera) -> Option<Vignetting> {
     let mut trails = Trails::of(spots, field, noise, camera)?;
-    let mut step = STEPS.0;
+    let mut free = Freedom { step: STEPS.0, bent: BENT.1 };
     for _ in 0..2 {
-        let cost = |log_step: f64| {
-            trails.solve(libm::exp(log_step), |_| true).map_or(f64::INFINITY, |found| found.1)
+        let likeliest = |of: &dyn Fn(f64) -> Freedom, (low, high): (f64, f64), tries: usize| {
+            let cost =
+                |log: f64| trails.solve(of(libm::exp(log)), |_| true).map_or(f64::INFINITY, |found| found.1);
+            libm::exp(least(cost, libm::log(low), libm::log(high), tries))
         };
-        step = libm::exp(least(cost, libm::log(STEPS.0), libm::log(STEPS.1), 12));
-        let (found, _) = trails.solve(step, |_| true)?;
-        trails.drop_outliers(&found, step);
+        free.step = likeliest(&|step| Freedom { step, ..free }, STEPS, 12);
+        // A lens that may bend as it pleases leaves open what passes on the axis itself, where few lights are seen.
+        free.bent = likeliest(&|bent| Freedom { bent, ..free }, BENT, 8);
+        let (found, _) = trails.solve(free, |_| true)?;
+        trails.drop_outliers(&found, free.step);
     }
-    let (found, _) = trails.solve(step, |_| true)?;
-    let (formal, mut squares) = (trails.sigmas(step)?, DVector::<f64>::zeros(trails.knots));
+    let (found, _) = trails.solve(free, |_| true)?;
+    let (formal, mut squares) = (trails.sigmas(free)?, DVector::<f64>::zeros(trails.knots));
     for part in 0..PARTS {
-        let (without, _) = trails.solve(step, |number| number % PARTS != part)?;
+        let (without, _) = trails.solve(free, |number| number % PARTS != part)?;
         squares += (without - &found).map(|off| off * off);
     }
     let scattered = squares.map(|sum| (sum * (PARTS - 1) as f64 / PARTS as f64).sqrt());
@@ -121,14 +135,14 @@ impl Trails {
     }
 
     /// What is believed beforehand, as a normal matrix.
-    fn believed(&self) -> DMatrix<f64> {
+    fn believed(&self, bent: f64) -> DMatrix<f64> {
         let mut matrix = DMatrix::zeros(self.knots, self.knots);
         for knot in 0..self.knots {
             // the logarithm is 0 on the axis and as steep to both sides of it
             let at = |back: usize| knot.checked_sub(back);
             let mut bend = DVector::zeros(self.knots);
             let mut slope = DVector::zeros(self.knots);
-            (bend[knot], slope[knot]) = (1.0, 1.0);
+            (bend[knot], slope[knot]) = (if knot == 0 { 2.0 } else { 1.0 }, 1.0);
             if let Some(before) = at(1) {
                 bend[before] -= 2.0;
                 slope[before] -= 1.0;
@@ -136,7 +150,7 @@ impl Trails {
             if let Some(before) = at(2) {
                 bend[before] += 1.0;
             }
-            matrix += &bend * bend.transpose() / (BENT * BENT) + &slope * slope.transpose() / (STEEP * STEEP);
+            matrix += &bend * bend.transpose() / (bent * bent) + &slope * slope.transpose() / (STEEP * STEEP);
         }
         matrix
     }
@@ -148,7 +162,7 @@ impl Trails {
             walk(i, j) + if i == j { trail[i].variance } else { 0.0 }
         });
         let factor = covariance.cholesky()?;
-        let log_determinant = 2.0 * factor.l_dirty().diagonal().iter().map(|d| libm::log(*d)).sum::<f64>();
+        let log_determinant = log_determinant(&factor);
         let inverse = factor.inverse();
         let ones = DVector::from_element(trail.len(), 1.0);
         let sums = &inverse * &ones;
@@ -159,34 +173,35 @@ impl Trails {
     /// Normal matrix, right side, squares and logarithms of determinants of the trails used.
     fn normal(
         &self,
-        step: f64,
+        Freedom { step, bent }: Freedom,
         is_used: impl Fn(usize) -> bool,
     ) -> Option<(DMatrix<f64>, DVector<f64>, f64)> {
-        let (mut matrix, mut right, mut cost) = (self.believed(), DVector::zeros(self.knots), 0.0);
+        let mut matrix = self.believed(bent);
+        let (mut right, mut cost) =
+            (DVector::zeros(self.knots), -log_determinant(&matrix.clone().cholesky()?));
         for (_, trail) in self.trails.iter().enumerate().filter(|(number, _)| is_used(*number)) {
-            let (weights, log_determinant) = Self::weights(trail, step)?;
+            let (weights, own_cost) = Self::weights(trail, step)?;
             let rows = DMatrix::from_fn(trail.len(), self.knots, |i, k| self.row(trail[i].off_axis_rad)[k]);
             let logs = DVector::from_iterator(trail.len(), trail.iter().map(|sighted| sighted.log_light));
             let weighted = rows.transpose() * &weights;
             matrix += &weighted * &rows;
             right += &weighted * &logs;
-            cost += log_determinant + logs.dot(&(&weights * &logs));
+            cost += own_cost + logs.dot(&(&weights * &logs));
         }
         Some((matrix, right, cost))
     }
 
     /// Logarithms of the shares, and minus twice the logarithm of the likelihood.
-    fn solve(&self, step: f64, is_used: impl Fn(usize) -> bool) -> Option<(DVector<f64>, f64)> {
-        let (matrix, right, cost) = self.normal(step, is_used)?;
+    fn solve(&self, free: Freedom, is_used: impl Fn(usize) -> bool) -> Option<(DVector<f64>, f64)> {
+        let (matrix, right, cost) = self.normal(free, is_used)?;
         let factor = matrix.cholesky()?;
         let found = factor.solve(&right);
-        let log_determinant = 2.0 * factor.l_dirty().diagonal().iter().map(|d| libm::log(*d)).sum::<f64>();
-        let cost = cost - right.dot(&found) + log_determinant;
+        let cost = cost - right.dot(&found) + log_determinant(&factor);
         Some((found, cost))
     }
 
-    fn sigmas(&self, step: f64) -> Option<DVector<f64>> {
-        let (matrix, ..) = self.normal(step, |_| true)?;
+    fn sigmas(&self, free: Freedom) -> Option<DVector<f64>> {
+        let (matrix, ..) = self.normal(free, |_| true)?;
         Some(matrix.cholesky()?.inverse().diagonal().map(f64::sqrt))
     }
 
@@ -210,4 +225,8 @@ impl Trails {
             self.trails = cut;
         }
     }
+}
+
+fn log_determinant(factor: &Cholesky<f64, Dyn>) -> f64 {
+    2.0 * factor.l_dirty().diagonal().iter().map(|d| libm::log(*d)).sum::<f64>()
 }

@@ -37,7 +37,7 @@ type Stream = Box<dyn Read + Send>;
 
 enum Kind {
     Images { paths: Vec<PathBuf>, next: usize },
-    Dataset { dataset: Dataset, camera: usize, next: usize },
+    Dataset { dataset: Box<Dataset>, camera: usize, next: usize },
     Y4m { frames: Y4mFrames<Stream>, name: String },
     Raw { frames: RawFrames<Stream>, name: String },
     Other(Box<dyn Iterator<Item = Result<Frame>> + Send>),
@@ -61,7 +61,7 @@ impl FrameSource {
 
     /// The images of camera number `camera` of a dataset; none when it has no such camera.
     pub fn dataset_camera(dataset: Dataset, camera: usize) -> Self {
-        Self(Kind::Dataset { dataset, camera, next: 0 })
+        Self(Kind::Dataset { dataset: Box::new(dataset), camera, next: 0 })
     }
 
     /// A Y4M stream: an open file, standard input. `name` is for the messages and for [`Frame::source`].
@@ -202,6 +202,7 @@ mod tests {
             mask: None,
             codes: None,
             vehicles: None,
+            sky: None,
         };
         let mut writer = DatasetWriter::create(folder.path(), &info).unwrap();
         let down = Some(Vector3::y_axis());

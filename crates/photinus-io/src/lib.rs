@@ -49,6 +49,7 @@ pub mod physics;
 pub mod results;
 #[cfg(test)]
 mod scratch;
+pub mod sky;
 pub mod spot_curve;
 pub mod table;
 pub mod video;

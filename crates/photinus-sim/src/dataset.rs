@@ -162,6 +162,7 @@ fn one_camera(
         mask: None,
         codes: named.codes_file(),
         vehicles: named.vehicles_file(),
+        sky: scene.sky.clone(),
     };
     let writer = DatasetWriter::create(folder, &info)?;
     write_camera(folder, Path::new(CAMERA_FILE), mounted)?;
@@ -189,6 +190,7 @@ fn rig(
         rate_hz: scene.rate_hz,
         codes: named.codes_file(),
         vehicles: named.vehicles_file(),
+        sky: scene.sky.clone(),
         cameras: mounted.iter().map(camera).collect(),
     };
     let writer = DatasetWriter::create_rig(folder, &info)?;

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::airframe_key::AirframeFiles;
 use super::camera_key::CameraKey;
+use crate::sky::{Sky, SkyInfo};
 use crate::{Error, Place, Result, physics, table};
 
 /// What dataset.toml says of a dataset with one camera. Paths are relative to the folder.
@@ -31,6 +32,9 @@ pub struct DatasetInfo {
     /// Which vehicles there may be, and what they blink.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub vehicles: Option<PathBuf>,
+    /// Where and when it was recorded: tells where the sun was.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sky: Option<SkyInfo>,
 }
 
 /// What dataset.toml says of a dataset with cameras that are mounted on one vehicle. Paths are relative to the folder.
@@ -48,6 +52,9 @@ pub struct RigInfo {
     /// Which vehicles there may be, and what they blink.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub vehicles: Option<PathBuf>,
+    /// Where and when it was recorded: tells where the sun was. Cameras of a rig look in different directions and have no heading here.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sky: Option<SkyInfo>,
     /// The cameras, at least one; their names differ.
     #[serde(rename = "camera")]
     pub cameras: Vec<RigCamera>,
@@ -96,6 +103,7 @@ struct Table {
     mask: Option<PathBuf>,
     codes: Option<PathBuf>,
     vehicles: Option<PathBuf>,
+    sky: Option<SkyInfo>,
 }
 
 impl DatasetToml {
@@ -105,12 +113,21 @@ impl DatasetToml {
     /// [`Error`] for unknown or missing keys, for values that no camera has, and for cameras of one name.
     pub fn parse(text: &str, path: impl AsRef<Path>) -> Result<Self> {
         let path = path.as_ref();
-        let Table { camera, airframe, exposure_us, rate_hz, spot_curve, mask, codes, vehicles } =
+        let Table { camera, airframe, exposure_us, rate_hz, spot_curve, mask, codes, vehicles, sky } =
             table::parse(text, path)?;
         let cameras = match camera {
             CameraKey::One(camera) => {
-                let info =
-                    DatasetInfo { camera, airframe, exposure_us, rate_hz, spot_curve, mask, codes, vehicles };
+                let info = DatasetInfo {
+                    camera,
+                    airframe,
+                    exposure_us,
+                    rate_hz,
+                    spot_curve,
+                    mask,
+                    codes,
+                    vehicles,
+                    sky,
+                };
                 info.check(path)?;
                 return Ok(Self::One(info));
             }
@@ -126,7 +143,7 @@ impl DatasetToml {
                 ));
             }
         }
-        let info = RigInfo { airframe, exposure_us, rate_hz, codes, vehicles, cameras };
+        let info = RigInfo { airframe, exposure_us, rate_hz, codes, vehicles, sky, cameras };
         info.check(path)?;
         Ok(Self::Rig(info))
     }
@@ -153,6 +170,7 @@ impl DatasetInfo {
         check_named(path, "spot_curve", self.spot_curve.as_ref())?;
         check_named(path, "mask", self.mask.as_ref())?;
         check_named(path, "codes", self.codes.as_ref())?;
+        self.sky.as_ref().map(|sky| Sky::new(sky, path)).transpose()?;
         check_named(path, "vehicles", self.vehicles.as_ref())
     }
 }
@@ -163,6 +181,13 @@ impl RigInfo {
         check_airframes(path, &self.airframe)?;
         check_named(path, "codes", self.codes.as_ref())?;
         check_named(path, "vehicles", self.vehicles.as_ref())?;
+        if let Some(sky) = &self.sky {
+            Sky::new(sky, path)?;
+            if sky.heading_deg.is_some() {
+                let advice = "leave it out: the sun is then looked for at its elevation";
+                return Err(refuse(path, "sky.heading_deg", "it is not said of which camera", advice));
+            }
+        }
         if self.cameras.is_empty() {
             return Err(refuse(path, "camera", "there is none", "add a [[camera]]"));
         }

@@ -31,6 +31,7 @@ use std::path::{Path, PathBuf};
 use photinus::identity::CodeBook;
 
 use crate::codes::read_codes;
+use crate::sky::Sky;
 use crate::{Error, Result, airframe, whole};
 pub use airframe_key::AirframeFiles;
 pub use cameras::DatasetCamera;
@@ -134,6 +135,12 @@ impl Dataset {
         files.into_iter().map(|file| self.path(file)).collect()
     }
 
+    /// The sky over the recording, where dataset.toml tells place and time.
+    pub fn sky(&self) -> Option<Sky> {
+        // It was read when dataset.toml was.
+        self.info.sky.as_ref().and_then(|sky| Sky::new(sky, DATASET_FILE).ok())
+    }
+
     /// The truth of every frame that has one; `None` when the folder holds none.
     ///
     /// # Errors
@@ -177,6 +184,7 @@ impl RigInfo {
             mask: first.mask.clone(),
             codes: self.codes.clone(),
             vehicles: self.vehicles.clone(),
+            sky: self.sky.clone(),
         }
     }
 }

@@ -101,7 +101,7 @@ fn unknown_and_missing_keys_are_named() {
     assert_eq!(
         message,
         "d/dataset.toml, line 5: unknown key `exposure`, expected one of `camera`, `airframe`, `exposure_us`, \
-         `rate_hz`, `spot_curve`, `mask`, `codes`, `vehicles`; correct its name or remove it"
+         `rate_hz`, `spot_curve`, `mask`, `codes`, `vehicles`, `sky`; correct its name or remove it"
     );
     assert!(info_message(&INFO.replace("rate_hz = 60\n", "")).contains("missing key `rate_hz`; add it"));
     assert!(info_message("").contains("missing key `camera`"));
@@ -159,4 +159,23 @@ fn a_bad_row_is_named_by_its_line() {
 fn a_bad_truth_line_is_named() {
     let message = parse_truth("{\"frame\":0,\"time_s\":0}\n", "d/truth.jsonl").unwrap_err().to_string();
     assert!(message.starts_with("d/truth.jsonl, line 1: column 22: missing key `neighbours`"), "{message}");
+}
+
+#[test]
+fn a_sky_is_read_back_and_says_what_is_wrong_with_it() {
+    const SKY: &str = "[sky]\nlatitude_deg = 50.08\nlongitude_deg = 14.42\ntime = 2018-05-10T10:00:00Z\nheading_deg = 90.0\n";
+    let info = DatasetInfo::parse(&format!("{INFO}{SKY}"), "dataset.toml").unwrap();
+    assert_eq!(info.sky.as_ref().and_then(|sky| sky.heading_deg), Some(90.0));
+    let written = toml::to_string(&info).unwrap();
+    assert_eq!(DatasetInfo::parse(&written, "dataset.toml").unwrap(), info, "{written}");
+    for (from, to, message) in [
+        ("50.08", "95.0", "`sky.latitude_deg`: 95.0 is out of range"),
+        ("10:00:00Z", "10:00:00", "`sky.time`: 2018-05-10T10:00:00 is no date and time in UTC; write it as"),
+        ("heading_deg = 90.0", "heading_sigma_deg = -1.0", "`sky.heading_sigma_deg`: -1.0 is out of range"),
+        ("latitude_deg = 50.08\n", "", "latitude_deg"),
+        ("heading_deg", "heading", "heading"),
+    ] {
+        let error = info_message(&format!("{INFO}{}", SKY.replace(from, to)));
+        assert!(error.contains(message), "{error}");
+    }
 }

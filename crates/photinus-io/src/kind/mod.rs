@@ -188,7 +188,10 @@ impl Kind {
 
     /// Whether frames can be read from it.
     pub fn holds_frames(self) -> bool {
-        matches!(self, Self::Dataset | Self::ImageFolder | Self::Image | Self::Video | Self::Recording)
+        matches!(
+            self,
+            Self::Dataset | Self::ImageFolder | Self::Image | Self::Video | Self::Recording | Self::Bag
+        )
     }
 
     /// Refuses this file where another kind is `wanted`, such as "a camera"; `known` is what such files look like.
@@ -214,7 +217,7 @@ impl Kind {
     pub fn remedy(self, path: &Path) -> Option<String> {
         match self {
             Self::Foreign(Foreign::Mp4 | Foreign::Matroska | Foreign::Avi) => Some(decoding(path)),
-            Self::Bag | Self::Foreign(Foreign::Sqlite) => Some(
+            Self::Foreign(Foreign::Sqlite) => Some(
                 "make it an MCAP recording with `rosbags-convert` of the Python package rosbags".to_owned(),
             ),
             Self::Foreign(Foreign::Gzip | Foreign::Zip) => Some("unpack it first".to_owned()),

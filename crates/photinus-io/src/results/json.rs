@@ -29,6 +29,14 @@ impl<W: Write> ResultsWriter<W> {
     pub fn write(&mut self, record: &FrameRecord) -> Result<()> {
         lines::write_json(&mut self.sink, record, &self.name)
     }
+
+    /// The results are whole: hands back the sink.
+    ///
+    /// # Errors
+    /// [`Error`] when the sink refuses.
+    pub fn finish(self) -> Result<W> {
+        self.sink.into_inner().map_err(|error| Error::io(&self.name, error.into_error()))
+    }
 }
 
 /// Reads results, or the spots of another program in place of frames. A line that is no frame is an error, and the

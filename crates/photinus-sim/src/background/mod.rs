@@ -3,9 +3,7 @@
 //! Radiance is in the band that lens and filter pass, in W/m^2/sr, as if all of it had the markers' wavelength.
 
 mod daylight;
-mod sun;
 mod water;
 
 pub use daylight::{Daylight, Sky};
-pub use sun::{Place, sun_direction};
 pub use water::Water;

@@ -24,6 +24,7 @@ use nalgebra::{Isometry3, Vector3};
 use photinus::airframe::Airframe;
 use photinus::camera::Camera;
 use photinus::identity::CodeBook;
+use photinus_io::sky::SkyInfo;
 pub use read::mounting;
 
 use crate::background::{Daylight, Water};
@@ -52,6 +53,8 @@ pub struct Scene {
     pub preset: Preset,
     /// Light that does not come from markers.
     pub daylight: Option<Daylight>,
+    /// Where on Earth and when it is, where there is daylight.
+    pub sky: Option<SkyInfo>,
     /// A water surface below.
     pub water: Option<Water>,
     /// Lamps that are no markers.

@@ -3,14 +3,14 @@
 use std::path::{Path, PathBuf};
 
 use nalgebra::{Isometry3, Matrix3, Rotation3, Translation3, UnitQuaternion, Vector3};
+use photinus_io::sky::{Site, is_utc, sun_direction};
 use photinus_io::{Result, physics, read_camera, table as toml_table};
-use toml::value::{Datetime, Offset};
 
 use super::camera_table::{OpticsTable, SensorTable};
 use super::check::Check;
 use super::table::{CameraTable, DaylightTable, PresetName, SceneTable, SkyName};
 use super::{MountedCamera, Scene, Target};
-use crate::background::{Daylight, Place, Sky, Water, sun_direction};
+use crate::background::{Daylight, Sky, Water};
 use crate::clock::Clock;
 use crate::instruments::Instruments;
 use crate::motion::Motion;
@@ -110,6 +110,7 @@ impl Reader<'_> {
             frames: (duration_s * rate_hz).round().max(1.0) as u64,
             exposure_us,
             preset: self.preset(table.preset, &table.optics, &table.sensor)?,
+            sky: table.daylight.as_ref().map(DaylightTable::sky),
             daylight: table.daylight.map(|daylight| self.daylight(&daylight)).transpose()?,
             water: table
                 .water
@@ -170,20 +171,17 @@ impl Reader<'_> {
 
     fn daylight(&self, table: &DaylightTable) -> Result<Daylight> {
         let check = &self.check;
-        let place = Place {
+        let site = Site {
             latitude_deg: check.within("daylight.latitude_deg", table.latitude_deg, (-90.0, 90.0))?,
             longitude_deg: check.within("daylight.longitude_deg", table.longitude_deg, (-180.0, 180.0))?,
             height_m: check.within("daylight.height_m", table.height_m, (-500.0, 9000.0))?,
         };
-        let Datetime { date: Some(date), time: Some(time), offset: Some(Offset::Z) } = table.time else {
+        if !is_utc(&table.time) {
             return Err(check
                 .refuse("daylight.time", format!("{} is no date and time in UTC", table.time))
                 .advise("write it as 2018-05-10T10:00:00Z"));
-        };
-        let [year, month, day] = [u32::from(date.year), u32::from(date.month), u32::from(date.day)];
-        let second = f64::from(time.second.unwrap_or(0)) + f64::from(time.nanosecond.unwrap_or(0)) * 1e-9;
-        let hour = [u32::from(time.hour), u32::from(time.minute)];
-        let sun = sun_direction(&place, [year, month, day], hour, second)
+        }
+        let sun = sun_direction(&site, &table.time)
             .ok_or_else(|| check.refuse("daylight.time", "the sun's place is not known for it"))?;
         let sky = match table.sky {
             SkyName::Clear => Sky::Clear,

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use photinus_io::sky::SkyInfo;
 use serde::Deserialize;
 use toml::value::Datetime;
 
@@ -54,6 +55,20 @@ pub(super) struct DaylightTable {
     #[serde(default)]
     pub(super) height_m: f64,
     pub(super) time: Datetime,
+}
+
+impl DaylightTable {
+    /// The same as a dataset says it.
+    pub(super) fn sky(&self) -> SkyInfo {
+        SkyInfo {
+            latitude_deg: self.latitude_deg,
+            longitude_deg: self.longitude_deg,
+            height_m: self.height_m,
+            time: self.time,
+            heading_deg: None,
+            heading_sigma_deg: None,
+        }
+    }
 }
 
 #[derive(Clone, Copy, Deserialize)]

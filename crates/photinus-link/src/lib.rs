@@ -3,6 +3,7 @@
 //! ```text
 //! photinus-io's FrameRecord -> messages -> ros -> cdr -> recording   MCAP files, feature `recording`
 //!                                                     -> dds         ROS 2 topics without ROS, feature `ros2`
+//!                                                     -> zenoh       keys of Zenoh, feature `zenoh`
 //!                           -> mavlink                               autopilots, feature `mavlink`
 //! a code book               -> led                                   LED boards on serial ports, feature `led`
 //! ```
@@ -10,13 +11,17 @@
 //! of a run; below the sinks nothing reads a clock. The other way round, [`recording`] reads MCAP, [`mod@bag`] bags of ROS 1, and [`poses`] where
 //! vehicles were from either.
 
+#[cfg(any(feature = "ros2", feature = "zenoh"))]
+mod arriving;
 #[cfg(feature = "recording")]
 pub mod bag;
 pub mod cdr;
-#[cfg(any(feature = "ros2", feature = "mavlink"))]
+#[cfg(any(feature = "ros2", feature = "zenoh", feature = "mavlink"))]
 pub mod clock_offset;
-#[cfg(any(feature = "recording", feature = "ros2", feature = "mavlink"))]
+#[cfg(any(feature = "recording", feature = "ros2", feature = "zenoh", feature = "mavlink"))]
 pub mod config;
+#[cfg(any(feature = "ros2", feature = "zenoh"))]
+pub mod heard;
 #[cfg(feature = "led")]
 pub mod led;
 #[cfg(feature = "mavlink")]
@@ -29,6 +34,8 @@ pub mod recording;
 pub mod ros;
 #[cfg(feature = "ros2")]
 pub mod ros2;
-#[cfg(any(feature = "recording", feature = "ros2", feature = "mavlink"))]
+#[cfg(any(feature = "recording", feature = "ros2", feature = "zenoh", feature = "mavlink"))]
 mod sink_clock;
 pub mod topics;
+#[cfg(feature = "zenoh")]
+pub mod zenoh;

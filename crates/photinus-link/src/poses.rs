@@ -11,6 +11,7 @@ use photinus_io::kind::Kind;
 use photinus_io::{Error, Result};
 
 use crate::bag::Bag;
+use crate::bag::serial::Fields;
 use crate::cdr::{self, CdrError};
 use crate::recording::{Recording, Topic};
 use crate::ros::{
@@ -160,27 +161,17 @@ fn in_order(mut poses: Vec<TimedPose>, path: &Path) -> Result<Vec<TimedPose>> {
     }
 }
 
-/// What ROS 1 writes: no alignment, a number in the header, texts without an end.
+/// The same as ROS 1 writes it.
 fn of_ros1(bytes: &[u8], has_child: bool) -> Option<Stamped> {
-    let (_number, rest) = bytes.split_at_checked(4)?;
-    let (seconds, rest) = rest.split_first_chunk()?;
-    let (nanosec, rest) = rest.split_first_chunk()?;
-    let sec = i32::try_from(u32::from_le_bytes(*seconds)).ok()?;
-    let stamp = Time { sec, nanosec: u32::from_le_bytes(*nanosec) };
-    let mut rest = after_text(rest)?;
+    let mut fields = Fields(bytes);
+    let stamp = fields.header()?.stamp;
     if has_child {
-        rest = after_text(rest)?;
+        fields.text()?;
     }
     let mut numbers = [0.0; 7];
     for number in &mut numbers {
-        let (bytes, after) = rest.split_first_chunk()?;
-        (*number, rest) = (f64::from_le_bytes(*bytes), after);
+        *number = fields.f64()?;
     }
     let [x, y, z, qx, qy, qz, qw] = numbers;
     Some((stamp, Pose { position: [x, y, z].into(), orientation: [qx, qy, qz, qw].into() }))
-}
-
-fn after_text(bytes: &[u8]) -> Option<&[u8]> {
-    let (length, rest) = bytes.split_first_chunk()?;
-    rest.get(u32::from_le_bytes(*length) as usize..)
 }

@@ -21,13 +21,13 @@ impl SinkClock {
     }
 
     /// Seconds since the beginning.
-    #[cfg(any(feature = "ros2", feature = "mavlink"))]
+    #[cfg(any(feature = "ros2", feature = "zenoh", feature = "mavlink"))]
     pub(crate) fn now_s(&self) -> f64 {
         self.began.elapsed().as_secs_f64()
     }
 
     /// The same of an instant; 0 of one before.
-    #[cfg(any(feature = "ros2", feature = "mavlink"))]
+    #[cfg(any(feature = "ros2", feature = "zenoh", feature = "mavlink"))]
     pub(crate) fn seconds(&self, at: Instant) -> f64 {
         at.saturating_duration_since(self.began).as_secs_f64()
     }

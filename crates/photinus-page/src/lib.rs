@@ -8,6 +8,8 @@
 //! ```
 
 mod audience;
+#[cfg(test)]
+mod malformed;
 mod request;
 mod server;
 mod sketch;

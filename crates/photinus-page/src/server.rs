@@ -23,7 +23,7 @@ const HEAD_PATIENCE: Duration = Duration::from_secs(3);
 /// How long one who looks may take no bytes.
 const WRITE_PATIENCE: Duration = Duration::from_secs(3);
 /// What one who looks may say: control frames only.
-const LONGEST_MESSAGE: usize = 256;
+pub(crate) const LONGEST_MESSAGE: usize = 256;
 /// How often the port looks whether it is to close.
 const LOOK: Duration = Duration::from_millis(20);
 /// Nothing but what is in the page, and nobody may frame it.
@@ -136,13 +136,17 @@ fn attend(mut stream: TcpStream, house: &House) -> std::io::Result<()> {
     )?;
     // Reading is only to notice who leaves.
     stream.set_read_timeout(Some(Duration::from_millis(1)))?;
+    show(socket(stream), &seat, house);
+    Ok(())
+}
+
+/// Our end of a WebSocket whose handshake is done; what they send may not be long.
+pub(crate) fn socket<S>(stream: S) -> WebSocket<S> {
     let config = WebSocketConfig::default()
         .read_buffer_size(4096)
         .max_message_size(Some(LONGEST_MESSAGE))
         .max_frame_size(Some(LONGEST_MESSAGE));
-    let socket = WebSocket::from_raw_socket(stream, Role::Server, Some(config));
-    show(socket, &seat, house);
-    Ok(())
+    WebSocket::from_raw_socket(stream, Role::Server, Some(config))
 }
 
 fn refuse(stream: &mut TcpStream, status: &str) -> std::io::Result<()> {

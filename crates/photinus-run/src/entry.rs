@@ -3,6 +3,7 @@
 use std::time::Instant;
 
 use nalgebra::{Unit, Vector3};
+use photinus::locator::Sun;
 use photinus_io::frames::Frame;
 use photinus_io::image::{Conversion, GreyImage};
 use photinus_io::results::{FrameRecord, SpotRecord};
@@ -18,6 +19,8 @@ pub struct Entry {
     pub camera: usize,
     /// Direction of gravity (down) in the camera frame, where the source knows.
     pub gravity: Option<Unit<Vector3<f64>>>,
+    /// Where the sun is in the camera frame, where place, time and gravity tell.
+    pub sun: Option<Sun>,
     /// What was done to the stored samples.
     pub conversions: Vec<Conversion>,
     /// When its exposure ended, or where nobody knows that, when it arrived, by the clock of this machine; `None` of what was recorded before. Its
@@ -56,6 +59,7 @@ impl Entry {
             image,
             camera: 0,
             gravity: None,
+            sun: None,
             conversions: Vec::new(),
             taken: None,
             exposure_s: None,

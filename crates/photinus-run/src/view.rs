@@ -8,6 +8,7 @@ use photinus::ranging::SpotCurve;
 use photinus::spots::Spot;
 use photinus_io::calibration::MountingFile;
 use photinus_io::image::GreyImage;
+use photinus_io::sky::Sky;
 use photinus_io::{Error, Place, Result};
 
 use crate::watch::Watch;
@@ -24,6 +25,7 @@ pub struct View {
     /// The names of the neighbours' airframes, by kind.
     airframes: Vec<String>,
     gravity: Option<Unit<Vector3<f64>>>,
+    sky: Option<Sky>,
 }
 
 impl View {
@@ -42,7 +44,7 @@ impl View {
         locator.set_mask(mask.cloned())?;
         let airframes = kinds.iter().map(|kind| kind.airframe.name().to_owned()).collect();
         let mask = mask.cloned();
-        Ok(Self { camera, mounting: None, mask, locator, watch: None, airframes, gravity: None })
+        Ok(Self { camera, mounting: None, mask, locator, watch: None, airframes, gravity: None, sky: None })
     }
 
     /// How it sits on its vehicle, where that is known.
@@ -72,12 +74,20 @@ impl View {
     pub fn level(self, gravity: Option<Unit<Vector3<f64>>>) -> Self {
         Self { gravity, ..self }
     }
+
+    /// The sky that it looks at, where place and time are known.
+    #[must_use]
+    pub fn under(self, sky: Option<Sky>) -> Self {
+        Self { sky, ..self }
+    }
 }
 
 impl Work for View {
     fn fill(&mut self, entry: &mut Entry, clock: &mut Clock) -> Result<()> {
         let live = || self.watch.as_ref()?.down(entry);
         entry.gravity = self.gravity.or(entry.gravity).or_else(live);
+        let sun = |sky: &Sky| sky.sun(entry.record.time_s?, entry.gravity.as_ref()?);
+        entry.sun = self.sky.as_ref().and_then(sun);
         locate(entry, &mut self.locator, &self.airframes, clock)?;
         if let Some(watch) = &mut self.watch {
             watch.follow(entry, self.locator.located());
@@ -139,10 +149,11 @@ pub fn locate(
     let given = entry.record.spots.iter().map(|record| (Spot::from(record), record.signal));
     let spots: Vec<(Spot, Option<u32>)> = given.collect();
     let input = view.as_ref().map_or_else(|| Input::signalled(&spots), Input::frame);
-    let located = locator.locate(input.gravity(gravity).finished(finished)).map_err(|error| {
-        let advice = "give the calibration of this camera at this resolution; frames are not scaled";
-        in_frame(Error::format(&entry.record.source, error.to_string()).advise(advice), entry)
-    })?;
+    let located =
+        locator.locate(input.gravity(gravity).sun(entry.sun).finished(finished)).map_err(|error| {
+            let advice = "give the calibration of this camera at this resolution; frames are not scaled";
+            in_frame(Error::format(&entry.record.source, error.to_string()).advise(advice), entry)
+        })?;
     entry.record.put_located(located, airframes);
     Ok(())
 }

@@ -4,9 +4,13 @@
 //! ```text
 //! record    bytes -> fields
 //! mod       the index at the end of the file -> which chunks hold a topic -> its messages
+//! serial    what ROS 1 writes of a message -> its fields
+//! images    topics with images -> frames
 //! ```
 
+mod images;
 mod record;
+pub(crate) mod serial;
 
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
@@ -15,6 +19,7 @@ use std::path::{Path, PathBuf};
 use photinus_io::{Error, Result};
 
 use crate::recording::{MOST_BYTES, Topic};
+pub use images::{BagFrames, image_topics};
 use record::{Record, field, records};
 
 const MAGIC: &[u8] = b"#ROSBAG V2.0\n";

@@ -203,8 +203,8 @@ impl Autopilot {
         None
     }
 
-    /// What the last message of a datagram says that means something.
-    fn understand(&mut self, datagram: &[u8], now_s: f64) -> Option<Heard> {
+    /// What the last message of a datagram says that means something, for those who receive it otherwise than [`Self::hear`].
+    pub fn understand(&mut self, datagram: &[u8], now_s: f64) -> Option<Heard> {
         let mut reader = mavlink::MavlinkReader::new(datagram);
         let (mut last, mut any) = (None, false);
         while let Ok((header, message)) = reader.read_any_message::<MavMessage>() {

@@ -21,7 +21,7 @@ use photinus_io::results::FrameRecord;
 
 pub use covariance::{bearing_covariance, pose_covariance};
 pub use health::{Health, diagnostics};
-pub use motion::{Turning, of_imu, of_odometry};
+pub use motion::{Turning, of_imu, of_odometry, of_transforms};
 pub use running::parts;
 pub use transforms::mounting_transform;
 pub use uvdar::{Uvdar, spots_of};

@@ -7,12 +7,13 @@ use photinus_io::frames::Frame;
 use photinus_io::image::{GreyImage, decode_image};
 use photinus_io::{Error, Place, Result};
 
+use super::Topic;
 use super::read::{Messages, Recording};
 use crate::ros::{self, CompressedImage, Image};
 use crate::{cdr, topics};
 
-const RAW: &str = "sensor_msgs/Image";
-const COMPRESSED: &str = "sensor_msgs/CompressedImage";
+pub(crate) const RAW: &str = "sensor_msgs/Image";
+pub(crate) const COMPRESSED: &str = "sensor_msgs/CompressedImage";
 const KNOWN: &str = "photinus_msgs/Frame";
 
 /// A topic with images.
@@ -29,9 +30,13 @@ pub struct ImageTopic {
 /// The topics of a recording that hold images, by name.
 #[must_use]
 pub fn image_topics(recording: &Recording) -> Vec<ImageTopic> {
-    let topics = recording.topics();
+    topics_of_images(&recording.topics())
+}
+
+/// Those of these topics that hold images.
+pub(crate) fn topics_of_images(topics: &[Topic]) -> Vec<ImageTopic> {
     let images = topics.iter().filter(|topic| topic.kind == RAW || topic.kind == COMPRESSED);
-    let topic = |image: &super::Topic| {
+    let topic = |image: &Topic| {
         let camera = image.name.strip_suffix("/image/compressed").or(image.name.strip_suffix("/image"));
         let known = camera.map(|camera| format!("{camera}/frame"));
         let is_there = |name: &String| topics.iter().any(|topic| topic.kind == KNOWN && topic.name == *name);
@@ -117,7 +122,11 @@ impl Iterator for Frames {
     }
 }
 
-fn chosen(topics: Vec<ImageTopic>, named: Option<&str>, path: &Path) -> Result<ImageTopic> {
+/// The one that is named, or the only one.
+///
+/// # Errors
+/// [`Error`] when there is none, or several and none is named.
+pub(crate) fn chosen(topics: Vec<ImageTopic>, named: Option<&str>, path: &Path) -> Result<ImageTopic> {
     let names = topics.iter().map(|topic| topic.name.as_str()).collect::<Vec<_>>().join(", ");
     let is_meant = |topic: &ImageTopic| {
         let of_camera = |camera| ["image", "image/compressed"].map(|what| topics::of_camera(camera, what));
@@ -126,9 +135,8 @@ fn chosen(topics: Vec<ImageTopic>, named: Option<&str>, path: &Path) -> Result<I
     let mut meant = topics.into_iter().filter(is_meant);
     match (meant.next(), meant.next(), named) {
         (Some(topic), None, _) => Ok(topic),
-        (None, _, _) if names.is_empty() => {
-            Err(Error::format(path, "it holds no images").advise("record with `pixels = \"png\"`"))
-        }
+        (None, _, _) if names.is_empty() => Err(Error::format(path, "it holds no images")
+            .advise("record sensor_msgs/Image, or with `pixels = \"png\"`")),
         (None, _, _) => Err(Error::format(path, format!("it has no images of that name, but {names}"))),
         _ => Err(Error::format(path, format!("it holds several cameras: {names}"))
             .advise("name one of them with --only")),

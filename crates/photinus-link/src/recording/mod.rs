@@ -23,6 +23,7 @@ mod recover;
 mod sink;
 mod write;
 
+pub(crate) use frames::{COMPRESSED, RAW, chosen, topics_of_images};
 pub use frames::{Frames, ImageTopic, image_topics};
 pub use motion::Motions;
 pub use pixels::Pixels;

@@ -11,7 +11,7 @@ mod uvdar;
 
 use photinus_io::calibration::MountingFile;
 
-pub use motion::{Heard, MotionTopics};
+pub use motion::MotionTopics;
 pub use node::{Images, Inbox, Node, Ros2Error};
 pub use sink::Ros2Sink;
 pub use source::{ImageSource, PointSource};

@@ -6,10 +6,11 @@ use photinus_run::health::Health;
 use photinus_run::motion::Motion;
 use photinus_run::sink::Sink;
 
-use super::{Heard, MotionTopics, Node, Ros2Error, Settings, Topics, UvdarTopics};
+use super::{MotionTopics, Node, Ros2Error, Settings, Topics, UvdarTopics};
 use crate::config::Camera;
-use crate::messages::{self, Messages, Uvdar, diagnostics, parts};
-use crate::ros::{Level, Time};
+use crate::heard::Heard;
+use crate::messages::{Messages, Uvdar, diagnostics, parts};
+use crate::ros::Time;
 use crate::sink_clock::SinkClock;
 
 /// Publishes what a run finds.
@@ -49,7 +50,7 @@ impl Ros2Sink {
     /// # Errors
     /// As [`Self::new`].
     pub fn hearing(mut self, topics: &MotionTopics, motion: Motion) -> std::result::Result<Self, Ros2Error> {
-        self.heard = Some(Heard::new(&mut self.node, topics, motion)?).filter(Heard::is_wanted);
+        self.heard = Some(topics.subscribe(&mut self.node, motion)?).filter(Heard::is_wanted);
         Ok(self)
     }
 
@@ -84,12 +85,7 @@ impl Sink for Ros2Sink {
 
     fn health(&mut self, health: &Health) -> Result<()> {
         let mut parts = parts(health);
-        parts.extend(self.heard.as_ref().map(|heard| messages::Health {
-            name: "own motion".to_owned(),
-            level: Level::Ok,
-            message: "is heard on ROS 2 topics".to_owned(),
-            values: heard.told(),
-        }));
+        parts.extend(self.heard.as_ref().map(|heard| heard.health("ROS 2 topics")));
         self.topics.tell_health(diagnostics(&parts, Time::from_nanoseconds(self.clock.now_ns())));
         Ok(())
     }

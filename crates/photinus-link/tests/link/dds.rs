@@ -11,7 +11,7 @@ use photinus_io::calibration::MountingFile;
 use photinus_link::messages::{Messages, Uvdar, Viewpoint};
 use photinus_link::ros;
 use photinus_link::ros2::{
-    Heard, ImageSource, MotionTopics, Node, PointSource, Publisher, Quality, Settings, Topics, UvdarTopics,
+    ImageSource, MotionTopics, Node, PointSource, Publisher, Quality, Settings, Topics, UvdarTopics,
 };
 use photinus_link::topics;
 use photinus_run::Entry;
@@ -22,25 +22,13 @@ use rand_pcg::Pcg64;
 use rand_pcg::rand_core::Rng;
 use serde_json::{Value, json};
 
-use crate::read_by_others::{flat, health};
+use crate::read_by_others::{definitions, flat, health};
 use crate::sample;
 
 const SCRIPT: &str = concat!(include_str!("wire_types.py"), include_str!("dds_listener.py"));
 /// Domains that nobody uses: two runs of this test at once have different ones.
 const FIRST_DOMAIN: u32 = 20;
 const DOMAINS: u32 = 40;
-
-/// Every definition in the schema of a message, by its name.
-fn definitions(name: &str) -> Vec<(String, String)> {
-    let schema = ros::schema(name).expect("it is known");
-    let rule = format!("{}\nMSG: ", "=".repeat(80));
-    let mut parts = schema.split(&rule);
-    let own = (name.to_owned(), parts.next().expect("its own").to_owned());
-    let others = parts.map(|part| part.split_once('\n').expect("a name and a text"));
-    let others = others.map(|(name, text)| (name.to_owned(), text.to_owned()));
-    let long = |(name, text): (String, String)| (name.replacen('/', "/msg/", 1), text);
-    std::iter::once(own).chain(others).map(long).collect()
-}
 
 #[test]
 fn cyclonedds_hears_every_topic_and_its_images_are_heard() {
@@ -67,8 +55,13 @@ fn cyclonedds_hears_every_topic_and_its_images_are_heard() {
         {}
     });
     let motion = Motion::default();
-    let topics_of_motion = MotionTopics { imu: Some("/imu".to_owned()), odometry: Some("/odom".to_owned()) };
-    let mut own = Heard::new(&mut node, &topics_of_motion, motion.clone()).expect("names");
+    let topics_of_motion =
+        MotionTopics { imu: Some("/imu".to_owned()), odometry: Some("/odom".to_owned()), tf: None };
+    let only_tf =
+        MotionTopics { tf: Some(["odom", "uav1/base_link"].map(str::to_owned)), ..MotionTopics::default() };
+    let motion_of_tf = Motion::default();
+    let mut of_tf = only_tf.subscribe(&mut node, motion_of_tf.clone()).expect("names");
+    let mut own = topics_of_motion.subscribe(&mut node, motion.clone()).expect("names");
     let uvdar = UvdarTopics::new(&mut node, ["left"]).expect("names");
 
     let view = Viewpoint::new(Some("left"), Some(1e-3));
@@ -121,13 +114,20 @@ fn cyclonedds_hears_every_topic_and_its_images_are_heard() {
     let (end, mut image) = (Instant::now() + Duration::from_secs(60), None);
     let mut line = None;
     let (mut spot, mut clock_s) = (None, 50.0);
-    while (line.is_none() || image.is_none() || spot.is_none() || motion.attitudes().is_empty())
+    while (line.is_none()
+        || image.is_none()
+        || spot.is_none()
+        || motion.attitudes().is_empty()
+        || motion_of_tf.attitudes().is_empty())
         && Instant::now() < end
     {
         // Frames of a clock that is another than that of the stamps, and goes alike.
         clock_s += 0.02;
-        own.frame(&Entry { taken: Some(Instant::now()), ..Entry::of_spots(0, clock_s, "", Vec::new()) });
-        own.hear();
+        for heard in [&mut own, &mut of_tf] {
+            heard
+                .frame(&Entry { taken: Some(Instant::now()), ..Entry::of_spots(0, clock_s, "", Vec::new()) });
+            heard.hear();
+        }
         spot = spot.or_else(|| spots.try_recv().ok());
         let messages = Messages::of(&record, &view);
         assert_eq!(uvdar.tell(0, Uvdar::of(&record, &messages, &view, [752, 480])), 0);
@@ -136,8 +136,8 @@ fn cyclonedds_hears_every_topic_and_its_images_are_heard() {
         image = image.or_else(|| images.try_recv().ok());
         match heard.try_recv() {
             Ok(said) => line = said,
-            Err(TryRecvError::Empty) => {}
-            Err(TryRecvError::Disconnected) => break,
+            Err(TryRecvError::Disconnected) if line.is_none() => break,
+            Err(_) => {}
         }
         std::thread::sleep(Duration::from_millis(20));
     }
@@ -184,7 +184,10 @@ fn cyclonedds_hears_every_topic_and_its_images_are_heard() {
     for time_s in [rate_s, attitude_s] {
         assert!((40.0..=clock_s + 1.0).contains(&time_s), "{time_s} of {clock_s}");
     }
-    assert!(own.told().iter().any(|(name, _)| name == "clock_offset_ms"), "{:?}", own.told());
+    let (_, of_tf) = motion_of_tf.attitudes()[0];
+    assert!(of_tf.angle_to(&attitude) < 1e-9 && motion_of_tf.rates().is_empty());
+    let told = own.health("topics");
+    assert!(told.values.iter().any(|(name, _)| name == "clock_offset_ms"), "{told:?}");
     for (topic, message) in expected.as_object().expect("topics") {
         assert_eq!(&read[topic], message, "{topic}");
     }

@@ -33,6 +33,8 @@ odometries = DataWriter(participant, Topic(participant, "rt/odom", wire.of("nav_
 points = DataWriter(
     participant, Topic(participant, "rt/points", wire.of("uvdar_core/msg/ImagePointsWithCovariancesStamped"), qos=sensor), qos=sensor
 )
+# Who listens to /tf hears this, too.
+transforms = DataWriter(participant, Topic(participant, "rt/tf", wire.of("tf2_msgs/msg/TFMessage"), qos=reliable), qos=reliable)
 vector, turn = wire.of("geometry_msgs/msg/Vector3"), wire.of("geometry_msgs/msg/Quaternion")
 began = time.monotonic()
 
@@ -58,6 +60,11 @@ def write_motion():
         pose=wire.of("geometry_msgs/msg/PoseWithCovariance")(pose=pose, covariance=36 * [0.0]),
         twist=wire.of("geometry_msgs/msg/TwistWithCovariance")(twist=twist, covariance=36 * [0.0]),
     ))
+    transform = wire.of("geometry_msgs/msg/TransformStamped")(
+        header=wire.of("std_msgs/msg/Header")(stamp=stamped().stamp, frame_id="odom"), child_frame_id="uav1/base_link",
+        transform=wire.of("geometry_msgs/msg/Transform")(translation=vector(x=1.0, y=2.0, z=3.0), rotation=turn(x=0.6, y=0.0, z=0.0, w=0.8)),
+    )
+    transforms.write(wire.of("tf2_msgs/msg/TFMessage")(transforms=[transform]))
     point = wire.of("uvdar_core/msg/Point2DWithCovariance")(
         x=20.5, y=30.25, covariance_00=1.0, covariance_01=0.0, covariance_10=0.0, covariance_11=1.0
     )
@@ -72,7 +79,8 @@ while len(heard) < len(readers) and time.monotonic() < end:
     write_motion()
     for name, reader in readers.items():
         for message in reader.take(10):
-            if name not in heard:
+            own = name == "/tf" and message.transforms[0].header.frame_id == "odom"
+            if name not in heard and not own:
                 heard[name] = plain(message)
     time.sleep(0.02)
 print(json.dumps(heard), flush=True)

@@ -2,10 +2,13 @@
 
 #[cfg(feature = "mavlink")]
 mod autopilot;
+#[cfg(feature = "recording")]
+mod bag_images;
 #[cfg(all(feature = "ros2", feature = "recording"))]
 mod dds;
 #[cfg(feature = "recording")]
 mod killed;
+mod malformed;
 #[cfg(feature = "recording")]
 mod motion;
 #[cfg(feature = "recording")]
@@ -17,3 +20,5 @@ mod recording;
 mod sample;
 #[cfg(feature = "recording")]
 mod sinks;
+#[cfg(all(feature = "zenoh", feature = "recording"))]
+mod zenoh;

@@ -12,10 +12,23 @@ use serde_json::{Value, json};
 
 use crate::sample;
 
-const SCRIPT: &str = include_str!("read_recording.py");
+const SCRIPT: &str = concat!(include_str!("plain.py"), include_str!("read_recording.py"));
 
 fn view() -> Viewpoint {
     Viewpoint::new(Some("left"), Some(1e-3))
+}
+
+/// Every definition in the schema of a message, by its name.
+#[cfg(any(feature = "ros2", feature = "zenoh"))]
+pub(crate) fn definitions(name: &str) -> Vec<(String, String)> {
+    let schema = photinus_link::ros::schema(name).expect("it is known");
+    let rule = format!("{}\nMSG: ", "=".repeat(80));
+    let mut parts = schema.split(&rule);
+    let own = (name.to_owned(), parts.next().expect("its own").to_owned());
+    let others = parts.map(|part| part.split_once('\n').expect("a name and a text"));
+    let others = others.map(|(name, text)| (name.to_owned(), text.to_owned()));
+    let long = |(name, text): (String, String)| (name.replacen('/', "/msg/", 1), text);
+    std::iter::once(own).chain(others).map(long).collect()
 }
 
 pub(crate) fn health() -> DiagnosticArray {

@@ -13,7 +13,7 @@ use photinus_run::health::{Health, Level, Notice};
 
 use crate::sample;
 
-fn camera() -> Camera {
+pub(crate) fn camera() -> Camera {
     let lens = Pinhole::new([300.0, 300.0], Pixel::new(15.5, 15.5), [0.0; 6], [0.0; 2]).expect("a lens");
     let mounting = MountingFile {
         body_from_camera: UnitQuaternion::identity(),
@@ -29,7 +29,7 @@ fn camera() -> Camera {
     }
 }
 
-fn table<T: serde::de::DeserializeOwned>(text: &str) -> T {
+pub(crate) fn table<T: serde::de::DeserializeOwned>(text: &str) -> T {
     toml::from_str(text).unwrap_or_else(|error| panic!("{text}: {error}"))
 }
 

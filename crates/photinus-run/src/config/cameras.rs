@@ -26,8 +26,27 @@ use crate::{HostClock, View};
 /// The exposure of frames of which nobody says it, us.
 const EXPOSURE_US: f64 = 1000.0;
 
-/// Opens a topic of ROS 2 with images, or with spots where that is said; `None` where nothing is linked that can.
-pub type Linked<'a> = &'a dyn Fn(&str, bool) -> Option<Opener>;
+/// Opens a topic with images, or with spots where that is said; `None` where nothing is linked that can.
+pub type Linked<'a> = &'a dyn Fn(Topic<'_>, bool) -> Option<Opener>;
+
+/// Where messages of others come from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Topic<'a> {
+    /// A topic of ROS 2.
+    Ros2(&'a str),
+    /// A key of Zenoh.
+    Zenoh(&'a str),
+}
+
+impl Topic<'_> {
+    /// The feature, and the table, of what opens it.
+    fn link(self) -> &'static str {
+        match self {
+            Topic::Ros2(_) => "ros2",
+            Topic::Zenoh(_) => "zenoh",
+        }
+    }
+}
 
 /// A camera of the configuration, with the dataset that it is of.
 struct Named<'a> {
@@ -53,7 +72,7 @@ impl Named<'_> {
 }
 
 impl Config {
-    /// The cameras, ready to run. `motion` is what arrives of the vehicle's own motion; `linked` opens topics of ROS 2, where it can; `note` takes what
+    /// The cameras, ready to run. `motion` is what arrives of the vehicle's own motion; `linked` opens topics of others, where it can; `note` takes what
     /// was read otherwise than it stands in a file.
     ///
     /// # Errors
@@ -209,15 +228,18 @@ impl Config {
                 .map_err(|error| refuse(error.to_string()))?;
             view = view.following(watch);
         }
-        let source = match (&keys.source.v4l2, &keys.source.ros2) {
+        let source = match (&keys.source.v4l2, keys.source.topic()) {
             (Some(path), _) => self.v4l2(named, path, [camera.width(), camera.height()], clock)?,
             (_, Some(topic)) => linked(topic, keys.source.spots).ok_or_else(|| {
-                let advice = "build with --features ros2, or name another source";
-                self.refuse(
-                    &format!("camera {}", keys.name),
-                    "topics of ROS 2 are not in this program",
-                    advice,
-                )
+                let link = topic.link();
+                let reason = format!("nothing opens messages of {link}");
+                let advice = match topic {
+                    Topic::Ros2(_) => "build with --features ros2, or name another source",
+                    Topic::Zenoh(_) => {
+                        "build with --features zenoh and add the table [zenoh], or name another source"
+                    }
+                };
+                self.refuse(&format!("camera {}", keys.name), &reason, advice)
             })?,
             _ => self.opener(named, exposure_us, (clock, start_s)),
         };

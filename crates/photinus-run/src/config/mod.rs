@@ -19,7 +19,7 @@ use photinus_io::video::RawFormat;
 use photinus_io::{Cause, Error, Place, Result, table, whole};
 use serde::Deserialize;
 
-pub use cameras::Linked;
+pub use cameras::{Linked, Topic};
 
 use crate::exposure::Wanted;
 use crate::live::Pace;
@@ -97,11 +97,21 @@ struct SourceKeys {
     spots: bool,
     /// A topic of ROS 2.
     ros2: Option<String>,
+    /// A key of Zenoh.
+    zenoh: Option<String>,
     v4l2: Option<PathBuf>,
     /// How a V4L2 camera lays out its pixels.
     format: Option<String>,
     rate_hz: Option<f64>,
     gain: Option<i64>,
+}
+
+impl SourceKeys {
+    /// Where messages of others are taken from, if they are.
+    fn topic(&self) -> Option<Topic<'_>> {
+        let of_zenoh = || self.zenoh.as_deref().map(Topic::Zenoh);
+        self.ros2.as_deref().map(Topic::Ros2).or_else(of_zenoh)
+    }
 }
 
 #[derive(Clone, Copy, Debug, Deserialize)]
@@ -347,7 +357,7 @@ impl Config {
 
     fn check_source(&self, source: &SourceKeys, key: &str) -> Result<()> {
         let SourceKeys { dataset, camera, repeat, command, stdin, tcp, unix, raw, times, spots, .. } = source;
-        let SourceKeys { ros2, v4l2, format, rate_hz, gain, .. } = source;
+        let SourceKeys { ros2, zenoh, v4l2, format, rate_hz, gain, .. } = source;
         let is_stream = command.is_some() || *stdin == Some(true) || tcp.is_some() || unix.is_some();
         let kinds = [
             dataset.is_some(),
@@ -357,24 +367,25 @@ impl Config {
             unix.is_some(),
             v4l2.is_some(),
             ros2.is_some(),
+            zenoh.is_some(),
         ];
         if kinds.into_iter().filter(|there| *there).count() != 1 {
             return Err(self.refuse(
                 key,
                 "it needs exactly one source",
-                "give one of dataset, command, stdin = true, tcp, unix, v4l2, ros2",
+                "give one of dataset, command, stdin = true, tcp, unix, v4l2, ros2, zenoh",
             ));
         }
         let of_dataset = camera.is_some() || *repeat;
         let of_stream = raw.is_some() || times.is_some();
-        let is_lost = *spots && !is_stream && ros2.is_none();
+        let is_lost = *spots && !is_stream && source.topic().is_none();
         let of_v4l2 = format.is_some() || rate_hz.is_some() || gain.is_some();
         if of_dataset && dataset.is_none() || of_stream && !is_stream || of_v4l2 && v4l2.is_none() || is_lost
         {
             return Err(self.refuse(
                 key,
                 "these keys do not go together",
-                "`camera` and `repeat` are of a dataset, `raw` and `times` of a stream, `spots` of a stream or of ros2, `format`, `rate_hz` and `gain` of v4l2",
+                "`camera` and `repeat` are of a dataset, `raw` and `times` of a stream, `spots` of a stream, ros2 or zenoh, `format`, `rate_hz` and `gain` of v4l2",
             ));
         }
         if *spots && raw.is_some() {

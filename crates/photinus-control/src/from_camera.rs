@@ -33,8 +33,10 @@ impl Held {
         identity: Option<u32>,
     ) -> Seen {
         let near_m = neighbour.distance.bounds.min_m();
+        let mut spot_px = None;
         let around_rad = within_rad(radius_m, near_m) + within_rad(self.camera_m.norm(), near_m);
         let bound_rad = sightings
+            .inspect(|sighting| spot_px = spot_px.max(Some(sighting.spot.area_px)))
             .map(|sighting| neighbour.bearing.angle_to(&sighting.bearing) + sighting.bound_rad + around_rad)
             .fold(core::f64::consts::PI, f64::min);
         let turn = self.level_from_camera.into_inner();
@@ -56,6 +58,7 @@ impl Held {
             velocity_m_s: track.map(|track| turned(track.velocity_m_s, track.velocity_covariance_m2_s2)),
             heading: None,
             probability: track.map_or(neighbour.probability, |track| track.existence),
+            spot_px: spot_px.map(f64::from),
             age_s: 0.0,
         }
     }

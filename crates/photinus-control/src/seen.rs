@@ -52,6 +52,8 @@ pub struct Seen {
     pub heading: Option<Heading>,
     /// How likely it exists, 0 to 1.
     pub probability: f64,
+    /// Pixels of its largest spot, in the frame that showed it last: the founding paper's S.
+    pub spot_px: Option<f64>,
     /// Time since it was last seen, s.
     pub age_s: f64,
 }

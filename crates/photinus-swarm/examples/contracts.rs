@@ -1,4 +1,4 @@
-//! Carried scenarios with the safety layer flown under many seeds: which assumptions of its proof were kept, a table of docs/swarm.md.
+//! Carried scenarios with the safety layer flown under many seeds, and the same without it: which assumptions of its proof were kept, a table of docs/swarm.md.
 //!
 //! ```text
 //! cargo run --release -p photinus-swarm --example contracts -- GRADE SEEDS [SCENARIO...]
@@ -20,8 +20,8 @@ fn main() -> Result<()> {
     };
     let seeds: usize = words.get(1).and_then(|word| word.parse().ok()).unwrap_or(10);
     println!(
-        "| scenario | perception | flights | collisions | with obstacles | flights where the proof applied | collisions there | proven, % | braking, % | slow, % | too fast | velocity off | strayed | farthest stray, m | bounds broken | unseen near | smallest distance, m | mean speed, m/s |\n|{}",
-        "---|".repeat(18)
+        "| scenario | perception | flights | collisions | with obstacles | flights where the proof applied | collisions there | proven, % | braking, % | slow, % | too fast | velocity off | strayed | farthest stray, m | bounds broken | held broken | unseen near | smallest distance, m | mean speed, m/s |\n|{}",
+        "---|".repeat(19)
     );
     let wanted = |name: &str| words.len() < 3 || words[2..].iter().any(|word| word == name);
     for carried in CARRIED.iter().filter(|carried| wanted(carried.name)) {
@@ -29,8 +29,14 @@ fn main() -> Result<()> {
         if scenario.vehicles.iter().all(|vehicle| vehicle.safety.is_none()) {
             continue;
         }
-        let run = Run::new(scenario, carried.name, grade);
-        println!("{}", row(carried.name, grade, &run.monte_carlo(seeds, 2, |_| true)?));
+        let mut bare = scenario.clone();
+        bare.vehicles.iter_mut().for_each(|vehicle| vehicle.safety = None);
+        for (scenario, name) in
+            [(scenario, carried.name.to_owned()), (bare, format!("{}, no layer", carried.name))]
+        {
+            let run = Run::new(scenario, carried.name, grade);
+            println!("{}", row(&name, grade, &run.monte_carlo(seeds, 2, |_| true)?));
+        }
     }
     Ok(())
 }
@@ -47,7 +53,7 @@ fn row(name: &str, grade: Grade, flights: &[Metrics]) -> String {
     let smallest_m = flights.iter().filter_map(|m| m.smallest_distance_m).fold(f64::INFINITY, f64::min);
     let speed_m_s = flights.iter().map(|m| m.mean_speed_m_s).sum::<f64>() / flights.len().max(1) as f64;
     format!(
-        "| {name} | {} | {} | {} | {} | {} | {} | {:.1} | {:.1} | {:.1} | {} | {} | {} | {stray_m:.2} | {} | {} | {smallest_m:.2} | {speed_m_s:.2} |",
+        "| {name} | {} | {} | {} | {} | {} | {} | {:.1} | {:.1} | {:.1} | {} | {} | {} | {stray_m:.2} | {} | {} | {} | {smallest_m:.2} | {speed_m_s:.2} |",
         grade.name(),
         flights.len(),
         flights.iter().map(|m| m.collisions).sum::<usize>(),
@@ -61,6 +67,7 @@ fn row(name: &str, grade: Grade, flights: &[Metrics]) -> String {
         sum(|c| c.velocity_off),
         sum(|c| c.strayed),
         sum(|c| c.bounds_broken),
+        sum(|c| c.held_broken),
         sum(|c| c.unseen_near),
     )
 }

@@ -11,7 +11,7 @@ use super::{likely, limited};
 use crate::{Controller, OwnState, Seen, Setpoint};
 
 /// Which distance of a neighbour is compared with a margin.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum RangeTest {
     /// The paper's l_B; the strict near bound where the markers form no ring.
     Inline,
@@ -19,6 +19,12 @@ pub enum RangeTest {
     Perpendicular,
     /// The mean of the estimate; the near bound where there is none.
     Estimate,
+    /// The size of the largest spot, told as a distance: so large as one of `at_metre_px` pixels at 1 m that shrinks with the square of the distance.
+    /// Margins then are sizes of spots, and the exposure sets how far away spots are so large (part V.C). The near bound where no size is known.
+    SpotSize {
+        /// Pixels of a spot at 1 m; at an exposure at which that is so, margins are metres.
+        at_metre_px: f64,
+    },
 }
 
 impl RangeTest {
@@ -30,6 +36,9 @@ impl RangeTest {
             Self::Perpendicular => distance.perpendicular_m.unwrap_or(distance.bounds.max_m()),
             Self::Estimate => {
                 distance.estimate.map_or(distance.bounds.min_m(), |estimate| estimate.distance_m)
+            }
+            Self::SpotSize { at_metre_px } => {
+                seen.spot_px.map_or(distance.bounds.min_m(), |px| libm::sqrt(at_metre_px / px.max(1.0)))
             }
         }
     }

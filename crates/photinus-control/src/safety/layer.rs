@@ -7,7 +7,7 @@ use super::commitment::{Commitment, Underway};
 use super::lost::Lost;
 use super::places::{Ground, Place};
 use super::told::Told;
-use super::{Limits, LimitsError, Obstacle, Sector, Watch};
+use super::{Cone, Limits, LimitsError, Obstacle, Sector, Watch};
 use crate::{Motion, OwnState, Seen, Setpoint};
 
 /// How fast a wanted velocity is approached, 1/s.
@@ -53,13 +53,18 @@ impl Safety {
         Ok(Self { limits, told, lost, underway, slow_s: 0.0, places: Vec::new() })
     }
 
+    /// What is held of a track that is seen, or was and is taken to be still there: the sight that tells most, `age_s` ago.
+    pub fn held(&self, track: u64) -> Option<&Seen> {
+        self.lost.all().iter().find(|seen| seen.track == track)
+    }
+
     /// The limits of the group.
     pub fn limits(&self) -> &Limits {
         &self.limits
     }
 
     /// What to fly instead of `wanted`, `dt_s` after the last call. `watch` says where nobody is who is not in `seen`; a track that is
-    /// missing is taken to be still there for as long as the watch takes to tell absence. `obstacles`
+    /// missing is taken to be still there until the watch has looked anew wherever it can be. `obstacles`
     /// are what a map shows, in the level frame. A vehicle that does not know its own velocity is told to stand.
     pub fn guard(
         &mut self,
@@ -73,7 +78,9 @@ impl Safety {
         let dt_s = if dt_s >= 0.0 { dt_s } else { self.limits.period_s };
         let level_from_before = Rotation3::from_axis_angle(&Vector3::z_axis(), -own.turn_rad_s() * dt_s);
         self.told.pass(&level_from_before, dt_s, self.limits.delay_s);
-        self.lost.update(seen, &level_from_before, dt_s, watch.patience_s());
+        let limits = self.limits;
+        let closing_m_s = 2.0 * limits.speed_m_s;
+        self.lost.update(seen, &level_from_before, dt_s, closing_m_s, |old| is_gone(old, watch, &limits));
         let yaw_rate_rad_s = if wanted.yaw_rate_rad_s.is_finite() { wanted.yaw_rate_rad_s } else { 0.0 };
         let velocity = own.velocity_m_s.map(|v| v.mean).filter(|v| v.iter().all(|x| x.is_finite()));
         let Some(velocity) = velocity else {
@@ -111,7 +118,7 @@ impl Safety {
             self.places.push(Place::Neighbour { sector, grown_m: grown_m(age_s), parts });
         }
         let unknown =
-            watch.unknown().map(|(sector, age_s)| Place::Unknown { sector, grown_m: grown_m(age_s) });
+            watch.unknown().map(|(sector, age_s)| Place::Unknown { sector, grown_m: grown_m(age_s), parts });
         self.places.extend(unknown);
         self.places.extend(obstacles.iter().map(|body| Place::Body(*body)));
         self.places.retain(|place| place.matters(&limits));
@@ -169,6 +176,20 @@ impl Safety {
         }
         Some(if ground == Ground::Slow { Basis::Slow } else { Basis::Proven })
     }
+}
+
+/// Whether the watch speaks for one who is not seen any more: it has looked anew wherever that one can be by now.
+fn is_gone(old: &Seen, watch: &Watch, limits: &Limits) -> bool {
+    if old.age_s.is_nan() {
+        return true;
+    }
+    if old.age_s <= watch.patience_s() {
+        return false;
+    }
+    let (near_m, moved_m) = (old.distance.bounds.min_m(), 2.0 * limits.speed_m_s * old.age_s);
+    let turned_rad = if moved_m < near_m { libm::asin(moved_m / near_m) } else { core::f64::consts::PI };
+    let cone = Cone { axis: old.bearing, half_angle_rad: bound_rad(old) + turned_rad };
+    watch.is_newer(&cone, old.age_s)
 }
 
 /// How far a neighbour's direction is from its bearing, rad: anywhere, where that is no number.

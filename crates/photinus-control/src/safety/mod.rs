@@ -14,6 +14,7 @@ mod lost;
 mod obstacle;
 mod places;
 mod sector;
+mod shadow;
 mod told;
 mod watch;
 
@@ -21,4 +22,5 @@ pub use layer::{Basis, Guarded, Safety};
 pub use limits::{Limits, LimitsError};
 pub use obstacle::Obstacle;
 pub use sector::Sector;
+pub use shadow::Shadow;
 pub use watch::{Cone, Detection, Watch};

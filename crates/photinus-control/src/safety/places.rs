@@ -8,8 +8,8 @@ use super::{Limits, Obstacle, Sector};
 pub(super) enum Place {
     /// A neighbour that was seen is in the sector grown by `grown_m`; the vehicle may part from it slowly where `parts`.
     Neighbour { sector: Sector, grown_m: f64, parts: bool },
-    /// Somebody may be in the sector grown by `grown_m`.
-    Unknown { sector: Sector, grown_m: f64 },
+    /// Somebody may be in the sector grown by `grown_m`; the vehicle may part from it slowly where `parts`.
+    Unknown { sector: Sector, grown_m: f64, parts: bool },
     /// A body of the map.
     Body(Obstacle),
 }
@@ -28,7 +28,7 @@ impl Place {
         let reach = limits.longest_reach_m() + limits.longest_stray_m();
         // What is no number matters.
         let is_far = match self {
-            Self::Neighbour { sector, grown_m, .. } | Self::Unknown { sector, grown_m } => {
+            Self::Neighbour { sector, grown_m, .. } | Self::Unknown { sector, grown_m, .. } => {
                 sector.distances.min_m() - grown_m >= limits.clearance_m() + reach
             }
             Self::Body(body) => body.distance_m(&nalgebra::Vector3::zeros()) >= limits.radius_m + reach,
@@ -46,8 +46,9 @@ impl Place {
             Self::Neighbour { sector, grown_m, parts } => said(
                 is_clear(limits, path, sector, *grown_m) || *parts && leaves(limits, path, sector, *grown_m),
             ),
-            Self::Unknown { sector, grown_m } => {
-                if is_clear(limits, path, sector, *grown_m) {
+            Self::Unknown { sector, grown_m, parts } => {
+                let parts = *parts && leaves(limits, path, sector, *grown_m);
+                if parts || is_clear(limits, path, sector, *grown_m) {
                     Ground::Clear
                 } else if path.progress_m(&sector.axis) <= slow_reach_m(limits) {
                     Ground::Slow

@@ -7,13 +7,17 @@
 use nalgebra::{Rotation3, UnitVector3, Vector3};
 use photinus::ranging::Interval;
 
-use super::Sector;
+use super::{Sector, Shadow};
 
 /// Cells along each edge of a cube's faces.
 const EDGE: usize = 6;
 const CELLS: usize = 6 * EDGE * EDGE;
 /// Parts along each edge of a cell where eyes overlap.
 const PARTS: usize = 6;
+/// Where something hides what is behind it, absence is known to a multiple of that, m.
+const STEP_M: f64 = 0.5;
+/// Nobody watches farther, m.
+const FARTHEST_M: f64 = 500.0;
 
 /// All directions within an angle of an axis, in the level frame: what a camera covers, or what hides behind the own airframe.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,12 +37,19 @@ pub struct Detection {
     pub probability: f64,
 }
 
-/// A part of the directions, in axes that do not turn.
+/// A distance, and how many looks in a row it takes to know that nobody is nearer.
 #[derive(Clone, Copy, Debug, PartialEq)]
+struct Ring {
+    range_m: f64,
+    looks: u32,
+}
+
+/// A part of the directions, in axes that do not turn.
+#[derive(Clone, Debug, PartialEq)]
 struct Cell {
     cone: Cone,
-    /// In how many looks in a row all of it was watched.
-    looks: u32,
+    /// In how many looks in a row all of it was watched as far as each ring.
+    looks: Vec<u32>,
     /// Nobody was nearer than that, so long ago.
     empty_m: f64,
     age_s: f64,
@@ -48,8 +59,7 @@ struct Cell {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Watch {
     cells: Vec<Cell>,
-    /// Range and how many looks it takes.
-    ranges: Vec<(f64, u32)>,
+    rings: Vec<Ring>,
     period_s: f64,
     closing_m_s: f64,
     /// How far the level frame has turned since the beginning, rad.
@@ -60,20 +70,17 @@ impl Watch {
     /// Nothing is known yet. Frames come every `period_s` or faster, vehicles close in at `closing_m_s` or slower, and somebody is
     /// missed for good with probability `missed` at the most.
     pub fn new(detections: &[Detection], missed: f64, period_s: f64, closing_m_s: f64) -> Self {
-        let looks = |d: &Detection| -> Option<(f64, u32)> {
+        let looks = |d: &Detection| -> Option<Ring> {
             let p = d.probability.clamp(0.0, 1.0);
             // Written so that what is no number gives no knowledge.
             let looks = if p >= 1.0 { 1.0 } else { libm::ceil(libm::log(missed) / libm::log1p(-p)).max(1.0) };
-            (p > 0.0 && d.range_m > 0.0 && looks < 1e6).then_some((d.range_m, looks as u32))
+            (p > 0.0 && d.range_m > 0.0 && looks < 1e6)
+                .then_some(Ring { range_m: d.range_m.min(FARTHEST_M), looks: looks as u32 })
         };
-        let cells = (0..CELLS).map(|k| Cell { cone: cone(k), looks: 0, empty_m: 0.0, age_s: 0.0 }).collect();
-        Self {
-            cells,
-            ranges: detections.iter().filter_map(looks).collect(),
-            period_s,
-            closing_m_s,
-            turned_rad: 0.0,
-        }
+        let rings = rings(&detections.iter().filter_map(looks).collect::<Vec<_>>());
+        let looks = vec![0; rings.len()];
+        let cell = |k| Cell { cone: cone(k), looks: looks.clone(), empty_m: 0.0, age_s: 0.0 };
+        Self { cells: (0..CELLS).map(cell).collect(), rings, period_s, closing_m_s, turned_rad: 0.0 }
     }
 
     /// Somebody else answers for it that nobody unseen is nearer than `range_m`, anywhere.
@@ -84,27 +91,33 @@ impl Watch {
     }
 
     /// Another frame of all cameras, `dt_s` after the last and `age_s` old, while the level frame turned by `turned_rad`: what
-    /// `eyes` cover and nothing of `dead` hides was watched.
-    pub fn look(&mut self, eyes: &[Cone], dead: &[Cone], turned_rad: f64, dt_s: f64, age_s: f64) {
+    /// `eyes` cover was watched, as far as nothing is `hidden`.
+    pub fn look(&mut self, eyes: &[Cone], hidden: &[Shadow], turned_rad: f64, dt_s: f64, age_s: f64) {
         self.turned_rad += turned_rad;
         let still_from_level = Rotation3::from_axis_angle(&Vector3::z_axis(), self.turned_rad);
         let off = |other: &Cone, cone: &Cone| angle_rad(&(still_from_level * other.axis), &cone.axis);
         let covered =
             |cone: &Cone| eyes.iter().any(|eye| off(eye, cone) + cone.half_angle_rad <= eye.half_angle_rad);
-        let touched = |by: &[Cone], cone: &Cone| {
-            by.iter().any(|other| off(other, cone) < other.half_angle_rad + cone.half_angle_rad)
+        let touched = |cone: &Cone| {
+            eyes.iter().any(|other| off(other, cone) < other.half_angle_rad + cone.half_angle_rad)
         };
+        let level_from_still = still_from_level.inverse();
         for (index, cell) in self.cells.iter_mut().enumerate() {
             cell.age_s += dt_s;
             // Two eyes may cover a cell together, part by part.
             let is_covered =
-                covered(&cell.cone) || touched(eyes, &cell.cone) && parts(index).all(|part| covered(&part));
-            let watched = is_covered && !touched(dead, &cell.cone);
-            cell.looks = if watched { cell.looks.saturating_add(1) } else { 0 };
-            for &(range_m, looks) in self.ranges.iter().filter(|(_, looks)| *looks <= cell.looks) {
+                covered(&cell.cone) || touched(&cell.cone) && parts(index).all(|part| covered(&part));
+            let here = Cone { axis: level_from_still * cell.cone.axis, ..cell.cone };
+            let before = hidden.iter().filter(|shadow| shadow.touches(&here)).map(Shadow::starts_m);
+            let watched_m = if is_covered { before.fold(f64::INFINITY, f64::min) } else { 0.0 };
+            for (Ring { range_m, looks }, in_a_row) in self.rings.iter().zip(&mut cell.looks) {
+                *in_a_row = if *range_m <= watched_m { in_a_row.saturating_add(1) } else { 0 };
+                if *in_a_row < *looks {
+                    continue;
+                }
                 let since_s = age_s + f64::from(looks - 1) * self.period_s;
                 if range_m - self.closing_m_s * since_s > cell.empty_m - self.closing_m_s * cell.age_s {
-                    (cell.empty_m, cell.age_s) = (range_m, since_s);
+                    (cell.empty_m, cell.age_s) = (*range_m, since_s);
                 }
             }
         }
@@ -112,7 +125,18 @@ impl Watch {
 
     /// How long it takes to know that somebody is gone, s.
     pub fn patience_s(&self) -> f64 {
-        self.ranges.iter().map(|(_, looks)| f64::from(*looks) * self.period_s).fold(0.0, f64::max)
+        self.rings.iter().map(|ring| f64::from(ring.looks) * self.period_s).fold(0.0, f64::max)
+    }
+
+    /// Whether all that is known of the directions of a cone, in the level frame, was seen less than `age_s` ago: somebody who was told of then, and not since,
+    /// is none of those whose absence is known from before.
+    pub(super) fn is_newer(&self, cone: &Cone, age_s: f64) -> bool {
+        let still_from_level = Rotation3::from_axis_angle(&Vector3::z_axis(), self.turned_rad);
+        let axis = still_from_level * cone.axis;
+        self.cells.iter().all(|cell| {
+            let is_apart = angle_rad(&axis, &cell.cone.axis) > cone.half_angle_rad + cell.cone.half_angle_rad;
+            is_apart || cell.age_s < age_s || cell.empty_m <= self.closing_m_s * cell.age_s
+        })
     }
 
     /// How far nobody is in a direction of the level frame, m, whoever has come in since.
@@ -131,6 +155,17 @@ impl Watch {
             Some((Sector { axis, half_angle_rad: cell.cone.half_angle_rad, distances }, cell.age_s))
         })
     }
+}
+
+/// Rings at each range, and in steps within the farthest, with the fewest looks that tell as much; from near to far.
+fn rings(ranges: &[Ring]) -> Vec<Ring> {
+    let farthest_m = ranges.iter().map(|ring| ring.range_m).fold(0.0, f64::max);
+    let steps = (1..).map(|step| f64::from(step) * STEP_M).take_while(|range_m| *range_m < farthest_m);
+    let mut all: Vec<f64> = steps.chain(ranges.iter().map(|ring| ring.range_m)).collect();
+    all.sort_by(f64::total_cmp);
+    let looks =
+        |range_m: f64| ranges.iter().filter(|ring| ring.range_m >= range_m).map(|ring| ring.looks).min();
+    all.into_iter().filter_map(|range_m| Some(Ring { range_m, looks: looks(range_m)? })).collect()
 }
 
 /// The cone around a cell: face by face of a cube, line by line.
@@ -209,7 +244,7 @@ mod tests {
         let dead = Cone { axis: towards(0.0, 0.0, -1.0), half_angle_rad: 0.3 };
         let mut known = Vec::new();
         for _ in 0..30 {
-            watch.look(&[ahead], &[dead], 0.0, 0.1, 0.0);
+            watch.look(&[ahead], &[dead.into()], 0.0, 0.1, 0.0);
             known.push(watch.empty_m(&towards(1.0, 0.1, 0.1)));
         }
         assert!(known[1].abs() < 1e-12 && (known[2] - (5.0 - 4.0 * 0.2)).abs() < 1e-9, "{known:?}");
@@ -223,6 +258,28 @@ mod tests {
         watch.look(&[narrow], &[], core::f64::consts::FRAC_PI_2, 0.1, 0.0);
         assert!((watch.empty_m(&towards(0.0, -1.0, 0.1)) - (4.2 - 0.4)).abs() < 1e-9);
         assert!(watch.empty_m(&towards(-1.0, 0.0, 0.1)).abs() < 1e-12);
+    }
+
+    #[test]
+    fn behind_a_post_absence_is_known_as_far_as_the_post_and_from_before() {
+        let mut watch = Watch::new(&[Detection { range_m: 8.0, probability: 1.0 }], 1e-6, 0.1, 1.0);
+        let all = Cone { axis: towards(1.0, 0.0, 0.0), half_angle_rad: 4.0 };
+        let limits = crate::safety::Limits::small_multirotor();
+        let (from, to) = (Vector3::new(3.0, 0.0, -5.0), Vector3::new(3.0, 0.0, 5.0));
+        let body = crate::safety::Obstacle::Capsule { from, to, radius_m: 0.2 };
+        let post = Shadow::of_obstacle(&body, 0.0, &limits).unwrap();
+        let (ahead, aside) = (towards(1.0, 0.01, 0.01), towards(0.0, 1.0, 0.1));
+        // one who is hidden is 0.6 m or more from the middle of the post: at 3.5 m
+        watch.look(&[all], &[post], 0.0, 0.1, 0.0);
+        assert!((watch.empty_m(&ahead) - 3.5).abs() < 1e-9 && (watch.empty_m(&aside) - 8.0).abs() < 1e-9);
+        // what was seen before the post came in between is known still, and grows old
+        watch.look(&[all], &[], 0.0, 0.1, 0.0);
+        watch.look(&[all], &[post], 0.0, 0.1, 0.0);
+        assert!((watch.empty_m(&ahead) - 7.9).abs() < 1e-9, "{}", watch.empty_m(&ahead));
+        // that says nothing of one who was seen there later, and is not any more; beside the post nobody is left
+        let cone = |axis| Cone { axis, half_angle_rad: 0.01 };
+        assert!(!watch.is_newer(&cone(ahead), 0.05) && watch.is_newer(&cone(ahead), 0.15));
+        assert!(watch.is_newer(&cone(aside), 0.05));
     }
 
     #[test]

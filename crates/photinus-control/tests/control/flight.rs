@@ -242,6 +242,7 @@ impl Flight {
                 .then(|| Normal::exactly(level_from_world * (self.vehicles[j].v - self.vehicles[i].v))),
             heading: None,
             probability: 1.0,
+            spot_px: None,
             age_s: age_ticks as f64 * TICK_S,
         })
     }

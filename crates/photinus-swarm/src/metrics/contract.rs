@@ -1,8 +1,8 @@
 //! Whether the proof of the safety layer applied: every assumption of `docs/safety.md` checked against the truth, frame by frame.
 
 use nalgebra::{UnitQuaternion, UnitVector3, Vector3};
-use photinus_control::Motion;
-use photinus_control::safety::{Basis, Limits};
+use photinus_control::safety::{Basis, Limits, Sector};
+use photinus_control::{Motion, Seen};
 use serde::Serialize;
 
 use super::pairing::{Paired, level_from_world, pair};
@@ -35,6 +35,8 @@ pub struct Contract {
     pub largest_velocity_error_m_s: f64,
     /// A3: tells of the frame whose bounds of distance or direction the truth was outside of.
     pub bounds_broken: usize,
+    /// A3: what the layer held of a track, from an older frame, was not so of who is on it now: tracks that changed from one to another.
+    pub held_broken: usize,
     /// A4: somebody was where the layer took it for known that nobody is, neither seen nor remembered.
     pub unseen_near: usize,
     /// The nearest of them, m.
@@ -56,6 +58,7 @@ impl Contract {
             + self.strayed
             + self.velocity_off
             + self.bounds_broken
+            + self.held_broken
             + self.unseen_near
             + self.strangers
             + self.began_too_near
@@ -71,8 +74,8 @@ pub(super) struct Notary {
     /// Whether each has the layer and obeys it, so far.
     keeps: Vec<bool>,
     paths: Vec<Path>,
-    /// When each was last seen by each, s.
-    last_seen_s: Vec<Vec<f64>>,
+    /// The track on which each was last seen by each.
+    last_seen: Vec<Vec<Option<u64>>>,
 }
 
 impl Notary {
@@ -90,7 +93,7 @@ impl Notary {
             limits,
             keeps: vec![true; robots.len()],
             paths: robots.iter().map(|robot| Path::of_resting(robot.state.position_m)).collect(),
-            last_seen_s: vec![vec![f64::NEG_INFINITY; robots.len()]; robots.len()],
+            last_seen: vec![vec![None; robots.len()]; robots.len()],
         })
     }
 
@@ -143,11 +146,16 @@ impl Notary {
 
     /// A3 and A4.
     fn take_sight(&mut self, index: usize, world: &World, guard: &Guard) {
-        let (robots, now_s) = (world.robots(), world.time_s());
+        let robots = world.robots();
         let robot = &robots[index];
         for Paired { seen, target, truth_m } in pair(world, index) {
-            self.last_seen_s[index][target] = now_s;
             let told = &robot.seen[seen];
+            // who was on that track before is not any more
+            self.last_seen[index]
+                .iter_mut()
+                .filter(|track| **track == Some(told.track))
+                .for_each(|track| *track = None);
+            self.last_seen[index][target] = Some(told.track);
             let bounds = told.distance.bounds;
             // the last bit of a sum is no violation
             let slack_m = 1e-9 * truth_m.norm();
@@ -155,10 +163,14 @@ impl Notary {
                 && bounds.max_m() >= truth_m.norm() - slack_m
                 && told.bearing.angle(&truth_m) <= told.bearing_bound_rad + 1e-6;
             self.contract.bounds_broken += usize::from(told.age_s <= 0.0 && !is_within);
+            let held = guard.held(told.track).filter(|held| held.age_s > 0.0);
+            let is_there = held.is_none_or(|held| can_be(held, &truth_m, 2.0 * self.limits.speed_m_s));
+            self.contract.held_broken += usize::from(!is_there);
         }
         for (target, other) in robots.iter().enumerate().filter(|(target, _)| *target != index) {
             let way_m = level_from_world(robot) * (other.state.position_m - robot.state.position_m);
-            let is_remembered = now_s - self.last_seen_s[index][target] <= guard.patience_s();
+            let is_remembered =
+                self.last_seen[index][target].is_some_and(|track| guard.held(track).is_some());
             let Some(direction) = UnitVector3::try_new(way_m, 1e-9).filter(|_| !is_remembered) else {
                 continue;
             };
@@ -175,4 +187,14 @@ impl Notary {
         let proof_applied = self.contract.broken() == 0 && self.contract.slow == 0;
         Contract { proof_applied, ..self.contract }
     }
+}
+
+/// Whether somebody can be at a place who was seen so, where two close in at `closing_m_s` at the most.
+fn can_be(seen: &Seen, place_m: &Vector3<f64>, closing_m_s: f64) -> bool {
+    let sector = Sector {
+        axis: seen.bearing,
+        half_angle_rad: seen.bearing_bound_rad,
+        distances: seen.distance.bounds,
+    };
+    sector.distance_m(place_m) <= closing_m_s * seen.age_s + 1e-6
 }

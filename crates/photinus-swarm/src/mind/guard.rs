@@ -1,13 +1,14 @@
 //! `safety` of a group: the layer in front of a controller, and what it may take for granted.
 
 use nalgebra::{Rotation3, Unit, UnitQuaternion, UnitVector3, Vector3};
-use photinus_control::safety::{Basis, Cone, Detection, Limits, Obstacle as Body, Safety, Watch};
+use photinus_control::safety::{Basis, Cone, Detection, Limits, Obstacle as Body, Safety, Shadow, Watch};
 use photinus_control::{OwnState, Seen, Setpoint};
 use photinus_io::Result;
+use photinus_sim::occlusion::Solid;
 use photinus_sim::scene::Check;
 use serde::Deserialize;
 
-use crate::scenario::Mounted;
+use crate::scenario::{Kind, Mounted};
 use crate::world::Obstacle;
 
 /// `safety` as it stands.
@@ -113,6 +114,9 @@ pub struct Guard {
     eyes: Vec<Cone>,
     /// Cones that the scenario answers for, level frame.
     answered: Vec<Cone>,
+    /// How near a line of sight passes the middle of what hides, for it to be hidden, m: what is opaque of an airframe, and how far cameras are from the origin.
+    hides_m: f64,
+    lever_m: f64,
     obstacles: Vec<Obstacle>,
     /// How long ago its last set-point was that did not brake, s.
     braking_s: f64,
@@ -131,24 +135,27 @@ pub(crate) struct OnMap {
 
 impl Guard {
     /// The layer of a vehicle; `None` where the limits have no meaning.
-    pub(crate) fn new(
-        plan: &SafetyPlan,
-        (radius_m, period_s): (f64, f64),
-        cameras: &[Mounted],
-        obstacles: &[Obstacle],
-    ) -> Option<Self> {
-        let limits = Limits { radius_m, period_s, ..plan.limits };
+    pub(crate) fn new(plan: &SafetyPlan, kind: &Kind, period_s: f64, obstacles: &[Obstacle]) -> Option<Self> {
+        let limits = Limits { radius_m: kind.build.radius_m, period_s, ..plan.limits };
         let (watch, eyes, answered) = match plan.unseen {
             Unseen::EmptyTo(range_m) => (Watch::empty_to(range_m), Vec::new(), Vec::new()),
             Unseen::Watched { range_m, probability, missed, steep_rad } => {
                 let detection = Detection { range_m, probability };
                 let watch = Watch::new(&[detection], missed, period_s, 2.0 * limits.speed_m_s);
                 let steep = steep_rad.into_iter().flat_map(steep_cones).collect();
-                (watch, cameras.iter().flat_map(cones).collect(), steep)
+                (watch, kind.cameras.iter().flat_map(cones).collect(), steep)
             }
         };
+        let lever_m = kind
+            .cameras
+            .iter()
+            .map(|mounted| mounted.body_from_camera.translation.vector.norm())
+            .fold(0.0, f64::max);
+        let opaque_m = kind.solids.iter().map(Solid::reach_m).fold(0.0, f64::max);
         Some(Self {
             safety: Safety::new(limits).ok()?,
+            hides_m: opaque_m + lever_m,
+            lever_m,
             watch,
             eyes,
             answered,
@@ -172,11 +179,6 @@ impl Guard {
             axis: Unit::new_normalize(own.level_from_body * cone.axis.into_inner()),
             ..*cone
         };
-        // what the scenario answers for does not grow old
-        if !self.eyes.is_empty() {
-            let eyes: Vec<Cone> = self.eyes.iter().map(turned).chain(self.answered.iter().copied()).collect();
-            self.watch.look(&eyes, &[], own.turn_rad_s() * dt_s, dt_s, 0.0);
-        }
         let level = UnitQuaternion::from_scaled_axis(Vector3::z() * -on_map.heading_rad);
         let body = |obstacle: &Obstacle| Body::Capsule {
             from: level * (obstacle.from_m - on_map.position_m),
@@ -184,11 +186,33 @@ impl Guard {
             radius_m: obstacle.radius_m,
         };
         let bodies: Vec<Body> = self.obstacles.iter().map(body).collect();
+        // what the scenario answers for does not grow old
+        if !self.eyes.is_empty() {
+            let eyes: Vec<Cone> = self.eyes.iter().map(turned).chain(self.answered.iter().copied()).collect();
+            let limits = self.safety.limits();
+            let behind_bodies =
+                bodies.iter().filter_map(|body| Shadow::of_obstacle(body, self.lever_m, limits));
+            let behind_others = seen.iter().map(|seen| self.behind(seen, own, dt_s));
+            let hidden: Vec<Shadow> = behind_bodies.chain(behind_others).collect();
+            self.watch.look(&eyes, &hidden, own.turn_rad_s() * dt_s, dt_s, 0.0);
+        }
         let guarded = self.safety.guard(own, seen, &self.watch, &bodies, wanted, dt_s);
         self.basis = guarded.basis;
         self.braking_s = if guarded.basis == Basis::Braking { self.braking_s + dt_s } else { 0.0 };
         self.hold(own, on_map, &level)
             .map_or(guarded.setpoint, |hold| hold.turning(guarded.setpoint.yaw_rate_rad_s))
+    }
+
+    /// What a neighbour hides: by this frame, or by what the layer held of it where that tells more.
+    fn behind(&self, seen: &Seen, own: &OwnState, dt_s: f64) -> Shadow {
+        let limits = self.safety.limits();
+        let now = Shadow::of_neighbour(seen, self.hides_m, limits);
+        let now_from_before = Rotation3::from_axis_angle(&Vector3::z_axis(), -own.turn_rad_s() * dt_s);
+        let before = self.safety.held(seen.track).map(|held| {
+            let bearing = now_from_before * held.bearing;
+            Shadow::of_neighbour(&Seen { bearing, age_s: held.age_s + dt_s, ..*held }, self.hides_m, limits)
+        });
+        before.filter(|before| before.starts_m() > now.starts_m()).unwrap_or(now)
     }
 
     /// Back to where it stands, once it does: a velocity that is brought to nothing by an instrument with a bias is a slow drift.
@@ -219,9 +243,9 @@ impl Guard {
         self.watch.empty_m(direction)
     }
 
-    /// For how long it remembers who is not seen any more, s.
-    pub fn patience_s(&self) -> f64 {
-        self.watch.patience_s()
+    /// What it holds of a track that it sees, or takes to be still there.
+    pub fn held(&self, track: u64) -> Option<&Seen> {
+        self.safety.held(track)
     }
 }
 

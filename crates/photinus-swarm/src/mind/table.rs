@@ -70,6 +70,7 @@ pub(crate) enum RangeName {
     Inline,
     Perpendicular,
     Estimate,
+    SpotSize { at_metre_px: f64 },
 }
 
 fn inline() -> RangeName {
@@ -160,8 +161,8 @@ impl MindTable {
                 let usual =
                     Boids::new(numbers.positive("near_m", near_m)?, numbers.positive("far_m", far_m)?);
                 Plan::Boids(Boids {
-                    near_by: near_by.test(),
-                    far_by: far_by.test(),
+                    near_by: near_by.test(&numbers)?,
+                    far_by: far_by.test(&numbers)?,
                     alignment: match alignment {
                         Some(alignment) => check.share(&format!("{key}.boids.alignment"), alignment)?,
                         None => usual.alignment,
@@ -228,12 +229,15 @@ impl MindTable {
 }
 
 impl RangeName {
-    fn test(self) -> RangeTest {
-        match self {
+    fn test(self, numbers: &Numbers<'_>) -> Result<RangeTest> {
+        Ok(match self {
             Self::Inline => RangeTest::Inline,
             Self::Perpendicular => RangeTest::Perpendicular,
             Self::Estimate => RangeTest::Estimate,
-        }
+            Self::SpotSize { at_metre_px } => {
+                RangeTest::SpotSize { at_metre_px: numbers.positive("at_metre_px", at_metre_px)? }
+            }
+        })
     }
 }
 

@@ -18,6 +18,7 @@ pub(super) fn seen(mean: Vector3<f64>, covariance: Matrix3<f64>) -> Seen {
         velocity_m_s: None,
         heading: None,
         probability: 1.0,
+        spot_px: None,
         age_s: 0.0,
     }
 }

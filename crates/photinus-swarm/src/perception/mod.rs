@@ -29,7 +29,7 @@ pub use axes::{levelled, nees};
 pub use rendered::EyesError;
 pub use sight::{InView, in_view};
 pub use stand_in::Sampling;
-pub use stand_in::table::StandInTable;
+pub use stand_in::table::{Eyesight, StandInTable};
 
 use crate::scenario::{Kind, Scenario};
 use crate::vehicle::Own;

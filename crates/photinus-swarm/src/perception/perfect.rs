@@ -42,6 +42,7 @@ pub(super) fn exact(observer: usize, target: usize, moment: &Moment<'_>) -> Opti
         velocity_m_s: Some(Normal::exactly(body_from_world * (other.velocity_m_s - own.velocity_m_s))),
         heading: None,
         probability: 1.0,
+        spot_px: None,
         age_s: 0.0,
     })
 }

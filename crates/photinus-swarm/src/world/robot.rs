@@ -58,10 +58,10 @@ impl Robot {
             autopilot: Autopilot::default(),
             mind: vehicle.mind.mind(&Needs::of(scenario, index)),
             height_m: vehicle.height_m,
-            guard: vehicle.safety.as_ref().and_then(|plan| {
-                let sizes = (vehicle.kind.build.radius_m, scenario.period_s());
-                Guard::new(plan, sizes, &vehicle.kind.cameras, &scenario.obstacles)
-            }),
+            guard: vehicle
+                .safety
+                .as_ref()
+                .and_then(|plan| Guard::new(plan, &vehicle.kind, scenario.period_s(), &scenario.obstacles)),
             reached: 0,
             obeys: Setpoint::stand(),
             integral_m_s2: Vector3::zeros(),

@@ -7,7 +7,7 @@ use photinus::camera::Bearing;
 use photinus::locator::{self, Distance, Input, Located, Locator, Neighbour};
 use photinus::lookout::{Fleet, Glance, Lookout};
 use photinus::ranging::{Estimate, Interval};
-use photinus::tracking::{self, Track, Turned};
+use photinus::tracking::{self, Track, Tracked, Turned};
 use photinus_control::{Normal, Seen};
 use photinus_sim::background::Daylight;
 use photinus_sim::snapshot::{LedLight, Lit, Snapshot, Vehicle};
@@ -50,6 +50,7 @@ struct Followed {
     time_s: f64,
     distance: Distance,
     bearing_bound_rad: f64,
+    spot_px: Option<f64>,
 }
 
 impl Eye {
@@ -125,11 +126,12 @@ impl Eye {
         let tracked = self.lookout.tracked();
         self.followed.retain(|followed| tracked.tracks.iter().any(|track| track.id == followed.track));
         for track in &tracked.tracks {
-            let told = best_match(located, tracked.members(track)).map(|neighbour| Followed {
+            let told = own_match(located, track, tracked).map(|neighbour| Followed {
                 track: track.id,
                 time_s: moment.time_s,
                 distance: neighbour.distance,
                 bearing_bound_rad: bearing_bound_rad(neighbour, located, self.airframe_reach_m),
+                spot_px: largest_spot_px(neighbour, located),
             });
             let before = self.followed.iter_mut().find(|followed| followed.track == track.id);
             match (told, before) {
@@ -184,6 +186,7 @@ impl Eye {
             }),
             heading: None,
             probability: track.existence,
+            spot_px: last.and_then(|last| last.spot_px),
             age_s: last.map_or(0.0, |last| now_s - last.time_s),
         }
     }
@@ -239,12 +242,23 @@ fn leds(
     other.kind.airframe.leds().iter().zip(&other.powers).map(led).collect()
 }
 
-/// The located neighbour that shares most sightings with a track.
-fn best_match<'a>(located: &'a Located, members: &[usize]) -> Option<&'a Neighbour> {
-    let shared =
-        |neighbour: &Neighbour| neighbour.sightings.iter().filter(|member| members.contains(member)).count();
-    let best = located.neighbours.iter().max_by_key(|neighbour| shared(neighbour))?;
-    (shared(best) > 0).then_some(best)
+/// Pixels of the largest of a neighbour's spots.
+fn largest_spot_px(neighbour: &Neighbour, located: &Located) -> Option<f64> {
+    let areas = neighbour.sightings.iter().map(|&member| located.sightings[member].spot.area_px);
+    areas.max().map(f64::from)
+}
+
+/// The located neighbour that shares most sightings with a track; `None` where it has some of another track, too: then this frame took markers of two vehicles
+/// for those of one, and its bounds are of nobody.
+fn own_match<'a>(located: &'a Located, track: &Track, tracked: &Tracked) -> Option<&'a Neighbour> {
+    let shared = |neighbour: &Neighbour, track: &Track| {
+        let members = tracked.members(track);
+        neighbour.sightings.iter().filter(|member| members.contains(member)).count()
+    };
+    let best = located.neighbours.iter().max_by_key(|neighbour| shared(neighbour, track))?;
+    let is_of = |other: &Track| shared(best, other) > 0;
+    let is_of_two = tracked.tracks.iter().any(|other| other.id != track.id && is_of(other));
+    (is_of(track) && !is_of_two).then_some(best)
 }
 
 /// How far the true direction of the origin can be from the told one: past a marker's bearing by what that may be off, and by what the airframe spans at

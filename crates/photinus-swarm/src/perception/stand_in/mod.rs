@@ -4,6 +4,7 @@
 //! Ornstein and Uhlenbeck with the table's sigmas, so that they last as long as those of tracks do. docs/swarm.md compares it with rendered frames that it was not
 //! fitted to.
 
+mod fit;
 mod sampling;
 pub(crate) mod table;
 #[cfg(test)]
@@ -20,18 +21,16 @@ use super::perfect::exact;
 use super::sight::{InView, in_view};
 use super::{Looking, Moment};
 use crate::chance::{Chance, Use};
-use crate::scenario::{Codes, Scenario};
+use crate::scenario::Scenario;
 pub use sampling::Sampling;
-use table::{Cell, StandInTable};
+use table::{Cell, StandInTable, between};
 
 /// Eyes that a table stands in for.
 #[derive(Debug)]
 pub struct StandIn {
     table: Arc<StandInTable>,
     chance: Chance,
-    has_codes: bool,
-    /// The share of time in which LEDs shine.
-    lit: f64,
+    blinks: bool,
     period_s: f64,
     followed: Vec<Option<Followed>>,
     views: Vec<InView>,
@@ -47,7 +46,11 @@ struct Followed {
     fresh_s: f64,
     place: Vector3<f64>,
     velocity: Vector3<f64>,
-    bounds: [f64; 2],
+    /// How loose its bounds are.
+    bounds: Vector3<f64>,
+    /// Of the frame that showed it last: whether its bounds are broken, and the error of the size of its spot.
+    is_broken: bool,
+    spot: f64,
 }
 
 /// A phantom: a neighbour where no vehicle is.
@@ -68,8 +71,7 @@ impl StandIn {
         Self {
             table: Arc::clone(table),
             chance: Chance::new(scenario.seed, Use::Seeing, index as u64),
-            has_codes: scenario.codes.is_some(),
-            lit: scenario.codes.as_ref().map_or(1.0, lit),
+            blinks: scenario.codes.is_some(),
             period_s: scenario.period_s(),
             followed: vec![None; scenario.vehicles.len()],
             views: Vec::new(),
@@ -102,30 +104,30 @@ impl StandIn {
 
     /// Whether one who is in view is followed in this frame, and how its errors go on.
     fn follow(&mut self, view: &InView, now_s: f64) {
-        let Self { table, chance, period_s, lit, .. } = self;
-        let following = table.follows(view.light, view.markers);
-        let cell = table.errors(view.distance_m, view.markers);
-        let dies = 1.0 - libm::exp(-*period_s / following.lasts_s.max(*period_s));
-        // the share of a chain of two states is that of its rates
-        let share = following.share.clamp(0.0, 0.9999);
-        let begins = (dies * share / (1.0 - share)).min(1.0);
+        let Self { table, chance, period_s, .. } = self;
+        let sight = table.of(self.blinks);
+        let following = sight.follows(view.light, view.markers);
+        let cell = sight.errors(view.distance_m, view.markers);
+        let within = |time_s: f64| 1.0 - libm::exp(-*period_s / time_s);
         let draw = chance.uniform();
         let place = &mut self.followed[view.target];
         match place {
-            Some(_) if draw < dies => *place = None,
+            Some(_) if draw < within(following.lasts_s) => *place = None,
             Some(followed) => {
-                let keeps = |lasts_s: f64| libm::exp(-*period_s / lasts_s.max(1e-3));
-                let renew = |state: &mut Vector3<f64>, keeps: f64, draw: Vector3<f64>| {
+                let renew = |state: &mut Vector3<f64>, lasts_s: f64, draw: Vector3<f64>| {
+                    let keeps = 1.0 - within(lasts_s);
                     *state = *state * keeps + draw * (1.0 - keeps * keeps).sqrt();
                 };
-                renew(&mut followed.place, keeps(cell.range_lasts_s), chance.normals());
-                renew(&mut followed.velocity, keeps(VELOCITY_LASTS_S), chance.normals());
-                if chance.uniform() < cell.fresh * *lit {
+                renew(&mut followed.place, cell.range_lasts_s, chance.normals());
+                renew(&mut followed.velocity, VELOCITY_LASTS_S, chance.normals());
+                renew(&mut followed.bounds, cell.bounds_last_s, chance.normals());
+                if chance.uniform() < cell.fresh {
                     followed.fresh_s = now_s;
-                    followed.bounds = [chance.normal(), chance.normal()];
+                    followed.is_broken = chance.uniform() < cell.broken;
+                    followed.spot = chance.normal();
                 }
             }
-            None if draw < begins => {
+            None if draw < within(following.found_s) => {
                 self.next += 1;
                 *place = Some(Followed {
                     track: self.next,
@@ -133,7 +135,9 @@ impl StandIn {
                     fresh_s: now_s,
                     place: chance.normals(),
                     velocity: chance.normals(),
-                    bounds: [chance.normal(), chance.normal()],
+                    bounds: chance.normals(),
+                    is_broken: chance.uniform() < cell.broken,
+                    spot: chance.normal(),
                 });
             }
             None => {}
@@ -142,7 +146,7 @@ impl StandIn {
 
     /// The truth with the errors of one who is followed.
     fn blur(&self, truth: &Seen, followed: &Followed, view: &InView, now_s: f64) -> Seen {
-        let cell = self.table.errors(view.distance_m, view.markers);
+        let cell = self.table.of(self.blinks).errors(view.distance_m, view.markers);
         // from the vehicle's origin, as bounds are told, and not from the camera's
         let true_m = truth.distance.bounds.min_m();
         let [along, left, up] = axes(&truth.bearing);
@@ -151,11 +155,13 @@ impl StandIn {
         let direction = Unit::new_normalize(along + off);
         let mean = direction.into_inner() * (true_m * ratio);
         let covariance = told_covariance(cell, &mean);
+        let [unit_px, power, spot_sigma] = self.table.spot_px;
+        let spot_px = unit_px * libm::pow(view.light, power) * libm::exp(spot_sigma * followed.spot);
         let velocity = truth.velocity_m_s.map(|velocity| Normal {
             mean: velocity.mean + followed.velocity * cell.velocity_sigma_m_s,
             covariance: Matrix3::identity() * cell.velocity_sigma_told_m_s * cell.velocity_sigma_told_m_s,
         });
-        let named = self.has_codes && now_s - followed.since_s >= self.table.name_s;
+        let named = self.blinks && now_s - followed.since_s >= self.table.name_s;
         Seen {
             track: followed.track,
             identity: truth.identity.filter(|_| named),
@@ -174,6 +180,7 @@ impl StandIn {
             velocity_m_s: velocity,
             heading: None,
             probability: 0.99,
+            spot_px: Some(spot_px.round().max(1.0)),
             age_s: now_s - followed.fresh_s,
         }
     }
@@ -181,9 +188,10 @@ impl StandIn {
     /// Phantoms, as rendered frames have them now and then.
     fn imagine(&mut self, looking: &Looking<'_>, moment: &Moment<'_>, seen: &mut Vec<Seen>) {
         let Self { table, chance, period_s, .. } = self;
+        let sight = table.of(self.blinks);
         self.phantoms.retain(|phantom| phantom.until_s > moment.time_s);
         let cameras = moment.vehicles[looking.vehicle].cameras_work.iter().filter(|works| **works).count();
-        if chance.uniform() < table.phantoms_per_s * *period_s * cameras as f64 {
+        if chance.uniform() < sight.phantoms_per_s * *period_s * cameras as f64 {
             let direction = Vector3::new(chance.normal(), chance.normal(), 0.3 * chance.normal());
             let (nearest_m, farthest_m) = PHANTOM_M;
             let distance_m = nearest_m + (farthest_m - nearest_m) * chance.uniform();
@@ -191,13 +199,13 @@ impl StandIn {
             self.phantoms.push(Phantom {
                 track: self.next,
                 place_m: direction.normalize() * distance_m,
-                until_s: moment.time_s - table.phantom_lasts_s * libm::log(1.0 - chance.uniform()),
+                until_s: moment.time_s - sight.phantom_lasts_s * libm::log(1.0 - chance.uniform()),
             });
         }
         let two_markers = 2;
         seen.extend(self.phantoms.iter().filter_map(|phantom| {
             let distance_m = phantom.place_m.norm();
-            let cell = table.errors(distance_m, two_markers);
+            let cell = sight.errors(distance_m, two_markers);
             Some(Seen {
                 track: phantom.track,
                 identity: None,
@@ -205,7 +213,7 @@ impl StandIn {
                 bearing_bound_rad: cell.bearing_bound_rad,
                 distance: Distance {
                     estimate: Some(Estimate { distance_m, sigma_m: cell.range_sigma_told * distance_m }),
-                    bounds: Interval::new(distance_m * libm::exp(cell.lower[0]), f64::INFINITY)?,
+                    bounds: Interval::new(distance_m * libm::exp(cell.lower[2]), f64::INFINITY)?,
                     perpendicular_m: None,
                     inline_m: None,
                 },
@@ -216,16 +224,11 @@ impl StandIn {
                 velocity_m_s: None,
                 heading: None,
                 probability: 0.6,
+                spot_px: None,
                 age_s: 0.0,
             })
         }));
     }
-}
-
-/// The share of bits of a book that are lit.
-fn lit(codes: &Codes) -> f64 {
-    let bits = || codes.book.words().iter().flat_map(|word| word.bits());
-    bits().filter(|bit| *bit).count() as f64 / bits().count() as f64
 }
 
 /// Along a direction, to its left and up: a right-handed triad.
@@ -246,18 +249,20 @@ fn told_covariance(cell: &Cell, mean: &Vector3<f64>) -> Matrix3<f64> {
     part(along, range_m) + part(left, across_m) + part(up, across_m)
 }
 
-/// Bounds about the true distance: they hold except in the share of cases in which the table says that they are broken.
+/// Bounds about the true distance: they hold except where this frame's are broken.
 fn bounds(cell: &Cell, followed: &Followed, distance_m: f64) -> Interval {
-    let [low, high] = followed.bounds;
-    // a standard normal number as a number from 0 to 1, so that nothing more is drawn
+    // a standard normal number as a number from 0 to 1, so that looseness lasts
     let share = |normal: f64| 0.5 * libm::erfc(-normal / core::f64::consts::SQRT_2);
-    let is_broken = share(low) < cell.broken;
-    let reach = |[middle, sigma]: [f64; 2], draw: f64, side: f64| {
-        let logarithm = middle + sigma * draw;
-        if is_broken { -side * 0.05 } else { side * (side * logarithm).max(0.0) }
+    let [lower, upper] = [followed.bounds.x, followed.bounds.y].map(share);
+    if followed.is_broken {
+        return Interval::new(1.05 * distance_m, 1.1 * distance_m).expect("in order");
+    }
+    let lower_m = distance_m * libm::exp(between(&cell.lower, lower));
+    let bounded = 1.0 - cell.unbounded;
+    let upper_m = if upper < bounded {
+        distance_m * libm::exp(between(&cell.upper, upper / bounded))
+    } else {
+        f64::INFINITY
     };
-    let lower_m = distance_m * libm::exp(reach(cell.lower, low, -1.0));
-    let infinite = share(high) < cell.unbounded;
-    let upper_m = if infinite { f64::INFINITY } else { distance_m * libm::exp(reach(cell.upper, high, 1.0)) };
-    Interval::new(lower_m.min(upper_m), upper_m.max(lower_m)).expect("in order")
+    Interval::new(lower_m, upper_m).expect("in order")
 }

@@ -1,4 +1,4 @@
-//! The table of errors: fitted to what rendered frames told of neighbours whose places were known.
+//! The table of errors: what rendered frames told of neighbours whose places were known.
 //!
 //! Whether a neighbour is followed depends on how much light reaches the camera and on how many markers show; how wrong it is told depends on its distance
 //! and on how many markers show. Light is told as the distance at which one LED, straight ahead, exposed for 1000 us, gives as much.
@@ -14,50 +14,8 @@ const EDGES_M: [f64; 8] = [4.0, 6.0, 8.0, 10.0, 12.5, 15.0, 20.0, 25.0];
 pub(super) const BINS: usize = EDGES_M.len() + 1;
 /// Classes of markers that show: one, two, three and more.
 pub(super) const CLASSES: usize = 3;
-/// A cell with fewer samples takes those of its nearest bin, too.
-const FEWEST: usize = 30;
-
-/// A pair of vehicles in a frame, one of which could see the other.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Sample {
-    /// Who looks, and at whom.
-    pub pair: (usize, usize),
-    /// When, s.
-    pub time_s: f64,
-    /// From the one to the other, m.
-    pub distance_m: f64,
-    /// Markers that show.
-    pub markers: usize,
-    /// As of [`super::super::InView`].
-    pub light: f64,
-    /// What was told, if the neighbour was followed.
-    pub told: Option<Told>,
-}
-
-/// What was told of a neighbour, against the truth.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Told {
-    /// Logarithm of told over true distance.
-    pub log_range: f64,
-    /// Off along the two directions across the line of sight, rad: to the left, up.
-    pub across_rad: [f64; 2],
-    /// What it said of its relative error of distance, sigma.
-    pub range_sigma: f64,
-    /// What it said of its error across, sigma, rad.
-    pub across_sigma_rad: f64,
-    /// Error of the velocity along three axes, m/s.
-    pub velocity_m_s: [f64; 3],
-    /// What it said of that, sigma per axis, m/s.
-    pub velocity_sigma_m_s: f64,
-    /// Logarithms of the bounds over the true distance; `None` where there is none at that end.
-    pub log_bounds: [Option<f64>; 2],
-    /// Logarithms of l_A and l_B over the true distance, where they were told.
-    pub log_estimates: Option<[f64; 2]>,
-    /// The bound of the bearing, rad.
-    pub bearing_bound_rad: f64,
-    /// Whether this very frame showed it.
-    pub is_fresh: bool,
-}
+/// Shares of bounds that are lower than the table's five numbers of them.
+pub(super) const QUANTILES: [f64; 5] = [0.05, 0.25, 0.5, 0.75, 0.95];
 
 /// Errors of neighbours at some distance that show some markers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -81,10 +39,12 @@ pub struct Cell {
     pub velocity_sigma_m_s: f64,
     /// What is said of it.
     pub velocity_sigma_told_m_s: f64,
-    /// Median logarithm of the lower bound over the true distance, and half the width between its quartiles.
-    pub lower: [f64; 2],
+    /// Logarithm of the lower bound over the true distance: 5, 25, 50, 75 and 95 % of bounds are lower.
+    pub lower: [f64; 5],
     /// The same of the upper bound, of those that are finite.
-    pub upper: [f64; 2],
+    pub upper: [f64; 5],
+    /// For how long bounds stay as loose as they are, s.
+    pub bounds_last_s: f64,
     /// Share of upper bounds that are infinite.
     pub unbounded: f64,
     /// Share of pairs of bounds that the truth leaves.
@@ -93,7 +53,7 @@ pub struct Cell {
     pub estimates: [f64; 2],
     /// Median bound of the bearing, rad.
     pub bearing_bound_rad: f64,
-    /// Share of reports that this very frame showed, of frames in which LEDs shine.
+    /// Share of reports that this very frame showed.
     pub fresh: f64,
 }
 
@@ -103,18 +63,16 @@ pub struct Cell {
 pub struct Following {
     /// Samples that it stands on.
     pub samples: usize,
-    /// Share of frames in which one who is in view is followed.
-    pub share: f64,
+    /// How long it takes on the average until one who is in view is found, or found again, s; 0 for in the first frame.
+    pub found_s: f64,
     /// For how long one is followed without a break, s.
     pub lasts_s: f64,
 }
 
-/// The table.
+/// How neighbours are seen whose LEDs do one thing.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct StandInTable {
-    /// Time from when a vehicle is followed until its word is read, s.
-    pub name_s: f64,
+pub struct Eyesight {
     /// Phantoms per camera and second.
     pub phantoms_per_s: f64,
     /// How long a phantom is reported, s.
@@ -123,6 +81,20 @@ pub struct StandInTable {
     pub error: Vec<Vec<Cell>>,
     /// By class of markers, then by bin of light.
     pub following: Vec<Vec<Following>>,
+}
+
+/// The table.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct StandInTable {
+    /// Time from when a vehicle is followed until its word is read, s.
+    pub name_s: f64,
+    /// Pixels of the largest spot: so many with 1 us/m^2 of light, by which power of the light they grow, and the sigma of their logarithm.
+    pub spot_px: [f64; 3],
+    /// Neighbours whose LEDs shine all the time.
+    pub steady: Eyesight,
+    /// Neighbours whose LEDs blink words.
+    pub blinking: Eyesight,
 }
 
 impl StandInTable {
@@ -142,14 +114,24 @@ impl StandInTable {
     pub fn parse(text: &str, path: &Path) -> Result<Self> {
         let table: Self = toml_table::parse(text, path)?;
         let whole = |lengths: Vec<usize>| lengths == vec![BINS; CLASSES];
-        let errors = table.error.iter().map(Vec::len).collect();
-        if whole(errors) && whole(table.following.iter().map(Vec::len).collect()) {
+        let is_whole = |sight: &Eyesight| {
+            whole(sight.error.iter().map(Vec::len).collect())
+                && whole(sight.following.iter().map(Vec::len).collect())
+        };
+        if is_whole(&table.steady) && is_whole(&table.blinking) {
             return Ok(table);
         }
         let reason = format!("it has not {CLASSES} classes of {BINS} bins each");
         Err(photinus_io::Error::format(path, reason).advise("fit it anew"))
     }
 
+    /// How neighbours are seen that blink, or do not.
+    pub fn of(&self, blinks: bool) -> &Eyesight {
+        if blinks { &self.blinking } else { &self.steady }
+    }
+}
+
+impl Eyesight {
     /// Errors at a distance with this many markers.
     pub fn errors(&self, distance_m: f64, markers: usize) -> &Cell {
         &self.error[class(markers)][bin(distance_m)]
@@ -162,163 +144,21 @@ impl StandInTable {
 }
 
 /// The distance at which one LED straight ahead gives as much light in 1000 us, m.
-fn as_distance_m(light: f64) -> f64 {
+pub(super) fn as_distance_m(light: f64) -> f64 {
     (1000.0 / light).sqrt()
 }
 
-fn class(markers: usize) -> usize {
+pub(super) fn class(markers: usize) -> usize {
     markers.clamp(1, CLASSES) - 1
 }
 
-fn bin(distance_m: f64) -> usize {
+pub(super) fn bin(distance_m: f64) -> usize {
     EDGES_M.iter().filter(|edge_m| distance_m > **edge_m).count()
 }
 
-/// Fits a table. `phantoms` are how many neighbours were reported where no vehicle was, for how many seconds in all, and how many seconds all cameras looked together;
-/// `names_s` are the times until words were read; LEDs shone for the share `lit` of the time.
-pub(crate) fn fit(
-    samples: &[Sample],
-    phantoms: (usize, f64, f64),
-    names_s: &[f64],
-    lit: f64,
-) -> StandInTable {
-    let of = |wanted: usize, what: &dyn Fn(&Sample) -> usize, at: usize| -> Vec<&Sample> {
-        let mut near: Vec<&Sample> = Vec::new();
-        // a cell that is nearly empty is like those beside it: bins are joined until there are enough, then classes
-        for reach in 0..CLASSES * BINS {
-            let (classes, bins) = (reach / BINS, reach % BINS);
-            let is_near = |sample: &&Sample| {
-                class(sample.markers).abs_diff(wanted) <= classes && what(sample).abs_diff(at) <= bins
-            };
-            near = samples.iter().filter(is_near).collect();
-            if near.len() >= FEWEST {
-                break;
-            }
-        }
-        near
-    };
-    let by_distance = |sample: &Sample| bin(sample.distance_m);
-    let by_light = |sample: &Sample| bin(as_distance_m(sample.light));
-    let errors = |class: usize| (0..BINS).map(|at| cell(&of(class, &by_distance, at), lit)).collect();
-    let follows = |class: usize| (0..BINS).map(|at| following(&of(class, &by_light, at))).collect();
-    let (count, told_s, looked_s) = phantoms;
-    StandInTable {
-        name_s: round(median(names_s.to_vec())),
-        phantoms_per_s: if looked_s > 0.0 { round(count as f64 / looked_s) } else { 0.0 },
-        phantom_lasts_s: if count > 0 { round(told_s / count as f64) } else { 0.0 },
-        error: (0..CLASSES).map(errors).collect(),
-        following: (0..CLASSES).map(follows).collect(),
-    }
-}
-
-fn cell(samples: &[&Sample], lit: f64) -> Cell {
-    let told: Vec<Told> = samples.iter().filter_map(|sample| sample.told).collect();
-    let numbers = |of: &dyn Fn(&Told) -> f64| -> Vec<f64> { told.iter().map(of).collect() };
-    let share = |of: &dyn Fn(&Told) -> bool| {
-        told.iter().filter(|told| of(told)).count() as f64 / told.len().max(1) as f64
-    };
-    let known = |of: &dyn Fn(&Told) -> Option<f64>| -> Vec<f64> { told.iter().filter_map(of).collect() };
-    // errors have long tails: quartiles give the sigma of the core, and rare ones are left to the tests of the table
-    let (range_bias, range_sigma) = core_of(numbers(&|told| told.log_range));
-    let across = told.iter().flat_map(|told| told.across_rad).collect();
-    let velocity = told.iter().flat_map(|told| told.velocity_m_s).collect();
-    let quartiles = |numbers: Vec<f64>| {
-        let (middle, sigma) = core_of(numbers);
-        [middle, sigma].map(round)
-    };
-    Cell {
-        samples: told.len(),
-        range_bias: round(range_bias),
-        range_sigma: round(range_sigma),
-        range_lasts_s: round(lasts_s(samples, range_bias)),
-        range_sigma_told: round(median(numbers(&|told| told.range_sigma))),
-        across_sigma_rad: round(core_of(across).1),
-        across_sigma_told_rad: round(median(numbers(&|told| told.across_sigma_rad))),
-        velocity_sigma_m_s: round(core_of(velocity).1),
-        velocity_sigma_told_m_s: round(median(numbers(&|told| told.velocity_sigma_m_s))),
-        lower: quartiles(known(&|told| told.log_bounds[0])),
-        upper: quartiles(known(&|told| told.log_bounds[1])),
-        unbounded: round(share(&|told| told.log_bounds[1].is_none())),
-        broken: round(share(&|told| {
-            told.log_bounds[0].is_some_and(|low| low > 0.0)
-                || told.log_bounds[1].is_some_and(|high| high < 0.0)
-        })),
-        estimates: [0, 1].map(|which| round(median(known(&|told| Some(told.log_estimates?[which]))))),
-        bearing_bound_rad: round(median(numbers(&|told| told.bearing_bound_rad))),
-        fresh: round((share(&|told| told.is_fresh) / lit).min(1.0)),
-    }
-}
-
-/// Time after which the correlation of distance errors of a pair is 1/e, from that of frames that follow on each other.
-fn lasts_s(samples: &[&Sample], bias: f64) -> f64 {
-    let (mut square, mut cross, mut step_s, mut pairs) = (0.0, 0.0, 0.0, 0.0);
-    for (before, after) in successive(samples) {
-        if let (Some(a), Some(b)) = (before.told, after.told) {
-            // errors far out are cut, as in the sigma of the core
-            let [a, b] = [a, b].map(|told| (told.log_range - bias).clamp(-0.5, 0.5));
-            square += 0.5 * (a * a + b * b);
-            cross += a * b;
-            step_s += after.time_s - before.time_s;
-            pairs += 1.0;
-        }
-    }
-    if pairs < 1.0 || square <= 0.0 {
-        return 0.5;
-    }
-    let correlation = (cross / square).clamp(0.05, 0.999);
-    (-(step_s / pairs) / libm::log(correlation)).clamp(0.02, 10.0)
-}
-
-fn following(samples: &[&Sample]) -> Following {
-    let followed = samples.iter().filter(|sample| sample.told.is_some()).count();
-    let (mut on_s, mut ends) = (0.0, 0.0);
-    for (before, after) in successive(samples) {
-        if before.told.is_some() {
-            on_s += after.time_s - before.time_s;
-            ends += f64::from(u8::from(after.told.is_none()));
-        }
-    }
-    Following {
-        samples: samples.len(),
-        share: round(followed as f64 / samples.len().max(1) as f64),
-        lasts_s: round((on_s / (ends + 1.0)).clamp(0.05, 100.0)),
-    }
-}
-
-/// Samples of a pair that follow on each other; they come in the order of time.
-fn successive<'a>(samples: &[&'a Sample]) -> Vec<(&'a Sample, &'a Sample)> {
-    let mut last: std::collections::BTreeMap<(usize, usize), &Sample> = std::collections::BTreeMap::new();
-    let mut successive = Vec::new();
-    for &sample in samples {
-        if let Some(before) = last.insert(sample.pair, sample)
-            && (1e-6..0.25).contains(&(sample.time_s - before.time_s))
-        {
-            successive.push((before, sample));
-        }
-    }
-    successive
-}
-
-fn median(numbers: Vec<f64>) -> f64 {
-    core_of(numbers).0
-}
-
-/// Median, and the sigma of a normal distribution with the same quartiles.
-fn core_of(mut numbers: Vec<f64>) -> (f64, f64) {
-    numbers.retain(|number| number.is_finite());
-    if numbers.is_empty() {
-        return (0.0, 0.0);
-    }
-    numbers.sort_unstable_by(f64::total_cmp);
-    let quantile = |share: f64| numbers[((numbers.len() - 1) as f64 * share).round() as usize];
-    (quantile(0.5), (quantile(0.75) - quantile(0.25)) / 1.349)
-}
-
-/// To four digits: what is left is noise.
-fn round(value: f64) -> f64 {
-    if value.abs() <= 0.0 || !value.is_finite() {
-        return 0.0;
-    }
-    let scale = libm::pow(10.0, 3.0 - libm::floor(libm::log10(value.abs())));
-    (value * scale).round() / scale
+/// The number that a share of all is below of, between those of [`QUANTILES`] as on straight lines and no farther out than these.
+pub(super) fn between(numbers: &[f64; 5], share: f64) -> f64 {
+    let part = (1..QUANTILES.len() - 1).find(|&part| share < QUANTILES[part]).unwrap_or(QUANTILES.len() - 1);
+    let along = (share - QUANTILES[part - 1]) / (QUANTILES[part] - QUANTILES[part - 1]);
+    numbers[part - 1] + (numbers[part] - numbers[part - 1]) * along.clamp(0.0, 1.0)
 }

@@ -16,9 +16,7 @@ def main() -> None:
     args = parser.parse_args()
 
     recording = photinus.Dataset.read(args.recording)
-    locator = photinus.Locator(
-        recording.camera, recording.airframe, mask=recording.mask, spot_curve=recording.spot_curve
-    )
+    locator = photinus.Locator(recording.camera, recording.airframes, recording)
     records = [
         locator.locate(frame.image, gravity=frame.gravity, time=frame.time_s, frame=frame.frame) for frame in recording
     ]

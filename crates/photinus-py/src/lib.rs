@@ -3,10 +3,11 @@
 //! ```text
 //! image      numpy array -> frame, borrowed, or an ImageError that names what is wrong
 //! camera, airframe, options        what the method is told beforehand, with the program's names and defaults
-//! detector, locator                frame -> record
+//! detector, locator, following     frame -> record
 //! record, table                    records as objects, many of them as an Arrow table
 //! recording, simulation            frames from files and scenes
-//! calibration, evaluation, codes   the program's commands of these names
+//! calibration, evaluation, codes, planning
+//!                                  the program's commands of these names
 //! ```
 //!
 //! Python's lock is released while Photinus works; what is learnt from frame to frame sits behind a lock of its own.
@@ -18,10 +19,12 @@ mod codes;
 mod detector;
 mod error;
 mod evaluation;
+mod following;
 mod image;
 mod json;
 mod locator;
 mod options;
+mod planning;
 mod record;
 mod recording;
 mod simulation;
@@ -55,9 +58,11 @@ mod native {
     #[pymodule_export]
     use crate::locator::Locator;
     #[pymodule_export]
+    use crate::planning::{example_setup, plan};
+    #[pymodule_export]
     use crate::record::{
-        Distance, Misfit, Mode, Neighbour, Record, Rejected, RunnerUp, Spot, Truth, TruthLed, TruthNeighbour,
-        read_results, read_truth,
+        Distance, Identity, Misfit, Mode, Neighbour, Record, Rejected, RunnerUp, Spot, Track, Truth,
+        TruthLed, TruthNeighbour, read_results, read_truth,
     };
     #[pymodule_export]
     use crate::recording::{Dataset, Frame, Frames, frames, read_image};

@@ -3,10 +3,10 @@
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use photinus::locator::{self, Input, LocateError, Located, Settings};
+use nalgebra::{Unit, Vector3};
+use photinus::frame::FrameView;
+use photinus::locator::{self, Kind, Settings};
 use photinus::pose;
-use photinus::spots::Spot;
-use photinus_io::airframe::Tolerances;
 use photinus_io::calibration::{MountingFile, read_mounting};
 use photinus_io::results::FrameRecord;
 use pyo3::prelude::*;
@@ -14,12 +14,16 @@ use pyo3::prelude::*;
 use crate::airframe::Airframe;
 use crate::camera::Camera;
 use crate::error::{self, ImageError, detached};
+use crate::following::{Beside, State};
 use crate::image::Image;
 use crate::options::{MaskOption, direction, spot_curve, spot_settings};
 use crate::record::{Record, empty};
+use crate::recording::Dataset;
 
-/// Locates neighbours of one kind of airframe in frame after frame of one camera, as `photinus locate` does: optics, the power of LEDs
-/// and clutter are learnt from the frames that came before. Making one takes up to a second. May be shared by threads, which then
+/// Locates neighbours in frame after frame of one camera, as `photinus locate` does: optics, the power of LEDs and clutter are learnt from
+/// the frames that came before, and neighbours are followed through frames that have times. `airframe` is that of the neighbours, or a list:
+/// one for each kind of them. With `recording` it is that recording's locator: what is not given (mask, mounting, spot curve) is the
+/// recording's, and who blinks what and how the camera turned, too. Making one takes up to a second. May be shared by threads, which then
 /// wait for each other.
 ///
 /// Options: `contrast`, `threshold`, `reflection_ratio` and `mask` as for Detector; `mounting`, a TOML file that says how the camera sits on
@@ -28,28 +32,37 @@ use crate::record::{Record, empty};
 /// most looks at a handful of spots per frame; `tilt_sigma`, deg, how far neighbours tilt; `marker_sigma`, m, how far LEDs are from
 /// where the airframe says (what its file says, else 0.003); `power_spread`, a share, of the power of LEDs (what the file says, else
 /// 0.2); `scale_sigma`, a share, of the size of the airframe; `miss_rate`, how often a marker does not show; `no_brightness`, leave
-/// brightness out of the pose. Raises SettingError, FileError, ImageError.
+/// brightness out of the pose; `no_time`, every frame by itself: no tracks, no velocities, no ids. Raises SettingError, FileError, ImageError.
 #[pyclass(frozen, module = "photinus")]
 pub(crate) struct Locator {
-    locator: Mutex<locator::Locator>,
+    state: Mutex<State>,
     camera: Py<Camera>,
-    airframe: Py<Airframe>,
+    airframes: Vec<Py<Airframe>>,
+    names: Vec<String>,
     mounting: Option<MountingFile>,
+}
+
+/// The airframe of all neighbours, or that of each kind.
+#[derive(FromPyObject)]
+pub(crate) enum Airframes {
+    One(Py<Airframe>),
+    Several(Vec<Py<Airframe>>),
 }
 
 #[pymethods]
 impl Locator {
     #[new]
     #[pyo3(signature = (
-        camera, airframe, *, contrast = None, threshold = None, reflection_ratio = 0.22, mask = None, mounting = None, spot_curve = None,
-        max_tilt = 15.0, min_probability = 0.5, budget = 12000, tilt_sigma = 5.0, marker_sigma = None, power_spread = None,
-        scale_sigma = 0.01, miss_rate = 0.02, no_brightness = false
+        camera, airframe, recording = None, *, contrast = None, threshold = None, reflection_ratio = 0.22, mask = None, mounting = None,
+        spot_curve = None, max_tilt = 15.0, min_probability = 0.5, budget = 12000, tilt_sigma = 5.0, marker_sigma = None,
+        power_spread = None, scale_sigma = 0.01, miss_rate = 0.02, no_brightness = false, no_time = false
     ))]
     #[allow(clippy::too_many_arguments)] // the options of the program, by name
     fn new(
         py: Python<'_>,
         camera: Py<Camera>,
-        airframe: Py<Airframe>,
+        airframe: Airframes,
+        recording: Option<Py<Dataset>>,
         contrast: Option<u8>,
         threshold: Option<u8>,
         reflection_ratio: f64,
@@ -65,16 +78,16 @@ impl Locator {
         scale_sigma: f64,
         miss_rate: f64,
         no_brightness: bool,
+        no_time: bool,
     ) -> PyResult<Self> {
-        let Tolerances { position_sigma_m, power_sigma, .. } = airframe.get().0.tolerances;
         let default = pose::Settings::default();
         let settings = Settings {
             spots: spot_settings(contrast, threshold, reflection_ratio)?,
             max_tilt_rad: max_tilt.to_radians(),
             pose: pose::Settings {
                 tilt_sigma_rad: tilt_sigma.to_radians(),
-                marker_sigma_m: marker_sigma.or(position_sigma_m).unwrap_or(default.marker_sigma_m),
-                unit_sigma: power_spread.or(power_sigma).unwrap_or(default.unit_sigma),
+                marker_sigma_m: marker_sigma.unwrap_or(default.marker_sigma_m),
+                unit_sigma: power_spread.unwrap_or(default.unit_sigma),
                 scale_sigma,
                 missed: miss_rate,
                 use_brightness: !no_brightness,
@@ -83,26 +96,62 @@ impl Locator {
             min_probability,
             budget,
         };
-        let curve =
-            spot_curve.map(|path| self::spot_curve(py, &path, settings.spots.brightness)).transpose()?;
+        let airframes = match airframe {
+            Airframes::One(airframe) => vec![airframe],
+            Airframes::Several(airframes) => airframes,
+        };
+        let kinds = airframes.iter().map(|airframe| {
+            let kind = Kind::new(airframe.get().0.airframe.clone(), &settings.pose);
+            let tolerances = &airframe.get().0.tolerances;
+            Kind {
+                marker_sigma_m: marker_sigma.or(tolerances.position_sigma_m).unwrap_or(kind.marker_sigma_m),
+                unit_sigma: power_spread.or(tolerances.power_sigma).unwrap_or(kind.unit_sigma),
+                ..kind
+            }
+        });
+        let kinds: Vec<Kind> = kinds.collect();
+        let names: Vec<String> = kinds.iter().map(|kind| kind.airframe.name().to_owned()).collect();
+        if let Some(name) =
+            names.iter().enumerate().find_map(|(n, name)| names[..n].contains(name).then_some(name))
+        {
+            return Err(error::setting(format!(
+                "two airframes are called {name:?}: records tell them by their names"
+            )));
+        }
+        let recording = recording.as_ref().map(Py::get);
+        let curve = spot_curve.or_else(|| recording?.spot_curve());
+        let curve = curve.map(|path| self::spot_curve(py, &path, settings.spots.brightness)).transpose()?;
         let mounting =
             mounting.map(|path| detached(py, || read_mounting(&path).map_err(error::file))).transpose()?;
+        let mounting = mounting.or_else(|| recording?.of_camera().mounting);
+        let mask = mask.or_else(|| recording?.mask().map(MaskOption::File));
         let mask = mask.map(|mask| mask.read(py)).transpose()?;
-        let (seen_by, seen) = (&camera.get().camera, &airframe.get().0.airframe);
-        let locator = detached(py, || {
-            let mut locator =
-                locator::Locator::new(seen_by.clone(), seen, curve, settings).map_err(error::setting)?;
-            locator.set_mask(mask).map_err(|error| ImageError::new_err(error.to_string()))?;
-            Ok(Mutex::new(locator))
+        let seen_by = &camera.get().camera;
+        let (state, remarks) = detached(py, || {
+            let mut locator = locator::Locator::of_kinds(seen_by.clone(), &kinds, curve, settings)
+                .map_err(error::setting)?;
+            locator.set_mask(mask.clone()).map_err(|error| ImageError::new_err(error.to_string()))?;
+            let mut remarks = Vec::new();
+            let watch = match no_time {
+                true => None,
+                false => {
+                    let beside = Beside::of(recording, &kinds, mounting.as_ref(), &mut remarks)?;
+                    Some(beside.watch(seen_by, &kinds, &settings, mask.as_ref())?)
+                }
+            };
+            Ok((Mutex::new(State::new(locator, watch)), remarks))
         })?;
-        Ok(Self { locator, camera, airframe, mounting })
+        let folder = recording.map_or("frames".into(), |recording| recording.dataset.path(""));
+        error::warn(py, &folder, &remarks)?;
+        Ok(Self { state, camera, airframes, names, mounting })
     }
 
     /// The neighbours in an image: uint8, (rows, columns) of the camera's size, rows may be padded; it is borrowed, not copied, and
     /// must not be written to meanwhile. `gravity` is down in the camera frame, of any length, where it is known. `time`, s, and
-    /// `frame`, its number, stand in the record as given.
+    /// `frame`, its number, stand in the record as given; frames that have times are followed, in the order in which they come.
     ///
-    /// Raises ImageError when the array is no frame of this camera, SettingError when gravity points nowhere.
+    /// Raises ImageError when the array is no frame of this camera, SettingError when gravity points nowhere; warns with PhotinusWarning of times
+    /// that tell nothing of tracks, once of each kind.
     #[pyo3(signature = (image, *, gravity = None, time = None, frame = None))]
     fn locate(
         &self,
@@ -115,13 +164,7 @@ impl Locator {
         let image = Image::borrow(image)?;
         let (view, gravity) = (image.view()?, gravity.map(direction).transpose()?);
         let record = empty(frame, time)?;
-        detached(py, || {
-            // Whatever a fault left is made anew by the frame.
-            let mut locator = self.locator.lock().unwrap_or_else(PoisonError::into_inner);
-            let located =
-                locator.locate(Input::frame(&view).gravity(gravity.as_ref())).map_err(wrong_size)?;
-            Ok(self.told(record, located))
-        })
+        self.look(py, record, gravity, Some(&view))
     }
 
     /// The neighbours behind the spots of a record, such as those of another detector: see `read_results` and `Record.from_json`.
@@ -134,18 +177,13 @@ impl Locator {
     ) -> PyResult<Record> {
         let gravity = gravity.map(direction).transpose()?;
         let record = record.get().0.as_ref().clone();
-        detached(py, || {
-            let spots: Vec<(Spot, Option<u32>)> =
-                record.spots.iter().map(|spot| (Spot::from(spot), spot.signal)).collect();
-            let mut locator = self.locator.lock().unwrap_or_else(PoisonError::into_inner);
-            let input = Input::signalled(&spots).gravity(gravity.as_ref());
-            Ok(self.told(record, locator.locate(input).map_err(wrong_size)?))
-        })
+        self.look(py, record, gravity, None)
     }
 
-    /// Forgets what frames told of the power of LEDs and of clutter: for frames that do not follow on those before.
+    /// Forgets what frames told of the power of LEDs and of clutter: for frames that do not follow on those before. Tracks begin anew by
+    /// themselves where times jump.
     fn forget(&self, py: Python<'_>) {
-        py.detach(|| self.locator.lock().unwrap_or_else(PoisonError::into_inner).forget());
+        py.detach(|| self.state.lock().unwrap_or_else(PoisonError::into_inner).locator.forget());
     }
 
     /// The camera that it looks through.
@@ -154,24 +192,37 @@ impl Locator {
         self.camera.clone_ref(py)
     }
 
-    /// The airframe that it looks for.
+    /// The airframe that it looks for; of several, the first.
     #[getter]
     fn airframe(&self, py: Python<'_>) -> Py<Airframe> {
-        self.airframe.clone_ref(py)
+        self.airframes[0].clone_ref(py)
+    }
+
+    /// The airframes that it looks for, one for each kind of neighbour.
+    #[getter]
+    fn airframes(&self, py: Python<'_>) -> Vec<Py<Airframe>> {
+        self.airframes.iter().map(|airframe| airframe.clone_ref(py)).collect()
     }
 }
 
 impl Locator {
-    /// The record with what was located in its frame.
-    fn told(&self, mut record: FrameRecord, located: &Located) -> Record {
-        record.put_located(located, &[self.airframe.get().0.airframe.name()]);
+    /// The record with what was located in its frame, or behind its spots.
+    fn look(
+        &self,
+        py: Python<'_>,
+        record: FrameRecord,
+        gravity: Option<Unit<Vector3<f64>>>,
+        frame: Option<&FrameView<'_>>,
+    ) -> PyResult<Record> {
+        let (mut record, remarks) = detached(py, || {
+            // Whatever a fault left is made anew by the frame.
+            let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
+            state.locate(record, gravity, frame, &self.names)
+        })?;
         if let Some(mounting) = &self.mounting {
             record.put_mounting(mounting);
         }
-        Record(Arc::new(record))
+        error::warn(py, "frames".as_ref(), &remarks)?;
+        Ok(Record(Arc::new(record)))
     }
-}
-
-fn wrong_size(error: LocateError) -> PyErr {
-    ImageError::new_err(format!("{error}; give the calibration of this camera at this resolution"))
 }

@@ -10,6 +10,7 @@ use photinus_io::frames::{self as sources, FrameSource};
 use photinus_io::image::GreyImage;
 use photinus_io::kind::{Kind, images_in};
 use photinus_io::{Error, image};
+use photinus_run::watch;
 use pyo3::prelude::*;
 
 use crate::airframe::Airframe;
@@ -117,12 +118,12 @@ impl Frames {
 /// A dataset folder: frames with times and gravity, the camera and airframe that belong to them, truth where it has one.
 #[pyclass(frozen, module = "photinus")]
 pub(crate) struct Dataset {
-    dataset: dataset::Dataset,
+    pub(crate) dataset: dataset::Dataset,
     camera: usize,
 }
 
 impl Dataset {
-    fn of_camera(&self) -> &DatasetCamera {
+    pub(crate) fn of_camera(&self) -> &DatasetCamera {
         &self.dataset.cameras()[self.camera]
     }
 }
@@ -155,15 +156,27 @@ impl Dataset {
         Camera::open(py, &self.dataset.path(&self.of_camera().camera))
     }
 
-    /// The neighbours' airframe. Raises FileError.
+    /// The neighbours' airframe; of several kinds, the first. Raises FileError.
     #[getter]
     fn airframe(&self, py: Python<'_>) -> PyResult<Airframe> {
         Airframe::open(py, &self.dataset.path(&self.dataset.info().airframe.first))
     }
 
+    /// The neighbours' airframes, one for each kind: those built alike are one. Raises FileError.
+    #[getter]
+    fn airframes(&self, py: Python<'_>) -> PyResult<Vec<Airframe>> {
+        let read = |path: PathBuf| {
+            let file = detached(py, || photinus_io::airframe::read_airframe(&path).map_err(error::file))?;
+            error::warn(py, &path, &file.notes)?;
+            Ok((path, file))
+        };
+        let files = self.dataset.airframes().into_iter().map(read).collect::<PyResult<_>>()?;
+        Ok(watch::told_apart(files).map_err(error::file)?.into_iter().map(Airframe).collect())
+    }
+
     /// The image that says where not to look, if there is one.
     #[getter]
-    fn mask(&self) -> Option<PathBuf> {
+    pub(crate) fn mask(&self) -> Option<PathBuf> {
         self.of_camera().mask.as_ref().map(|named| self.dataset.path(named))
     }
 
@@ -175,7 +188,7 @@ impl Dataset {
 
     /// The file of the spot curve, if there is one.
     #[getter]
-    fn spot_curve(&self) -> Option<PathBuf> {
+    pub(crate) fn spot_curve(&self) -> Option<PathBuf> {
         self.of_camera().spot_curve.as_ref().map(|named| self.dataset.path(named))
     }
 

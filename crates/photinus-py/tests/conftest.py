@@ -60,7 +60,7 @@ def locator(example: photinus.Dataset) -> photinus.Locator:
 @pytest.fixture(scope="session")
 def records(example: photinus.Dataset) -> list[photinus.Record]:
     """The example, located."""
-    locator = photinus.Locator(example.camera, example.airframe)
+    locator = photinus.Locator(example.camera, example.airframe, example)
     return [
         locator.locate(frame.image, gravity=frame.gravity, time=frame.time_s, frame=frame.frame) for frame in example
     ]

@@ -44,3 +44,10 @@ def test_design_a_set_up() -> None:
     rows = run("design_setup.py", "--frames", 60).splitlines()[1:]
     found = [int(row.split("%")[0].split()[-1]) for row in rows]
     assert len(rows) >= 6 and min(found[:3]) >= 90
+
+
+def test_a_fleet_on_this_machine() -> None:
+    pytest.importorskip("distributed")
+    small = ("--recordings", 4, "--frames", 2, "--processes", 2, "--kill-every", 0)
+    told = run("fleet_on_this_machine.py", *small)
+    assert "2 processes, 0 killed" in told and "all there, once, identical" in told

@@ -25,7 +25,7 @@ def crossing(folder: Path, more: str) -> Path:
 
 
 def test_a_dataset(program: Program, records: list[photinus.Record], tmp_path: Path) -> None:
-    program("locate", "--no-time", EXAMPLE, "--out", tmp_path / "r.jsonl", "-q")
+    program("locate", EXAMPLE, "--out", tmp_path / "r.jsonl", "-q")
     assert [record.to_json() for record in records] == lines(tmp_path / "r.jsonl")
     assert sum(len(record.neighbours) for record in records) >= 3 * len(records)
 
@@ -34,12 +34,12 @@ def test_a_simulation(program: Program, tmp_path: Path) -> None:
     scene = ROOT / "scenes" / "swarm-12.toml"
     folder = tmp_path / "swarm"
     program("simulate", scene, "--frames", 4, "--seed", 7, "--out", folder, "-q")
-    program("locate", "--no-time", folder, "--out", tmp_path / "r.jsonl", "-q")
+    program("locate", folder, "--out", tmp_path / "r.jsonl", "-q")
 
     simulation = photinus.simulate(scene, frames=4, seed=7)
     dataset = photinus.Dataset.read(folder)
     assert simulation.airframe is not None
-    locator = photinus.Locator(simulation.camera, simulation.airframe)
+    locator = photinus.Locator(simulation.camera, simulation.airframe, dataset)
     ours, truth = [], []
     for frame, recorded in zip(simulation, dataset, strict=True):
         assert np.array_equal(frame.image, recorded.image)
@@ -50,6 +50,43 @@ def test_a_simulation(program: Program, tmp_path: Path) -> None:
     assert ours == lines(tmp_path / "r.jsonl")
     assert truth == dataset.truth
     assert '"neighbours":[{' in ours[-1]
+
+
+def test_every_frame_by_itself(program: Program, tmp_path: Path, example: photinus.Dataset) -> None:
+    program("locate", "--no-time", EXAMPLE, "--out", tmp_path / "r.jsonl", "-q")
+    locator = photinus.Locator(example.camera, example.airframe, no_time=True)
+    records = [locator.locate(f.image, gravity=f.gravity, time=f.time_s, frame=f.frame) for f in example]
+    assert [record.to_json() for record in records] == lines(tmp_path / "r.jsonl")
+    assert all(record.tracks == () for record in records)
+
+
+def test_who_blinks(program: Program, tmp_path: Path) -> None:
+    program("simulate", ROOT / "scenes" / "crossing.toml", "--frames", 60, "--out", tmp_path / "flight", "-q")
+    program("locate", tmp_path / "flight", "--out", tmp_path / "r.jsonl", "-q")
+    recording = photinus.Dataset.read(tmp_path / "flight")
+    locator = photinus.Locator(recording.camera, recording.airframes, recording)
+    records = [locator.locate(f.image, gravity=f.gravity, time=f.time_s, frame=f.frame) for f in recording]
+    assert [record.to_json() for record in records] == lines(tmp_path / "r.jsonl")
+    assert {track.id for track in records[-1].tracks} == {1, 2}
+    for track in records[-1].tracks:
+        (likeliest, *_) = track.ids
+        assert likeliest.id == track.id and likeliest.probability == track.id_probability
+        assert track.position_m.shape == track.velocity_m_s.shape == (3,) and not likeliest.contested
+
+
+def test_several_kinds(program: Program, tmp_path: Path, example: photinus.Dataset) -> None:
+    quad = tmp_path / "quad.toml"
+    ring = "{ arms = 4, radius_m = 0.2, leds_per_arm = 1, splay_deg = 0.0 }"
+    quad.write_text(f'name = "quad"\nring = {ring}\n')
+    kinds = ["--airframe", EXAMPLE / "airframe.toml", "--airframe", quad]
+    program("locate", EXAMPLE, *kinds, "--out", tmp_path / "r.jsonl", "-q")
+    locator = photinus.Locator(example.camera, [example.airframe, photinus.Airframe.read(quad)], example)
+    records = [locator.locate(f.image, gravity=f.gravity, time=f.time_s, frame=f.frame) for f in example]
+    assert [record.to_json() for record in records] == lines(tmp_path / "r.jsonl")
+    assert [airframe.name for airframe in locator.airframes] == [example.airframe.name, "quad"]
+    assert all(n.airframe_probability is not None for record in records for n in record.neighbours)
+    with pytest.raises(photinus.SettingError, match="two airframes are called"):
+        photinus.Locator(example.camera, [example.airframe, example.airframe])
 
 
 @pytest.mark.parametrize("faults", ["lost = 0.4", "late = 0.5\nlate_by_s = 0.005\nswapped = 0.5"])
@@ -69,7 +106,7 @@ def test_one_of_several_cameras(program: Program, tmp_path: Path) -> None:
     left = f'name = "left"\nfile = "{ROOT}/scenes/cameras/bluefox-dsl215.toml"\nposition_m = [0, 0.1, 0]\nyaw_deg = 20'
     scene = crossing(tmp_path, f"[[camera]]\n{left}\nclock = {{ offset_s = 0.002, ppm = 20.0 }}")
     program("simulate", scene, "--frames", 3, "--out", tmp_path / "flight", "-q")
-    program("locate", "--no-time", tmp_path / "flight", "--out", tmp_path / "r.jsonl", "-q")
+    program("locate", tmp_path / "flight", "--out", tmp_path / "r.jsonl", "-q")
     theirs = [line for line in lines(tmp_path / "r.jsonl") if '"camera":"left"' in line]
 
     with pytest.raises(photinus.SettingError, match="front, left"):
@@ -79,7 +116,7 @@ def test_one_of_several_cameras(program: Program, tmp_path: Path) -> None:
     dataset = photinus.Dataset.read(tmp_path / "flight", camera="left")
     simulation = photinus.simulate(scene, frames=3, camera="left")
     assert dataset.mounting is not None and dataset.truth is not None and len(dataset) == 3
-    locator = photinus.Locator(dataset.camera, dataset.airframe, mounting=dataset.mounting)
+    locator = photinus.Locator(dataset.camera, dataset.airframe, dataset)
     ours = []
     for frame, simulated, truth in zip(dataset, simulation, dataset.truth, strict=True):
         assert np.array_equal(frame.image, simulated.image) and frame.time_s == simulated.time_s == truth.time_s
@@ -105,7 +142,7 @@ def test_real_photos(program: Program, data: Path, tmp_path: Path) -> None:
         "--min-probability",
         0,
     ]
-    program("locate", "--no-time", *photos, *options, "--out", tmp_path / "r.jsonl", "-q")
+    program("locate", *photos, *options, "--out", tmp_path / "r.jsonl", "-q")
     with pytest.warns(photinus.PhotinusWarning, match="the inverse polynomial disagrees"):
         seen_by = photinus.Camera.read(camera)
     locator = photinus.Locator(seen_by, photinus.Airframe.read(airframe), max_tilt=20, min_probability=0)
@@ -134,9 +171,11 @@ def test_masks_and_curves(program: Program, tmp_path: Path, example: photinus.Da
     mask[top : bottom + 1, left : right + 1] = 0
     (tmp_path / "mask.pgm").write_bytes(b"P5 %d %d 255\n" % mask.shape[::-1] + mask.tobytes())
     options = ["--mask", tmp_path / "mask.pgm", "--spot-curve", "paper", "--threshold", 200, "--frames", 1]
-    program("locate", "--no-time", EXAMPLE, *options, "--out", tmp_path / "r.jsonl", "-q")
+    program("locate", EXAMPLE, *options, "--out", tmp_path / "r.jsonl", "-q")
     for given in (mask, tmp_path / "mask.pgm"):
-        locator = photinus.Locator(example.camera, example.airframe, mask=given, spot_curve="paper", threshold=200)
+        locator = photinus.Locator(
+            example.camera, example.airframe, example, mask=given, spot_curve="paper", threshold=200
+        )
         record = locator.locate(frame.image, gravity=frame.gravity, time=frame.time_s, frame=frame.frame)
         assert [record.to_json()] == lines(tmp_path / "r.jsonl")
         assert "mask" in [rejected.reason for rejected in record.rejected]
@@ -152,8 +191,8 @@ def test_a_mounting(program: Program, tmp_path: Path, example: photinus.Dataset)
         position_covariance_m2 = [[1e-6, 0.0, 0.0], [0.0, 1e-6, 0.0], [0.0, 0.0, 1e-6]]
         """
     )
-    program("locate", "--no-time", EXAMPLE, "--mounting", mounting, "--frames", 1, "--out", tmp_path / "r.jsonl", "-q")
-    locator, frame = photinus.Locator(example.camera, example.airframe, mounting=mounting), next(iter(example))
+    program("locate", EXAMPLE, "--mounting", mounting, "--frames", 1, "--out", tmp_path / "r.jsonl", "-q")
+    locator, frame = photinus.Locator(example.camera, example.airframe, example, mounting=mounting), next(iter(example))
     record = locator.locate(frame.image, gravity=frame.gravity, time=frame.time_s, frame=frame.frame)
     assert [record.to_json()] == lines(tmp_path / "r.jsonl")
     neighbour = record.neighbours[0]
@@ -167,7 +206,7 @@ def test_a_mounting(program: Program, tmp_path: Path, example: photinus.Dataset)
 def test_spots_of_another_detector(program: Program, tmp_path: Path, example: photinus.Dataset) -> None:
     program("detect", EXAMPLE, "--out", tmp_path / "spots.jsonl", "-q")
     files = ["--camera", EXAMPLE / "camera.toml", "--airframe", EXAMPLE / "airframe.toml"]
-    program("locate", "--no-time", "--spots", tmp_path / "spots.jsonl", *files, "--out", tmp_path / "r.jsonl", "-q")
+    program("locate", "--spots", tmp_path / "spots.jsonl", *files, "--out", tmp_path / "r.jsonl", "-q")
     locator = photinus.Locator(example.camera, example.airframe)
     given = photinus.read_results(tmp_path / "spots.jsonl")
     assert [locator.locate_spots(record) for record in given] == photinus.read_results(tmp_path / "r.jsonl")
@@ -183,7 +222,7 @@ def test_a_calibration(program: Program, data: Path, tmp_path: Path) -> None:
 
 
 def test_scores(program: Program, tmp_path: Path, example: photinus.Dataset) -> None:
-    program("locate", "--no-time", EXAMPLE, "--out", tmp_path / "r.jsonl", "-q")
+    program("locate", EXAMPLE, "--out", tmp_path / "r.jsonl", "-q")
     theirs = json.loads(program("evaluate", EXAMPLE, tmp_path / "r.jsonl", "--bins", "5,10", "--json", "-"))
     ours = photinus.evaluate(EXAMPLE, tmp_path / "r.jsonl", bins=[5, 10])
     assert ours == {key: theirs[key] for key in ours}
@@ -197,6 +236,16 @@ def test_codes(program: Program) -> None:
     book = photinus.CodeBook.design(6, 2, longest_run=3, duty=(0.3, 0.7))
     assert book.to_text().splitlines() == [line for line in text.splitlines() if not line.startswith("#")]
     assert book.at_most is not None and len(book) <= book.at_most
+
+
+def test_a_plan(program: Program, tmp_path: Path) -> None:
+    setup = tmp_path / "set-up.toml"
+    setup.write_text(photinus.example_setup())
+    assert program("plan", "--example").strip() == photinus.example_setup().strip()
+    assert photinus.plan(setup) == json.loads(program("plan", setup, "--json"))
+    setup.write_text("[led]\npart = 'none'\n")
+    with pytest.raises(photinus.FileError, match="not known"):
+        photinus.plan(setup)
 
 
 @pytest.mark.parametrize("command, function", [("locate", photinus.Locator), ("detect", photinus.Detector)])

@@ -15,7 +15,7 @@ csv: Any = pytest.importorskip("pyarrow.csv")
 
 
 def test_neighbours_are_the_programs_csv(program: Program, records: list[photinus.Record], tmp_path: Path) -> None:
-    program("locate", "--no-time", EXAMPLE, "--csv", tmp_path / "r.csv", "-q")
+    program("locate", EXAMPLE, "--csv", tmp_path / "r.csv", "-q")
     table = pyarrow.table(photinus.neighbours_table(records))
     theirs = csv.read_csv(
         tmp_path / "r.csv",
@@ -32,7 +32,7 @@ def test_a_row_per_neighbour_and_spot(records: list[photinus.Record]) -> None:
     table.validate(full=True)
     neighbours = [n for record in records for n in record.neighbours]
     assert table["distance_m"].to_pylist() == [n.distance_m.estimate for n in neighbours]
-    assert table["track"].null_count == len(neighbours)
+    assert table["track"].to_pylist() == [n.track for n in neighbours] and table["id"].null_count == len(neighbours)
     spots = pyarrow.table(photinus.spots_table(records))
     spots.validate(full=True)
     assert spots["u_px"].to_pylist() == [spot.u_px for record in records for spot in record.spots]

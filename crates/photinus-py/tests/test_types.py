@@ -17,7 +17,8 @@ def run(*arguments: object) -> None:
 
 def test_stubs_are_the_module() -> None:
     allowed = HERE / "stubtest-allowed.txt"
-    run("mypy.stubtest", "photinus", "--ignore-disjoint-bases", "--allowlist", allowed)
+    settings = ("--mypy-config-file", HERE.parent / "pyproject.toml")
+    run("mypy.stubtest", "photinus", "--ignore-disjoint-bases", *settings, "--allowlist", allowed)
 
 
 def test_what_uses_it_type_checks() -> None:

@@ -7,7 +7,7 @@ use photinus_io::results::{FrameRecord, ResultsReader, read_results as read};
 use pyo3::prelude::*;
 use pyo3::types::{PyTuple, PyType};
 
-use super::{Neighbour, Rejected, Spot};
+use super::{Neighbour, Rejected, Spot, Track};
 use crate::error::{self, FileError, SettingError, detached};
 use crate::json;
 
@@ -117,6 +117,12 @@ impl Record {
     fn neighbours<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         let neighbour = |index| Neighbour { record: self.0.clone(), index };
         PyTuple::new(py, (0..self.0.neighbours.len()).map(neighbour))
+    }
+
+    /// Who is followed from frame to frame, where frames have times.
+    #[getter]
+    fn tracks<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        PyTuple::new(py, (0..self.0.tracks.len()).map(|index| Track { record: self.0.clone(), index }))
     }
 
     fn __repr__(&self) -> String {

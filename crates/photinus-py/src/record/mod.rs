@@ -6,6 +6,7 @@
 mod frame;
 mod neighbour;
 mod spot;
+mod track;
 mod truth;
 
 use numpy::{Element, PyArray1, PyArray2, PyArrayMethods};
@@ -14,6 +15,7 @@ use pyo3::prelude::*;
 pub(crate) use frame::{Record, empty, read_results};
 pub(crate) use neighbour::{Distance, Misfit, Mode, Neighbour, RunnerUp};
 pub(crate) use spot::{Rejected, Spot};
+pub(crate) use track::{Identity, Track};
 pub(crate) use truth::{Truth, TruthLed, TruthNeighbour, read_truth};
 
 /// Rows of numbers as an array.

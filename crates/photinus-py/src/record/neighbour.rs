@@ -60,6 +60,12 @@ impl Neighbour {
         &self.told().airframe
     }
 
+    /// How likely it is built so, where several kinds of neighbours are looked for.
+    #[getter]
+    fn airframe_probability(&self) -> Option<f64> {
+        self.told().airframe_probability
+    }
+
     /// Indices of its spots in the record's.
     #[getter]
     fn spots<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {

@@ -8,7 +8,7 @@ use std::ffi::{CString, c_char, c_int, c_void};
 use std::ptr;
 use std::sync::Arc;
 
-use super::column::{Cells, Column};
+use photinus_io::results::{Cells, Column};
 
 const NULLABLE: i64 = 2;
 

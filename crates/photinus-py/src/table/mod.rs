@@ -1,18 +1,15 @@
 //! Records of many frames -> a table that pandas, Polars, pyarrow and DuckDB take without copying: a row per neighbour or spot.
 
 mod arrow;
-mod column;
-mod neighbours;
-mod spots;
 
 use std::sync::Arc;
 
+use photinus_io::results::{Column, FrameRecord, neighbour_columns, spot_columns};
 use pyo3::prelude::*;
 use pyo3::types::PyCapsule;
 
 use crate::error::SettingError;
 use crate::record::Record;
-use column::{Column, Kind};
 
 /// A table of columns by the Arrow C data interface: `pandas.DataFrame.from_arrow`, `polars.DataFrame`, `pyarrow.table` and DuckDB take it
 /// without copying. What is not known is null.
@@ -23,10 +20,17 @@ pub(crate) struct Table {
 }
 
 impl Table {
-    fn new(columns: Vec<Column>) -> Self {
+    /// # Errors
+    /// `SettingError` when texts are longer than their 32-bit offsets can count: a table of more is made in parts.
+    fn new(columns: Vec<Column>) -> PyResult<Self> {
+        if columns.iter().any(Column::is_too_long) {
+            return Err(SettingError::new_err(
+                "more than 2 GiB of text in a column: make tables of fewer records",
+            ));
+        }
         let rows = columns.first().map_or(0, Column::len);
         debug_assert!(columns.iter().all(|column| column.len() == rows));
-        Self { columns: columns.into(), rows }
+        Ok(Self { columns: columns.into(), rows })
     }
 }
 
@@ -72,33 +76,15 @@ impl Table {
 /// A row per neighbour, by the columns of the CSV table of docs/file-formats.md.
 #[pyfunction]
 pub(crate) fn neighbours_table(records: Vec<Bound<'_, Record>>) -> PyResult<Table> {
-    let rows = records.iter().map(|record| record.get().0.as_ref());
-    filled(rows.flat_map(neighbours::rows), neighbours::COLUMNS)
+    Table::new(neighbour_columns(told(&records)))
 }
 
 /// A row per spot; `spot` is its index in its record.
 #[pyfunction]
 pub(crate) fn spots_table(records: Vec<Bound<'_, Record>>) -> PyResult<Table> {
-    let rows = records.iter().map(|record| record.get().0.as_ref());
-    filled(rows.flat_map(spots::rows), spots::COLUMNS)
+    Table::new(spot_columns(told(&records)))
 }
 
-/// Rows of cells as columns.
-fn filled<'a, const N: usize>(
-    rows: impl Iterator<Item = [column::Cell<'a>; N]>,
-    kinds: [(&'static str, Kind); N],
-) -> PyResult<Table> {
-    let mut columns = kinds.map(|(name, kind)| Column::new(name, kind));
-    for row in rows {
-        for (column, cell) in columns.iter_mut().zip(row) {
-            column.push(cell);
-        }
-    }
-    // Offsets of texts are 32 bit: a table of more is made in parts.
-    if columns.iter().any(Column::is_too_long) {
-        return Err(SettingError::new_err(
-            "more than 2 GiB of text in a column: make tables of fewer records",
-        ));
-    }
-    Ok(Table::new(columns.into()))
+fn told<'a>(records: &'a [Bound<'_, Record>]) -> impl Iterator<Item = &'a FrameRecord> {
+    records.iter().map(|record| record.get().0.as_ref())
 }

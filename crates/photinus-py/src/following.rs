@@ -1,0 +1,100 @@
+//! What frames change: a locator, and what follows vehicles from one frame to the next as the program does.
+
+use nalgebra::{Unit, Vector3};
+use photinus::camera::Camera;
+use photinus::frame::{FrameView, Mask};
+use photinus::locator::{Input, Kind, Locator, Settings};
+use photinus::lookout::Fleet;
+use photinus::spots::Spot;
+use photinus_io::calibration::MountingFile;
+use photinus_io::results::FrameRecord;
+use photinus_run::Entry;
+use photinus_run::watch::{self, Turns, Watch};
+use pyo3::prelude::*;
+
+use crate::error::{self, ImageError};
+use crate::recording::Dataset;
+
+/// What a recording tells beside its frames: who blinks what, how its camera turned, how long it exposed.
+pub(crate) struct Beside {
+    fleets: Vec<Option<Fleet>>,
+    turns: Turns,
+    exposure_us: Option<f64>,
+}
+
+impl Beside {
+    /// Of a recording, or of frames alone.
+    ///
+    /// # Errors
+    /// `FileError` when a table of the recording is not in order.
+    pub(crate) fn of(
+        recording: Option<&Dataset>,
+        kinds: &[Kind],
+        mounting: Option<&MountingFile>,
+        remarks: &mut Vec<String>,
+    ) -> PyResult<Self> {
+        let dataset = recording.map(|recording| &recording.dataset);
+        let fleets = watch::fleets(dataset, kinds, |text| remarks.push(text)).map_err(error::file)?;
+        let turns = |recording: &Dataset| {
+            Turns::of(&recording.dataset, recording.of_camera().name.is_some(), mounting).map_err(error::file)
+        };
+        Ok(Self {
+            fleets,
+            turns: recording.map_or(Ok(Turns::Unknown), turns)?,
+            exposure_us: recording.map(|recording| recording.of_camera().exposure_us),
+        })
+    }
+
+    /// What follows vehicles of these kinds.
+    ///
+    /// # Errors
+    /// `SettingError` when a setting has no meaning.
+    pub(crate) fn watch(
+        self,
+        camera: &Camera,
+        kinds: &[Kind],
+        settings: &Settings,
+        mask: Option<&Mask>,
+    ) -> PyResult<Watch> {
+        let beside = (self.fleets.as_slice(), self.turns, self.exposure_us);
+        Watch::new(camera, kinds, settings, mask, beside).map_err(error::setting)
+    }
+}
+
+/// What frames change.
+pub(crate) struct State {
+    pub(crate) locator: Locator,
+    watch: Option<Watch>,
+}
+
+impl State {
+    /// Before the first frame.
+    pub(crate) fn new(locator: Locator, watch: Option<Watch>) -> Self {
+        Self { locator, watch }
+    }
+
+    /// The record with what was located in its frame, or behind its spots where there is none, and what a user should know.
+    ///
+    /// # Errors
+    /// `ImageError` when the frame is not of the camera's size.
+    pub(crate) fn locate(
+        &mut self,
+        record: FrameRecord,
+        gravity: Option<Unit<Vector3<f64>>>,
+        frame: Option<&FrameView<'_>>,
+        airframes: &[String],
+    ) -> PyResult<(FrameRecord, Vec<String>)> {
+        let spots: Vec<(Spot, Option<u32>)> =
+            record.spots.iter().map(|spot| (Spot::from(spot), spot.signal)).collect();
+        let input = frame.map_or_else(|| Input::signalled(&spots), Input::frame);
+        let located = self.locator.locate(input.gravity(gravity.as_ref())).map_err(|error| {
+            ImageError::new_err(format!("{error}; give the calibration of this camera at this resolution"))
+        })?;
+        let mut entry = Entry::from_spots(record);
+        entry.gravity = gravity;
+        entry.record.put_located(located, airframes);
+        let Some(watch) = &mut self.watch else { return Ok((entry.record, Vec::new())) };
+        watch.follow(&mut entry, located);
+        Ok((entry.record, watch.remarks()))
+    }
+}

@@ -55,6 +55,15 @@ world table:
 identity table:
     cargo run --release -p photinus-io --example identity -- {{table}} --update
 
+# The tables of docs/swarm.md anew, printed; a hundred seeds take hours.
+swarm seeds:
+    cargo run --release -p photinus-swarm --example validate_stand_in -- 2 6 three wind leader formation
+    cargo run --release -p photinus-swarm --example flights -- stand_in {{seeds}}
+    cargo run --release -p photinus-swarm --example contracts -- perfect {{seeds}}
+    cargo run --release -p photinus-swarm --example contracts -- stand_in {{seeds}}
+    cargo run --release -p photinus-swarm --example exposures -- {{seeds}}
+    cargo run --release -p photinus-swarm --example margins -- {{seeds}}
+
 # A minute of fuzzing for one target, e.g. `just fuzz spots`; needs cargo-fuzz and a nightly toolchain.
 fuzz target:
     cargo +nightly fuzz run {{target}} -- -max_total_time=60

@@ -10,6 +10,7 @@ use photinus_io::kind::{self, Kind};
 use photinus_io::results::ResultsReader;
 use photinus_io::video::RawFormat;
 use photinus_io::{Error, Result};
+use photinus_link::bag::BagFrames;
 use photinus_link::recording::Frames;
 use photinus_run::Entry;
 
@@ -20,7 +21,7 @@ use crate::terminal::input_name;
 /// What the user says about frames.
 #[derive(Debug, clap::Args)]
 pub(crate) struct InputArgs {
-    /// A dataset folder, a folder of images, image files, a Y4M video, an MCAP recording, or - for Y4M on standard input
+    /// A dataset folder, a folder of images, image files, a Y4M video, an MCAP recording, a bag of ROS 1, or - for Y4M on standard input
     #[arg(value_name = "INPUT")]
     pub(crate) inputs: Vec<PathBuf>,
     /// The input is raw 8-bit grey frames of this size, nothing between them
@@ -148,12 +149,7 @@ impl InputArgs {
     /// # Errors
     /// As [`Self::open`].
     pub(crate) fn recordings(&self) -> std::result::Result<Vec<Self>, Failure> {
-        let of = |inputs: Vec<PathBuf>| Self {
-            inputs,
-            raw: self.raw,
-            frames: self.frames,
-            dataset: self.dataset.clone(),
-        };
+        let of = |inputs| self.with(inputs);
         let (mut recordings, mut images) = (Vec::new(), Vec::new());
         for path in &self.inputs {
             let is_whole = path.is_dir() || self.raw.is_some() || is_video(path)?;
@@ -163,6 +159,15 @@ impl InputArgs {
             recordings.push(of(images));
         }
         Ok(recordings)
+    }
+
+    /// One of the inputs, by itself.
+    pub(crate) fn only(&self, input: &Path) -> Self {
+        self.with(vec![input.to_owned()])
+    }
+
+    fn with(&self, inputs: Vec<PathBuf>) -> Self {
+        Self { inputs, raw: self.raw, frames: self.frames, dataset: self.dataset.clone() }
     }
 
     /// Opens the frames.
@@ -195,6 +200,13 @@ impl InputArgs {
         Ok(Input { recording: Some(path.to_owned()), ..input })
     }
 
+    /// The same of a bag of ROS 1, whose motion is not read.
+    fn bag(&self, path: &Path) -> std::result::Result<Input, Failure> {
+        let frames = BagFrames::open(path, self.dataset.only.as_deref()).map_err(Failure::input)?;
+        let count = frames.total();
+        Ok(Input::new(Source::Frames(FrameSource::other(frames)), count, self.inputs.clone(), path))
+    }
+
     fn source(&self) -> std::result::Result<Input, Failure> {
         let video = |frames: Result<FrameSource>, path: &Path| {
             let frames = Source::Frames(frames.map_err(Failure::input)?);
@@ -205,7 +217,7 @@ impl InputArgs {
         }
         match self.inputs.as_slice() {
             [] => Err(Failure::Input(
-                "no input: name a dataset folder, image files or a folder of them, a Y4M video, an MCAP recording, or - for Y4M on standard input"
+                "no input: name a dataset folder, image files or a folder of them, a Y4M video, an MCAP recording, a bag of ROS 1, or - for Y4M on standard input"
                     .to_owned(),
             )),
             _ if self.raw.is_some() => Err(Failure::Input(
@@ -217,6 +229,7 @@ impl InputArgs {
                 Kind::ImageFolder => images(&kind::images_in(path).map_err(Failure::input)?),
                 Kind::Dataset | Kind::Folder => self.dataset(path),
                 Kind::Recording => self.recording(path),
+                Kind::Bag => self.bag(path),
                 _ => images(&self.inputs),
             },
             paths => images(paths),
@@ -298,7 +311,8 @@ fn is_stream(path: &Path) -> bool {
 
 /// Whether an input is a video.
 fn is_video(path: &Path) -> std::result::Result<bool, Failure> {
-    Ok(is_stream(path) || matches!(Kind::of(path).map_err(Failure::input)?, Kind::Video | Kind::Recording))
+    Ok(is_stream(path)
+        || matches!(Kind::of(path).map_err(Failure::input)?, Kind::Video | Kind::Recording | Kind::Bag))
 }
 
 /// Image files: all of them must be there, whatever they hold.

@@ -35,7 +35,7 @@ pub(crate) struct OutputArgs {
     #[arg(long, requires = "out", conflicts_with = "force")]
     resume: bool,
     #[command(flatten)]
-    write: WriteArgs,
+    pub(crate) write: WriteArgs,
     /// Print no notes, no progress, no summary
     #[arg(short, long)]
     pub(crate) quiet: bool,

@@ -3,7 +3,7 @@
 use photinus_io::{Error, table};
 use photinus_link::config::{Camera, Record};
 use photinus_link::messages::Viewpoint;
-use photinus_run::config::Config;
+use photinus_run::config::{Config, Topic};
 use photinus_run::live;
 use photinus_run::motion::Motion;
 use photinus_run::sink::Sink;
@@ -40,6 +40,8 @@ struct Tables {
     ros2: Option<photinus_link::config::Ros2>,
     #[cfg(feature = "mavlink")]
     mavlink: Option<photinus_link::config::Mavlink>,
+    #[cfg(feature = "zenoh")]
+    zenoh: Option<photinus_link::config::Zenoh>,
 }
 
 /// The sinks of a table such as `[mavlink]`; what arrives of the vehicle's own motion goes to `motion`.
@@ -51,7 +53,7 @@ pub(crate) fn sinks(
 ) -> Result<Option<Box<dyn Sink>>, Failure> {
     let tables: Tables = table::parse(config.text(), config.path()).map_err(Failure::input)?;
     let cameras: Vec<Camera> = cameras.iter().map(linked).collect();
-    #[cfg(not(any(feature = "ros2", feature = "mavlink")))]
+    #[cfg(not(any(feature = "ros2", feature = "mavlink", feature = "zenoh")))]
     let _ = motion;
     let opened = match table {
         "record" => tables.record.map(|record| {
@@ -62,22 +64,27 @@ pub(crate) fn sinks(
         "ros2" => tables.ros2.map(|ros2| ros2.open(&cameras, motion.clone())),
         #[cfg(feature = "mavlink")]
         "mavlink" => tables.mavlink.map(|mavlink| mavlink.open(&cameras, motion.clone())),
+        #[cfg(feature = "zenoh")]
+        "zenoh" => tables.zenoh.map(|zenoh| zenoh.open(&cameras, motion.clone())),
         _ => return Err(missing(config, table)),
     };
     opened.transpose().map_err(Failure::input)
 }
 
-/// What opens a topic of ROS 2 as a camera's source; the table `[ros2]` says the domain.
-#[cfg(feature = "ros2")]
-pub(crate) fn source(config: &Config, topic: &str, spots: bool) -> Option<Opener> {
+/// What opens a topic as a camera's source; the tables `[ros2]` and `[zenoh]` say where it is. `None` where that is not in this program, or where
+/// `[zenoh]` is missing.
+pub(crate) fn source(config: &Config, topic: Topic<'_>, spots: bool) -> Option<Opener> {
     let tables: Tables = table::parse(config.text(), config.path()).ok()?;
-    Some(tables.ros2.unwrap_or_default().source(topic, spots))
-}
-
-/// There is none in this program.
-#[cfg(not(feature = "ros2"))]
-pub(crate) fn source(_config: &Config, _topic: &str, _spots: bool) -> Option<Opener> {
-    None
+    #[cfg(not(any(feature = "ros2", feature = "zenoh")))]
+    let _ = (tables, spots);
+    match topic {
+        #[cfg(feature = "ros2")]
+        Topic::Ros2(topic) => Some(tables.ros2.unwrap_or_default().source(topic, spots)),
+        #[cfg(feature = "zenoh")]
+        Topic::Zenoh(key) => Some(tables.zenoh?.source(key, spots)),
+        #[cfg(not(all(feature = "ros2", feature = "zenoh")))]
+        _ => None,
+    }
 }
 
 /// A camera as links need to know it.

@@ -45,7 +45,16 @@ impl Terminal {
             Some(_) => "{wide_bar} {pos}/{len} frames, {eta} left",
             None => "{spinner} {pos} frames, {per_sec}",
         };
-        self.bar = ProgressBar::with_draw_target(frames, ProgressDrawTarget::hidden());
+        self.begin(frames, template);
+    }
+
+    /// Begins work on this many recordings.
+    pub(crate) fn start_recordings(&mut self, recordings: usize) {
+        self.begin(Some(recordings as u64), "{wide_bar} {pos}/{len} recordings, {eta} left");
+    }
+
+    fn begin(&mut self, steps: Option<u64>, template: &str) {
+        self.bar = ProgressBar::with_draw_target(steps, ProgressDrawTarget::hidden());
         if let Ok(style) = ProgressStyle::with_template(template) {
             self.bar.set_style(style);
         }
@@ -58,6 +67,11 @@ impl Terminal {
             self.bar.set_draw_target(ProgressDrawTarget::stderr());
         }
         self.bar.inc(1);
+    }
+
+    /// A recording is done.
+    pub(crate) fn recording_done(&self) {
+        self.frame_done();
     }
 
     /// The work is over.

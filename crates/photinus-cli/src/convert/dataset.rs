@@ -75,6 +75,7 @@ impl DatasetSink {
         let info = DatasetInfo {
             codes: kept.codes(),
             vehicles: kept.vehicles(),
+            sky: source.and_then(|(dataset, _)| dataset.info().sky.clone()),
             ..parts.info(exposure_us, rate_hz)
         };
         let making = out.whole().map_err(Failure::input)?;
@@ -206,6 +207,7 @@ impl Parts {
             mask: self.mask.as_ref().map(|path| inside(path, "mask")),
             codes: None,
             vehicles: None,
+            sky: None,
         }
     }
 

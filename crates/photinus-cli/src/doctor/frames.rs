@@ -9,6 +9,7 @@ use photinus_io::kind::{self, Kind};
 use photinus_io::video::Y4mFrames;
 use photinus_io::whole::open_regular;
 use photinus_io::{Error, Result};
+use photinus_link::bag::{self, Bag, BagFrames};
 use photinus_link::recording::{Frames, Recording, image_topics};
 
 use super::Findings;
@@ -67,6 +68,10 @@ fn frames(path: &Path, kind: Kind) -> Result<Box<dyn Iterator<Item = Result<Fram
         Kind::Recording => {
             let first = image_topics(&Recording::open(path)?).into_iter().next();
             Box::new(Frames::open(path, first.as_ref().map(|topic| topic.name.as_str()))?)
+        }
+        Kind::Bag => {
+            let first = bag::image_topics(&Bag::open(path)?).into_iter().next();
+            Box::new(BagFrames::open(path, first.as_ref().map(|topic| topic.name.as_str()))?)
         }
         Kind::Video => {
             let file = open_regular(path)?;

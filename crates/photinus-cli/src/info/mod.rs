@@ -110,7 +110,7 @@ fn report(path: &Path) -> Result<Report> {
         Kind::ImageFolder => frames::folder(path),
         Kind::Video => frames::video(path),
         Kind::Recording => recording::mcap(path),
-        Kind::Bag => recording::bag(path),
+        Kind::Bag => recording::of_ros1(path),
         Kind::Results => records::results(path),
         Kind::SpotCurve => records::spot_curve(path),
         Kind::Truth => records::truth(path),

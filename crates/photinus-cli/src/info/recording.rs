@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use photinus_io::Result;
-use photinus_link::bag::Bag;
+use photinus_link::bag::{self, Bag};
 use photinus_link::poses::pose_topics;
 use photinus_link::recording::{Recording, Topic, image_topics};
 
@@ -19,15 +19,12 @@ pub(super) fn mcap(path: &Path) -> Result<Report> {
     Ok(report)
 }
 
-pub(super) fn bag(path: &Path) -> Result<Report> {
+pub(super) fn of_ros1(path: &Path) -> Result<Report> {
     let bag = Bag::open(path)?;
     let mut report = Report::new("a bag of ROS 1");
+    let images = bag::image_topics(&bag);
+    report.fact("images", listed(images.iter().map(|topic| topic.name.as_str())));
     tell(&mut report, bag.topics(), bag.span_ns());
-    report.notes.push(
-        "only poses are read from it; `rosbags-convert` of the Python package rosbags makes it an MCAP recording, \
-         whose images are read, too"
-            .to_owned(),
-    );
     Ok(report)
 }
 

@@ -3,10 +3,12 @@
 //! ```text
 //! lights    spots, frame by frame -> lights that stay where they are, when each was lit
 //! reading   when a light was lit  -> which word it blinks, and where in it the board was
+//! placing   where lights are, how the vehicle is built -> which LEDs are dark, which blink the signal of another
 //! verify    all of these -> what is in order and what is not
 //! ```
 
 mod lights;
+mod placing;
 mod reading;
 mod verify;
 

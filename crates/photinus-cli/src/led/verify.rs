@@ -2,14 +2,21 @@
 
 use std::path::{Path, PathBuf};
 
+use nalgebra::{Unit, Vector3};
+use photinus::airframe::Airframe;
+use photinus::camera::Camera;
 use photinus::identity::CodeBook;
+use photinus::locator::LocatorError;
 use photinus::spots::{self, Detector, Spot};
-use photinus_io::Error;
+use photinus_io::airframe::read_airframe;
+use photinus_io::dataset::Dataset;
+use photinus_io::{Error, read_camera};
 
 use super::lights::{Light, lights};
+use super::placing::{Fault, Placing};
 use super::reading::{Film, Reading, Seen};
 use crate::failure::Failure;
-use crate::input::{DatasetArgs, InputArgs};
+use crate::input::{DatasetArgs, Input, InputArgs};
 use crate::terminal::Terminal;
 
 /// Of a long recording these frames are looked at: clocks of boards drift.
@@ -25,6 +32,12 @@ pub(crate) struct VerifyArgs {
     /// A recording of the vehicle while it blinks, a second or two, both at rest: anything that `photinus locate` takes
     #[arg(long, value_name = "INPUT")]
     verify: Option<PathBuf>,
+    /// Its camera, where the recording does not bring one: with the airframe, dark and swapped LEDs are told
+    #[arg(long, value_name = "FILE", requires = "verify")]
+    camera: Option<PathBuf>,
+    /// How the vehicle is built, where the recording does not say
+    #[arg(long, value_name = "FILE", requires = "verify")]
+    airframe: Option<PathBuf>,
     #[command(flatten)]
     dataset: DatasetArgs,
 }
@@ -32,6 +45,22 @@ pub(crate) struct VerifyArgs {
 impl VerifyArgs {
     pub(super) fn is_wanted(&self) -> bool {
         self.verify.is_some()
+    }
+}
+
+impl VerifyArgs {
+    /// The camera and the vehicle's airframe, of those that are named or of the dataset.
+    fn vehicle(&self, input: &Input) -> Result<(Option<Camera>, Option<Airframe>), Failure> {
+        let own = input.one_camera()?.cloned();
+        let of_dataset = input.dataset.as_ref().zip(own).map(|(dataset, own)| dataset.path(&own.camera));
+        let camera = self.camera.clone().or(of_dataset);
+        let camera = camera.map(|path| read_camera(path).map(|file| file.camera)).transpose();
+        // Of several kinds nobody knows which one it is.
+        let kinds = input.dataset.as_ref().map(Dataset::airframes).unwrap_or_default();
+        let only = <[PathBuf; 1]>::try_from(kinds).ok().map(|[path]| path);
+        let airframe = self.airframe.clone().or(only);
+        let airframe = airframe.map(|path| read_airframe(path).map(|file| file.airframe)).transpose();
+        Ok((camera.map_err(Failure::input)?, airframe.map_err(Failure::input)?))
     }
 }
 
@@ -45,11 +74,13 @@ pub(super) fn run(
 ) -> Result<(), Failure> {
     let Some(path) = &args.verify else { return Ok(()) };
     let mut input = InputArgs::of(std::slice::from_ref(path), &args.dataset).open()?;
-    input.one_camera()?;
+    let (camera, airframe) = args.vehicle(&input)?;
     let film = Frames::of(&mut input.entries, path, terminal)?;
     let lights = lights(&film.spots);
+    let placing = camera.as_ref().zip(airframe.as_ref());
+    let placing = placing.map(|(camera, airframe)| Placing { airframe, camera, down: film.down });
     let seen = Sight { book, words, rate_hz, times_s: &film.times_s, lights: &lights };
-    let findings = seen.findings();
+    let findings = seen.findings(placing.as_ref()).map_err(|error| Failure::Input(error.to_string()))?;
     for finding in &findings {
         match finding.is_wrong {
             true => terminal.error(&finding.text),
@@ -66,13 +97,15 @@ pub(super) fn run(
 struct Frames {
     spots: Vec<Vec<Spot>>,
     times_s: Vec<f64>,
+    /// Down in the camera frame, of the first frame that says so: vehicle and camera are at rest.
+    down: Option<Unit<Vector3<f64>>>,
 }
 
 impl Frames {
     fn of(entries: &mut crate::input::Entries, path: &Path, terminal: &Terminal) -> Result<Self, Failure> {
         let mut detector =
             Detector::new(spots::Settings::default()).map_err(|error| Failure::Input(error.to_string()))?;
-        let mut frames = Self { spots: Vec::new(), times_s: Vec::new() };
+        let mut frames = Self { spots: Vec::new(), times_s: Vec::new(), down: None };
         for entry in entries.take(MOST_FRAMES) {
             let entry = match entry {
                 Ok(entry) => entry,
@@ -87,6 +120,7 @@ impl Frames {
                 .map_err(|error| Failure::input(Error::new(path, error)))?;
             frames.spots.push(found.spots.clone());
             frames.times_s.push(time_s);
+            frames.down = frames.down.or(entry.gravity);
         }
         let first_s = frames.times_s.first().copied().unwrap_or(0.0);
         frames.times_s.iter_mut().for_each(|time_s| *time_s -= first_s);
@@ -116,15 +150,41 @@ struct Sight<'a> {
 }
 
 impl Sight<'_> {
-    fn findings(&self) -> Vec<Finding> {
+    /// What is in order and what is not; `placing` knows how the vehicle is built.
+    fn findings(&self, placing: Option<&Placing<'_>>) -> Result<Vec<Finding>, LocatorError> {
         let film = Film { times_s: self.times_s, book: self.book, rate_hz: self.rate_hz };
         let readings: Vec<Reading> = self.lights.iter().map(|light| film.read(&light.lit)).collect();
         let signals: Vec<Option<u32>> = readings.iter().map(|reading| self.signal(*reading)).collect();
         let mut findings: Vec<Finding> =
             (0..self.lights.len()).map(|light| self.light(light, readings[light], signals[light])).collect();
         findings.extend(self.out_of_step(&film, &readings, &signals));
+        let placed = match placing {
+            Some(placing) => self.placed(placing, &signals)?,
+            None => Vec::new(),
+        };
+        findings.extend(placed);
         findings.extend(self.unseen(&signals));
-        findings
+        Ok(findings)
+    }
+
+    /// LEDs that are dark though they face the camera, and those that blink the signal of another.
+    fn placed(&self, placing: &Placing<'_>, signals: &[Option<u32>]) -> Result<Vec<Finding>, LocatorError> {
+        let spots: Vec<Spot> = self.lights.iter().map(|light| light.spot.clone()).collect();
+        let Some(placed) = placing.placed(&spots, signals)? else { return Ok(Vec::new()) };
+        let told = |fault: &Fault| match *fault {
+            Fault::Dark(marker) => format!("{} is dark, though it faces the camera", placing.named(marker)),
+            Fault::Swapped(marker, signal) => {
+                format!("{} blinks signal {signal}: swapped", placing.named(marker))
+            }
+        };
+        let mut texts: Vec<String> = placed.sure.iter().map(told).collect();
+        if placed.is_unsure {
+            texts.push(
+                "LEDs are dark or swapped, but from this side it cannot be told which: turn the vehicle"
+                    .to_owned(),
+            );
+        }
+        Ok(texts.into_iter().map(|text| Finding { text, is_wrong: true }).collect())
     }
 
     /// Which signal of the vehicle a reading is.
@@ -214,7 +274,7 @@ mod tests {
     fn told(lights: &[Light], book: &CodeBook, times_s: &[f64]) -> Vec<String> {
         let words = [0, 1, 2, 3];
         let sight = Sight { book, words: &words, rate_hz: 60.0, times_s, lights };
-        let wrong = sight.findings().into_iter().filter(|finding| finding.is_wrong);
+        let wrong = sight.findings(None).unwrap().into_iter().filter(|finding| finding.is_wrong);
         wrong.map(|finding| finding.text).collect()
     }
 

@@ -123,5 +123,5 @@ fn what_is_no_log_of_poses_is_told() {
         stage.refuses(&format!("evaluate {words}"), &[told]);
     }
     let refused = stage.run("locate target.bag --camera camera.toml --airframe hexa.toml");
-    assert!(refused.code == 2 && refused.err.contains("`rosbags-convert`"), "{}", refused.err);
+    assert!(refused.code == 2 && refused.err.contains("target.bag: it holds no images"), "{}", refused.err);
 }

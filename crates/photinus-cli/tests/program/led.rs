@@ -1,5 +1,6 @@
 //! `photinus led`: a model of a board on a pseudo-terminal, and what a camera sees of LEDs in a simulation.
 
+use std::f64::consts::TAU;
 use std::os::fd::AsRawFd;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
@@ -177,4 +178,58 @@ fn a_camera_sees_which_words_leds_blink_and_who_blinks_those_of_another() {
         other.out,
         other.err
     );
+}
+
+/// Films a hexarotor at rest with a signal on each arm, whose signals blink these words, and looks whether LEDs are dark or swapped.
+fn verified_arms(name: &str, words: &str, leds: &str) -> crate::stage::Done {
+    let stage = Stage::new(name);
+    stage.file("book.txt", BOOK);
+    let arm = |signal: u32| {
+        let (x, y) = (libm::cos(f64::from(signal) * TAU / 6.0), libm::sin(f64::from(signal) * TAU / 6.0));
+        format!(
+            "[[led]]\nposition_m = [{}, {}, 0.0]\naxis = [{x}, {y}, 0.0]\nlobe = \"lambertian\"\nsignal = {signal}\n",
+            0.4 * x,
+            0.4 * y
+        )
+    };
+    stage.file("arms.toml", format!("name = \"arms\"\n{}", (0..6).map(arm).collect::<String>()));
+    let scenes = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes");
+    stage.file(
+        "scene.toml",
+        format!(
+            "name = \"arms\"\nseed = 5\npreset = \"bluefox-dsl215-bp365\"\nrate_hz = 59.9\nduration_s = 2.0\nexposure_us = 1000.0\n\
+             [observer]\nmotion = {{ hover = {{ position_m = [0.0, 0.0, 5.0] }} }}\n\
+             [[camera]]\nname = \"front\"\nfile = \"{scenes}/cameras/bluefox-dsl215.toml\"\nposition_m = [0.0, 0.0, 0.0]\n\
+             [[target]]\nid = 1\nairframe = \"arms.toml\"\nheading_deg = 170\n\
+             motion = {{ hover = {{ position_m = [2.5, 0.2, 5.6] }} }}\n\
+             blink = {{ codes = \"{scenes}/codes/l12-d3-r3.txt\", words = {words}, rate_hz = 60.0, shift_s = 0.003 }}\n{leds}"
+        ),
+    );
+    let done = stage.run("simulate scene.toml --out rec -q");
+    assert_eq!(done.code, 0, "{}", done.err);
+    stage.run("led --book book.txt --vehicle 0 --signals 6 --verify rec")
+}
+
+#[test]
+fn a_camera_sees_which_led_is_dark_and_which_are_swapped() {
+    let good = verified_arms("led-arms", "[0, 1, 2, 3, 4, 5]", "");
+    assert!(good.code == 0 && !good.out.contains("swapped"), "{} {}", good.out, good.err);
+    // The nose is ahead of the camera, 10 deg to the side: arms 0, 1 and 5 face it.
+    for signal in [0, 1, 5] {
+        assert!(good.out.contains(&format!("word {signal} of signal {signal}")), "{}", good.out);
+    }
+    let dead = verified_arms("led-arms-dead", "[0, 1, 2, 3, 4, 5]", "leds = { dead = [0] }\n");
+    assert!(
+        dead.code == 1 && dead.err.contains("LED 0 of signal 0 is dark, though it faces the camera"),
+        "{} {}",
+        dead.out,
+        dead.err
+    );
+    assert!(!dead.err.contains("swapped"), "{}", dead.err);
+    let swapped = verified_arms("led-arms-swapped", "[1, 0, 2, 3, 4, 5]", "");
+    for (led, other) in [(0, 1), (1, 0)] {
+        let told = format!("LED {led} of signal {led} blinks signal {other}: swapped");
+        assert!(swapped.code == 1 && swapped.err.contains(&told), "{told}: {} {}", swapped.out, swapped.err);
+    }
+    assert!(!swapped.err.contains("dark"), "{}", swapped.err);
 }

@@ -7,6 +7,7 @@
 )]
 
 mod bad_input;
+mod batch;
 mod calibrate;
 mod calibrate_airframe;
 mod calibrate_airframe_light;

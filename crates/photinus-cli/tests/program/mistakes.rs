@@ -145,7 +145,7 @@ const OPTIONS: [Mistake; 28] = [
         "locate",
         2,
         &[
-            "no input: name a dataset folder, image files or a folder of them, a Y4M video, an MCAP recording, or -",
+            "no input: name a dataset folder, image files or a folder of them, a Y4M video, an MCAP recording, a bag of ROS 1, or -",
         ],
     ),
     ("locate frame.png --airframe hexa.toml", 2, &["no camera: give --camera FILE, or a dataset folder"]),

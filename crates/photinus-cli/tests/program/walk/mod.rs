@@ -55,7 +55,8 @@ const LEFT_OUT: [(&str, &str); 7] = [
 const OTHERS: &str = "ffmpeg() { cat video.y4m; }; jq() { grep overall >/dev/null; }";
 
 /// Options and commands whose next word is written to.
-const WRITES: [&str; 8] = ["--out", "--csv", "--overlay", "--json", "--plots", "--report", "--ocam", ">"];
+const WRITES: [&str; 9] =
+    ["--out", "--out-dir", "--csv", "--overlay", "--json", "--plots", "--report", "--ocam", ">"];
 
 /// The examples of a help, each in one line.
 fn examples(help: &str) -> Vec<String> {

@@ -1,5 +1,11 @@
 //! `photinus locate`: frames -> neighbours with distances and bounds.
 
+mod batch;
+mod lines;
+mod place;
+#[cfg(feature = "parquet")]
+mod table;
+
 use std::path::{Path, PathBuf};
 
 use nalgebra::{Unit, Vector3};
@@ -9,10 +15,10 @@ use photinus::ranging::SpotCurve;
 use photinus_io::calibration::{MountingFile, read_mounting};
 use photinus_io::dataset::{Dataset, DatasetCamera};
 use photinus_io::mask::MaskFile;
-use photinus_io::results::NeighbourRecord;
+use photinus_io::sky::Sky;
 use photinus_link::recording::Motions;
+use photinus_run::View;
 use photinus_run::watch::{self, Turns, Watch};
-use photinus_run::{Entry, View};
 
 use crate::beforehand::{self, Conditions};
 use crate::failure::Failure;
@@ -23,6 +29,7 @@ use crate::pose_options::PoseArgs;
 use crate::run;
 use crate::spot_options::{SpotArgs, mask_of};
 use crate::terminal::Terminal;
+use batch::BatchArgs;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -32,6 +39,8 @@ Examples:
   photinus locate recording --no-time --out results.jsonl
   # goes on where a stopped run ended
   photinus locate recording --out results.jsonl --resume
+  # many recordings on all cores; the same command goes on after a crash
+  photinus locate recording flight --out-dir located
   photinus locate *.png --camera camera.txt --airframe quad.toml \\
       --overlay seen
   photinus locate video.y4m --camera camera.txt --airframe quad.toml \\
@@ -76,6 +85,10 @@ pub(crate) struct Args {
     /// Direction of gravity (down) in the camera frame: x right, y down, z forward [default: that of each frame, if any]
     #[arg(long, value_name = "X,Y,Z", value_parser = gravity, allow_hyphen_values = true)]
     gravity: Option<Unit<Vector3<f64>>>,
+    /// Where and when it was recorded, which tells where the sun was: degrees north and east, the time in UTC at time 0 of the
+    /// frames, and, for a camera that keeps it, its heading clockwise from north [default: that of the dataset, if any]
+    #[arg(long, value_name = "LATITUDE,LONGITUDE,TIME[,HEADING]", allow_hyphen_values = true)]
+    sky: Option<Sky>,
     /// Largest tilt of a neighbour that the bounds allow for, where gravity is known
     #[arg(long, value_name = "DEG", default_value_t = 15.0, value_parser = tilt)]
     max_tilt: f64,
@@ -91,6 +104,8 @@ pub(crate) struct Args {
     spot_options: SpotArgs,
     #[command(flatten)]
     output: OutputArgs,
+    #[command(flatten)]
+    batch: BatchArgs,
     /// Every frame by itself: no tracks, no velocities, no ids
     #[arg(long)]
     no_time: bool,
@@ -180,7 +195,8 @@ impl Args {
             let view = View::new(camera.clone(), kinds, curve, self.settings(), mask)
                 .map_err(|error| Failure::Input(error.to_string()))?
                 .mounted(mounting)
-                .level(self.gravity);
+                .level(self.gravity)
+                .under(self.sky.or_else(|| input.dataset.as_ref()?.sky()));
             if self.no_time {
                 return Ok(view);
             }
@@ -219,13 +235,16 @@ impl Args {
 
 /// Runs the command.
 pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> std::result::Result<(), Failure> {
+    if let Some(folder) = &args.batch.out_dir {
+        return batch::run(args, folder, terminal);
+    }
     let done = args.output.done()?;
     let input = args.open_input()?;
     let kinds = args.kinds(&input, terminal)?;
     let read: Vec<PathBuf> = input.files.iter().cloned().chain(args.files()).collect();
     let mut views = args.views(&input, &kinds, terminal)?;
     let cameras = views.iter().map(|view| view.camera.clone()).collect();
-    let outputs = args.output.claim(args.csv.as_deref(), &read, cameras, lines)?;
+    let outputs = args.output.claim(args.csv.as_deref(), &read, cameras, lines::of)?;
     run::run(input, outputs, done.as_ref(), terminal, &mut views)
 }
 
@@ -274,43 +293,6 @@ fn needed(
 
 fn missing(what: &str) -> Failure {
     Failure::Input(format!("no {what}: give --{what} FILE, or a dataset folder, which names its own"))
-}
-
-fn lines(entry: &Entry) -> Vec<String> {
-    let frame = entry.record.frame.unwrap_or_default();
-    let line = |neighbour| format!("frame {frame:>5}  {}", neighbour_line(neighbour));
-    entry.record.neighbours.iter().map(line).collect()
-}
-
-/// Distance, bounds and direction of a neighbour, to be read.
-fn neighbour_line(neighbour: &NeighbourRecord) -> String {
-    let distance = &neighbour.distance_m;
-    let sigma = distance.sigma.map_or(String::new(), |sigma| format!("± {sigma:.2}"));
-    let estimate = distance.estimate.map_or_else(|| "?".to_owned(), |m| format!("{m:.2}"));
-    let bounds = match distance.max {
-        Some(max) => format!("{:.2} to {max:.2} m", distance.min),
-        None => format!("{:.2} m or more", distance.min),
-    };
-    // As wide where somebody blinks and is not known yet.
-    let who = match (neighbour.id, neighbour.id_probability) {
-        (Some(id), _) => format!("  #{id:<3}"),
-        (None, Some(_)) => " ".repeat(6),
-        (None, None) => String::new(),
-    };
-    let [x, y, z] = neighbour.bearing;
-    let (azimuth, elevation) =
-        (libm::atan2(x, z).to_degrees(), libm::atan2(-y, libm::hypot(x, z)).to_degrees());
-    let side = |degrees: f64, positive: &str, negative: &str| {
-        format!("{:5.1}° {}", degrees.abs(), if degrees < 0.0 { negative } else { positive })
-    };
-    format!(
-        "{}{who}  {estimate:>6} {sigma:<6} m  {bounds:<17}  {:<12} {:<11}  {} {}",
-        neighbour.airframe,
-        side(azimuth, "right", "left"),
-        side(elevation, "up", "down"),
-        neighbour.spots.len(),
-        if neighbour.spots.len() == 1 { "spot" } else { "spots" }
-    )
 }
 
 fn gravity(text: &str) -> std::result::Result<Unit<Vector3<f64>>, String> {

@@ -39,6 +39,8 @@ pub(super) struct LightNoise {
 pub(super) const SHOT_BELIEVED: Measured = Measured { value: 0.03, sigma: 0.03 };
 /// No sensor has less than an electron to a grey level of 8 bits: what asks for more is no noise of light.
 const MOST_SHOT: f64 = 1.0;
+/// Fewer pixels tell nothing of noise.
+const LEAST_PX: usize = 100;
 const PARTS: usize = 10;
 const ROUNDS: usize = 6;
 /// A pixel whose fit takes more of its noise than this tells too little.
@@ -120,13 +122,24 @@ fn of_spot(spot: &Spot<'_>, field: &Field, noise: &Noise) -> Vec<Left> {
     left
 }
 
-/// Explains residuals; `dark_dn` is the noise of patches without light, where it is known.
+/// Explains residuals, by what was believed `before` where there are too few; `dark_dn` is the noise of patches without light, where it is known.
 pub(super) fn explain(residuals: &[Residual], dark_dn: Option<Measured>, before: &Noise) -> LightNoise {
     // patches know darkness only so well, and where there is little light every error of it is one of shot noise
     let dark = dark_dn.map(|Measured { value, sigma }| Measured {
         value: value * value + ROUNDING,
         sigma: 2.0 * value * sigma.max(1e-4),
     });
+    if residuals.len() < LEAST_PX {
+        let dark_sigma = dark.map_or(before.dark, |dark| dark.sigma);
+        let unsure = LightNoise {
+            noise: *before,
+            dark_sigma,
+            shot_sigma: SHOT_BELIEVED.sigma,
+            shape_sigma: before.shape,
+            is_shot_seen: false,
+        };
+        return unsure;
+    }
     let free = split(residuals, dark, None, before);
     let is_shot_seen = free.noise.shot > 3.0 * free.shot_sigma && free.noise.shot < MOST_SHOT;
     if is_shot_seen {

@@ -127,14 +127,20 @@ pub fn learn(collection: &Collection) -> Result<Learned, LearnError> {
     place(&mut spots, &field, &noise, 2);
     let clear = clear_of_full(&spots, &field, &noise, full_from);
     let response = response::learn(&clear, &field, &noise).map(|bend_per_dn| Response { bend_per_dn });
-    let residuals = if clear.len() < FEWEST_HALVED {
-        light::residuals(&clear, &field, &noise)
+    let told = if clear.iter().filter(|spot| spot.is_used && spot.is_linear()).count() < FEWEST_SPOTS {
+        // Being too dark by a little, as spots are that happen not to be full, is less wrong than hearing none of the bright ones.
+        &spots
+    } else {
+        &clear
+    };
+    let residuals = if told.len() < FEWEST_HALVED {
+        light::residuals(told, &field, &noise)
     } else {
         let halves = [0, 1].map(|half| {
             let start = Field::new(start.table(), size_px, nodes);
-            field_of_half(&clear, start, &noise, half)
+            field_of_half(told, start, &noise, half)
         });
-        light::free_residuals(&clear, &field, halves.each_ref(), &noise)
+        light::free_residuals(told, &field, halves.each_ref(), &noise)
     };
     let light = light::explain(&residuals, darkness.noise_dn, &noise);
     let used = spots.iter().filter(|spot| spot.is_used).count();

@@ -44,6 +44,8 @@ pub fn predict(optics: &Optics, collection: &Collection) -> Option<Prediction> {
     let mut misfits = Vec::new();
     for spot in spots.iter().filter(|spot| spot.is_used) {
         let before = (squares, pixels);
+        // As the detector does: the frame's own noise where that is more.
+        let noise = Noise { dark: noise.dark.max(spot.window.unevenness()), ..noise };
         spot.each_pixel(field.at(spot.place_px()), &noise, PLACE_REACH, &mut shares, |pixel| {
             squares += pixel.left * pixel.left * pixel.weight;
             pixels += 1;

@@ -29,7 +29,7 @@ const LONGEST_PX: f64 = 0.5;
 /// A step shorter than this is the last, px and sigmas, if it changes the light by less than this share.
 const DONE_SIGMAS: f64 = 0.3;
 const DONE_PX: f64 = 0.03;
-const DONE_SHARE: f64 = 0.03;
+pub(super) const DONE_SHARE: f64 = 0.03;
 /// A last step longer than this has not settled, px.
 const SETTLED_PX: f64 = 0.05;
 /// How far light is taken to change in a step, over the light.
@@ -39,7 +39,7 @@ const LEVEL_KNOWN_DN: f64 = 3.0;
 
 pub(super) const U: usize = 0;
 pub(super) const V: usize = 1;
-const LIGHT: usize = 2;
+pub(super) const LIGHT: usize = 2;
 const LEVEL: usize = 3;
 /// The first of the numbers that say how wide the light is.
 pub(super) const WIDTH: usize = 4;
@@ -58,6 +58,16 @@ pub(super) trait Shape<const N: usize> {
     /// The point spread of light 1 with these numbers of width at four pixels, its derivatives by u, v and by each of them in the columns
     /// from [`WIDTH`] on.
     fn shares(&self, row: usize, column: usize, widths: &SVector<f64, N>) -> (Lanes, [Lanes; N]);
+
+    /// Which numbers are places, u and v.
+    fn places(&self) -> &'static [[usize; 2]] {
+        &[[U, V]]
+    }
+
+    /// Whether a step is short enough to be the last, as far as places and light do not tell.
+    fn is_short(&self, _step: &SVector<f64, N>) -> bool {
+        true
+    }
 
     /// Places the spread as these numbers say, (u, v) px from the middle of the window.
     fn place(&mut self, numbers: &SVector<f64, N>, reach: usize);
@@ -193,13 +203,12 @@ fn fit_from<const N: usize>(
         }
         let factor = matrix.cholesky()?;
         let mut step = factor.solve(&right);
-        for number in [U, V] {
+        for &number in shape.places().as_flattened() {
             step[number] = step[number].clamp(-LONGEST_PX, LONGEST_PX);
         }
         let before = numbers[LIGHT];
         // Light neither vanishes nor explodes in a step: far from the answer slopes say little.
         step[LIGHT] = step[LIGHT].clamp(-0.6 * before, 4.0 * before);
-        let step_px = libm::hypot(step[U], step[V]);
         // Weights follow the model: what overshoots once goes half as far from then on.
         if step_number >= UNDAMPED
             && (0..N)
@@ -207,12 +216,20 @@ fn fit_from<const N: usize>(
         {
             gain *= 0.5;
         }
+        // No covariance is less than one over the information.
+        let (mut step_px, mut sigmas) = (0.0_f64, 0.0_f64);
+        for &[u, v] in shape.places() {
+            let moved_px = libm::hypot(step[u], step[v]);
+            step_px = step_px.max(moved_px);
+            sigmas = sigmas.max(moved_px * matrix[(u, u)].max(matrix[(v, v)]).sqrt());
+        }
         step *= gain;
         numbers += step;
         previous = step;
-        // No covariance is less than one over the information.
-        let sigmas = step_px * matrix[(U, U)].max(matrix[(V, V)]).sqrt();
-        let is_done = step_px < DONE_PX && sigmas < DONE_SIGMAS && step[LIGHT].abs() < DONE_SHARE * before;
+        let is_done = step_px < DONE_PX
+            && sigmas < DONE_SIGMAS
+            && step[LIGHT].abs() < DONE_SHARE * before
+            && shape.is_short(&step);
         let mut cost = sums.log_variances;
         for number in WIDTH..N {
             let (mean, weight) = shape.believed(number);

@@ -68,7 +68,9 @@ pub(super) struct Model {
     pub(super) covariance_px2: Matrix2<f64>,
     /// Light that windows see, and all of it.
     pub(super) light: Measured,
-    all_light: f64,
+    pub(super) all_light: f64,
+    /// Whether it was fitted together with a twin.
+    pub(super) is_of_pair: bool,
 }
 
 /// Fits the parts of frames.
@@ -85,9 +87,12 @@ pub(super) struct Fitter {
     pub(super) frames: u32,
     pub(super) window: Window,
     pub(super) widths: Vec<f64>,
+    pub(super) misfits: Vec<f64>,
     models: Vec<Option<Model>>,
     /// Whether light moved in this frame while the shutter was open.
     pub(super) is_smeared: bool,
+    /// How far apart two points must be to be told apart, px.
+    pub(super) resolution_px: f64,
     /// Components that are one streak though they were split: room to work in.
     pub(super) joined: Vec<usize>,
 }
@@ -104,8 +109,10 @@ impl Fitter {
             frames: 0,
             window: Window::default(),
             widths: Vec::new(),
+            misfits: Vec::new(),
             models: Vec::new(),
             is_smeared: false,
+            resolution_px: 0.0,
             joined: Vec::new(),
         }
     }
@@ -117,7 +124,7 @@ impl Fitter {
 
     /// Whether a part may be a point's light, as far as that can be told: where nobody measured the point spread, not what the border cuts, and
     /// nothing at all where points are of no shape that is known.
-    fn may_be_point(&self, part: &Part) -> bool {
+    pub(super) fn may_be_point(&self, part: &Part) -> bool {
         let knows_shape = || !part.outline.cut && self.belief.noise().shape < SHAPELESS;
         part.reason.is_none() && part.radius_px <= WIDEST_POINT_PX && (self.optics.is_some() || knows_shape())
     }
@@ -139,6 +146,10 @@ impl Fitter {
             self.learn(frame, parts, near, full_from);
         }
         let is_sure = self.is_sure();
+        if is_sure {
+            let middle = Pixel::new(0.5 * frame.width() as f64, 0.5 * frame.height() as f64);
+            self.resolution_px = spread(self.optics.as_deref(), &self.belief, middle).resolution_px();
+        }
         let passes = if is_sure { &PASSES[..] } else { &PASSES[..1] };
         for &others in passes {
             for (index, part) in parts.iter().enumerate() {
@@ -153,16 +164,19 @@ impl Fitter {
                 if is_unclear || (others && is_alone) {
                     continue;
                 }
+                if others && let Some(twin) = self.twin(parts, index, near) {
+                    if twin < index && self.models[twin].is_some_and(|model| model.is_of_pair) {
+                        continue;
+                    }
+                    if let Some(models) = self.pair(frame, parts, [index, twin], near, full_from) {
+                        [self.models[index], self.models[twin]] = models.map(Some);
+                        continue;
+                    }
+                }
                 let (window_px, around) =
                     self.open(frame, part, if others { f64::INFINITY } else { room_px }, full_from);
                 if others {
-                    let middle = self.window.place(0.0, 0.0);
-                    near.each_near(index, window_px + OTHERS_PX, |other, _| {
-                        if let Some(model) = self.models[other] {
-                            let spread = spread(self.optics.as_deref(), &self.belief, middle);
-                            self.window.add_other(spread, model.centre, model.all_light, OTHERS_KNOWN);
-                        }
-                    });
+                    self.add_others(index, None, window_px, near);
                 }
                 let model = self.model(part, around, is_sure);
                 if model.is_some() || !others {
@@ -170,6 +184,23 @@ impl Fitter {
                 }
             }
         }
+    }
+
+    /// Tells the window what light of others falls into it, that of part `index` and its twin left out.
+    pub(super) fn add_others(
+        &mut self,
+        index: usize,
+        twin: Option<usize>,
+        window_px: f64,
+        near: &Neighbourhood,
+    ) {
+        let middle = self.window.place(0.0, 0.0);
+        near.each_near(index, window_px + OTHERS_PX, |other, _| {
+            if let Some(model) = self.models[other].filter(|_| twin != Some(other)) {
+                let spread = spread(self.optics.as_deref(), &self.belief, middle);
+                self.window.add_other(spread, model.centre, model.all_light, OTHERS_KNOWN);
+            }
+        });
     }
 
     /// Opens the window on a part.
@@ -182,7 +213,20 @@ impl Fitter {
     ) -> (f64, Surroundings) {
         let window_px = radius_px(part).min(room_px.max(part.radius_px + 0.8).max(1.9));
         let around = surroundings(frame, part, window_px);
-        self.window.read(frame, part.guess, window_px, &around, full_from);
+        self.read(frame, part.guess, window_px, &around, full_from);
+        (window_px, around)
+    }
+
+    /// Reads the window at a place, with what was measured of its pixels.
+    pub(super) fn read(
+        &mut self,
+        frame: &FrameView<'_>,
+        place: Pixel,
+        window_px: f64,
+        around: &Surroundings,
+        full_from: u8,
+    ) {
+        self.window.read(frame, place, window_px, around, full_from);
         if let Some(optics) = &self.optics {
             self.window.leave_out(&optics.hot_pixels);
             if let Some(response) = optics.sensor.bent() {
@@ -190,7 +234,6 @@ impl Fitter {
                 self.window.straighten(response, (read_dn * read_dn + 1.0 / 12.0) as f32);
             }
         }
-        (window_px, around)
     }
 
     /// Noise of a pixel for what has no shape that is known: as the settings tell it, for what fits leave says nothing of such pixels; the
@@ -265,35 +308,53 @@ impl Fitter {
 
     /// What a fit says of a spot.
     fn told<const N: usize>(&self, fitted: &Fitted<N>, noise: PixelNoise, part: &Part) -> Option<Model> {
-        let misfit = fitted.chi2 / fitted.freedom;
-        let centre = self.window.place(fitted.numbers[0], fitted.numbers[1]);
-        let off_px = libm::hypot(centre.u - part.guess.u, centre.v - part.guess.v);
+        let point = Point {
+            centre: self.window.place(fitted.numbers[0], fitted.numbers[1]),
+            covariance_px2: fitted.centre_covariance_px2(),
+            light: fitted.light(),
+            light_variance: fitted.light_variance(),
+        };
+        let off_px = libm::hypot(point.centre.u - part.guess.u, point.centre.v - part.guess.v);
         let is_off = !part.outline.cut && off_px > OFF_PX + OFF_RADII * part.radius_px;
-        if misfit > NO_POINT || is_off {
+        if is_off { None } else { self.point(&point, fitted.chi2, fitted.freedom, noise) }
+    }
+
+    /// A point as it is known, from what its fit left over; nothing of what is no point's light.
+    pub(super) fn point(&self, point: &Point, chi2: f64, freedom: f64, noise: PixelNoise) -> Option<Model> {
+        let misfit = chi2 / freedom;
+        if misfit > NO_POINT {
             return None;
         }
-        let noisier = (fitted.chi2 + PIXELS_OF_ALL) / (fitted.freedom + PIXELS_OF_ALL);
+        let noisier = (chi2 + PIXELS_OF_ALL) / (freedom + PIXELS_OF_ALL);
         let noisier = if misfit > 2.0 { misfit } else { noisier };
         // How much of its light falls where it is seen is as unsure as the shape is, more so where only its wings are.
         let shape = f64::from(noise.shape);
         let is_full = self.window.full_px > 0;
         let spills = if is_full { self.window.spilled_share() } else { 0.0 };
-        let unsure = fitted.light() * (shape * if is_full { WINGS } else { WHOLE } + SPILT_LIGHT * spills);
+        let unsure = point.light * (shape * if is_full { WINGS } else { WHOLE } + SPILT_LIGHT * spills);
         let seen = if self.optics.is_some() { 1.0 } else { self.belief.seen_share() };
         let full_px = f64::from(self.window.full_px);
         let blur_px2 = 0.25 * spills * SATURATION_BLUR_PX * SATURATION_BLUR_PX / (full_px + 4.0)
             + (MISSHAPEN_PX * shape * shape) * (MISSHAPEN_PX * shape * shape);
         Some(Model {
-            centre,
-            covariance_px2: fitted.centre_covariance_px2() * noisier
-                + Matrix2::from_diagonal_element(blur_px2),
+            centre: point.centre,
+            covariance_px2: point.covariance_px2 * noisier + Matrix2::from_diagonal_element(blur_px2),
             light: Measured {
-                value: seen * fitted.light(),
-                sigma: seen * (fitted.light_variance() * noisier + unsure * unsure).sqrt(),
+                value: seen * point.light,
+                sigma: seen * (point.light_variance * noisier + unsure * unsure).sqrt(),
             },
-            all_light: fitted.light(),
+            all_light: point.light,
+            is_of_pair: false,
         })
     }
+}
+
+/// A point's light as a fit has it, with its covariance where pixels are as noisy as they were taken to be.
+pub(super) struct Point {
+    pub(super) centre: Pixel,
+    pub(super) covariance_px2: Matrix2<f64>,
+    pub(super) light: f64,
+    pub(super) light_variance: f64,
 }
 
 /// The point spread at a place.
@@ -312,14 +373,24 @@ fn measured_spill(sensor: &Sensor) -> Spill {
 }
 
 /// How far the window on a part reaches, px.
-fn radius_px(part: &Part) -> f64 {
+pub(super) fn radius_px(part: &Part) -> f64 {
     (part.radius_px + MARGIN_PX).clamp(3.2, WIDEST_PX as f64)
 }
 
 /// The background around a window on a part.
 pub(super) fn surroundings(frame: &FrameView<'_>, part: &Part, window_px: f64) -> Surroundings {
+    surroundings_at(frame, part, part.guess, window_px)
+}
+
+/// The background around a window at a place beside a part.
+pub(super) fn surroundings_at(
+    frame: &FrameView<'_>,
+    part: &Part,
+    place: Pixel,
+    window_px: f64,
+) -> Surroundings {
     let level = Surroundings { level: f32::from(part.level), slope: [0.0; 2], variance: 0.0 };
-    patch::surroundings(frame, nearest_pixel(part.guess), reach_px(window_px), part.bright).unwrap_or(level)
+    patch::surroundings(frame, nearest_pixel(place), reach_px(window_px), part.bright).unwrap_or(level)
 }
 
 /// Pixels from the middle of a patch to its edge that hold a window of this radius, wherever in a pixel it settles.

@@ -13,6 +13,7 @@
 //! neighbourhood  how far a part's light is its own                -> room for a window
 //! lessons        what the frame tells of the camera               -> point spread (learning), noise (noise_bins), full_level
 //! fitting        a window on each part, less its background (window, patch), and the camera's point spread in it (fit), along a segment where it moved (smear)
+//!                two at once where neither is seen alone (pairs)
 //!                -> centre and light of a point, with covariances
 //! measuring      spots of those; what is no point's light by its wings (wings) or a balanced window (centroid)
 //!                -> spots
@@ -39,6 +40,7 @@ mod measuring;
 mod neighbourhood;
 mod noise_bins;
 mod odds;
+mod pairs;
 mod part;
 mod patch;
 mod rejection;

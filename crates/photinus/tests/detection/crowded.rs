@@ -73,7 +73,7 @@ fn pairs(apart_px: f64, width_px: f64, heights: [f64; 2], noise: f64, rule: Brig
 }
 
 /// The point spread of such markers: the scene takes the light in the middle of a pixel for that of the pixel.
-fn spread(width_px: f64) -> PointSpread {
+pub(crate) fn spread(width_px: f64) -> PointSpread {
     let place = |at: usize| at as f64 / PointSpread::SAMPLES_PER_PX as f64 - PointSpread::REACH_PX as f64;
     let share = |index: usize| {
         let (x, y) = (place(index % PointSpread::SIDE), place(index / PointSpread::SIDE));

@@ -14,6 +14,7 @@ mod determinism;
 mod hash;
 mod large;
 mod mosaic;
+mod pairs;
 mod properties;
 mod scene;
 mod smeared;

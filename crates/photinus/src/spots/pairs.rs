@@ -1,0 +1,196 @@
+//! Two points so near each other that neither is seen alone: fitted together.
+//!
+//! In: two parts, each the other's nearest. Out: centre and light of both. Fitted in turn, each would take the other's error for light of its
+//! own, and lean towards it; fitted together, what cannot be told apart is in the covariances.
+
+use nalgebra::{Matrix2, SVector};
+
+use super::fit::{self, Fitted, PointSource, Shape, WIDTH};
+use super::fitting::{Fitter, Model, Point, SIZE_PX2, radius_px, spread, surroundings_at};
+use super::neighbourhood::Neighbourhood;
+use super::part::Part;
+use super::window::{Spill, WIDEST_PX};
+use crate::camera::Pixel;
+#[cfg(not(feature = "std"))]
+use crate::float::Float as _;
+use crate::frame::FrameView;
+use crate::lanes::Lanes;
+
+/// Points further apart than this many resolutions, and with more than this between what is bright of them, px, are fitted one by one.
+const NEAR: f64 = 2.5;
+const BETWEEN_PX: f64 = 2.0;
+/// How far the second point is from the middle of its part, px, and its light from the first guess, as a logarithm.
+const PLACE_KNOWN_PX: f64 = 1.5;
+const LIGHT_KNOWN: f64 = 1.5;
+
+/// The numbers of the second point: where it is, and the logarithm of its light over the first one's.
+const U2: usize = WIDTH + 1;
+const V2: usize = WIDTH + 2;
+const RATIO: usize = WIDTH + 3;
+const NUMBERS: usize = WIDTH + 4;
+
+impl Fitter {
+    /// The part that part `index` is to be fitted together with: the nearest, if this one is its nearest, too.
+    pub(super) fn twin(&self, parts: &[Part], index: usize, near: &Neighbourhood) -> Option<usize> {
+        let nearest = |from: usize| {
+            let by_resolution_px = NEAR * self.resolution_px;
+            let by_brightness_px = |edge_px: f64| edge_px < parts[from].radius_px + BETWEEN_PX;
+            let reach_px = by_resolution_px.max(parts[from].radius_px + BETWEEN_PX);
+            let mut nearest = (f64::INFINITY, None);
+            near.each_near(from, reach_px, |other, edge_px| {
+                let gap_px = gap_px(&parts[from], &parts[other]);
+                let is_near = gap_px < by_resolution_px || by_brightness_px(edge_px);
+                if is_near && gap_px < nearest.0 && self.may_be_point(&parts[other]) {
+                    nearest = (gap_px, Some(other));
+                }
+            });
+            nearest.1
+        };
+        nearest(index).filter(|&other| nearest(other) == Some(index))
+    }
+
+    /// Two parts as two points; `None` where they are none.
+    pub(super) fn pair(
+        &mut self,
+        frame: &FrameView<'_>,
+        parts: &[Part],
+        [one, other]: [usize; 2],
+        near: &Neighbourhood,
+        full_from: u8,
+    ) -> Option<[Model; 2]> {
+        let both = [&parts[one], &parts[other]];
+        let middle =
+            Pixel::new(0.5 * (both[0].guess.u + both[1].guess.u), 0.5 * (both[0].guess.v + both[1].guess.v));
+        let radius_px = radius_px(both[0]).max(radius_px(both[1])) + 0.5 * gap_px(both[0], both[1]);
+        let window_px = radius_px.min(WIDEST_PX as f64);
+        let around = surroundings_at(frame, both[0], middle, window_px);
+        self.read(frame, middle, window_px, &around, full_from);
+        self.add_others(one, Some(other), window_px, near);
+        let noise = self.pixel_noise(around);
+        let places = both.map(|part| self.window.local(part.guess));
+        // Points of one point spread shine as their summits are high, or, where these are cut off, as far as they reach.
+        let is_full = both.iter().any(|part| part.outline.peak >= full_from);
+        let lights = both.map(|part| {
+            let height = (f64::from(part.outline.peak) - f64::from(around.level)).max(1.0);
+            if is_full { height * part.radius_px * part.radius_px } else { height }
+        });
+        let flux = self.window.flux().max(2.0);
+        let light = flux * lights[0] / (lights[0] + lights[1]);
+        let spread = spread(self.optics.as_deref(), &self.belief, middle);
+        let first = PointSource::new(spread, SIZE_PX2, self.spill());
+        let mut pair = PointPair {
+            first,
+            second: first,
+            place_px: [places[1].0, places[1].1],
+            ln_ratio: libm::log(lights[1] / lights[0]),
+        };
+        let guess = (places[0].0, places[0].1, light);
+        let fitted: Fitted<NUMBERS> = fit::fit(&mut self.window, &mut pair, guess, noise)?;
+        let points = points(&fitted)
+            .map(|point| Point { centre: self.window.place(point.centre.u, point.centre.v), ..point });
+        let is_within = |(point, part): (&Point, &Part)| {
+            libm::hypot(point.centre.u - part.guess.u, point.centre.v - part.guess.v)
+                < part.radius_px.max(1.0)
+        };
+        if !points.iter().zip(both).all(is_within) {
+            return None;
+        }
+        let model = |point: &Point| {
+            let model = self.point(point, fitted.chi2, fitted.freedom, noise)?;
+            Some(Model { is_of_pair: true, ..model })
+        };
+        Some([model(&points[0])?, model(&points[1])?])
+    }
+}
+
+fn gap_px(one: &Part, other: &Part) -> f64 {
+    libm::hypot(one.guess.u - other.guess.u, one.guess.v - other.guess.v)
+}
+
+/// The two points of a fit, as seen from the middle of the window.
+fn points(fitted: &Fitted<NUMBERS>) -> [Point; 2] {
+    let Fitted { numbers, covariance, .. } = fitted;
+    let times = libm::exp(numbers[RATIO]);
+    let mut by_number = SVector::<f64, NUMBERS>::zeros();
+    (by_number[fit::LIGHT], by_number[RATIO]) = (times, times * fitted.light());
+    let first = Point {
+        centre: Pixel::new(numbers[fit::U], numbers[fit::V]),
+        covariance_px2: fitted.centre_covariance_px2(),
+        light: fitted.light(),
+        light_variance: fitted.light_variance(),
+    };
+    let second = Point {
+        centre: Pixel::new(numbers[U2], numbers[V2]),
+        covariance_px2: Matrix2::from_fn(|i, j| covariance[(U2 + i, U2 + j)]),
+        light: times * fitted.light(),
+        light_variance: (by_number.transpose() * covariance * by_number)[0],
+    };
+    [first, second]
+}
+
+/// Two points of the same size.
+struct PointPair<'a> {
+    first: PointSource<'a>,
+    second: PointSource<'a>,
+    place_px: [f64; 2],
+    ln_ratio: f64,
+}
+
+impl PointPair<'_> {
+    /// What the second point's own numbers are.
+    fn second(numbers: &SVector<f64, NUMBERS>) -> SVector<f64, { WIDTH + 1 }> {
+        let mut own = first(numbers);
+        (own[fit::U], own[fit::V]) = (numbers[U2], numbers[V2]);
+        own
+    }
+}
+
+fn first(numbers: &SVector<f64, NUMBERS>) -> SVector<f64, { WIDTH + 1 }> {
+    SVector::from_fn(|number, _| numbers[number])
+}
+
+impl Shape<NUMBERS> for PointPair<'_> {
+    #[inline(always)]
+    fn shares(
+        &self,
+        row: usize,
+        column: usize,
+        numbers: &SVector<f64, NUMBERS>,
+    ) -> (Lanes, [Lanes; NUMBERS]) {
+        let (one, by_one) = self.first.shares(row, column, &first(numbers));
+        let (other, by_other) = self.second.shares(row, column, &Self::second(numbers));
+        let times = Lanes::splat(libm::exp(numbers[RATIO]) as f32);
+        let mut columns = [Lanes::ZERO; NUMBERS];
+        (columns[fit::U], columns[fit::V]) = (by_one[fit::U], by_one[fit::V]);
+        columns[WIDTH] = by_one[WIDTH] + times * by_other[WIDTH];
+        (columns[U2], columns[V2]) = (times * by_other[fit::U], times * by_other[fit::V]);
+        columns[RATIO] = times * other;
+        (one + times * other, columns)
+    }
+
+    fn places(&self) -> &'static [[usize; 2]] {
+        &[[fit::U, fit::V], [U2, V2]]
+    }
+
+    fn is_short(&self, step: &SVector<f64, NUMBERS>) -> bool {
+        step[RATIO].abs() < 0.3 * fit::DONE_SHARE
+    }
+
+    fn place(&mut self, numbers: &SVector<f64, NUMBERS>, reach: usize) {
+        self.first.place(&first(numbers), reach);
+        self.second.place(&Self::second(numbers), reach);
+    }
+
+    fn believed(&self, number: usize) -> (f64, f64) {
+        match number {
+            U2 => (self.place_px[0], 1.0 / (PLACE_KNOWN_PX * PLACE_KNOWN_PX)),
+            V2 => (self.place_px[1], 1.0 / (PLACE_KNOWN_PX * PLACE_KNOWN_PX)),
+            RATIO => (self.ln_ratio, 1.0 / (LIGHT_KNOWN * LIGHT_KNOWN)),
+            _ => self.first.believed(number),
+        }
+    }
+
+    fn spill(&self, numbers: &SVector<f64, NUMBERS>) -> Spill {
+        self.first.spill(&first(numbers))
+    }
+}

@@ -200,11 +200,13 @@ impl InputArgs {
         Ok(Input { recording: Some(path.to_owned()), ..input })
     }
 
-    /// The same of a bag of ROS 1, whose motion is not read.
+    /// The same of a bag of ROS 1.
     fn bag(&self, path: &Path) -> std::result::Result<Input, Failure> {
         let frames = BagFrames::open(path, self.dataset.only.as_deref()).map_err(Failure::input)?;
         let count = frames.total();
-        Ok(Input::new(Source::Frames(FrameSource::other(frames)), count, self.inputs.clone(), path))
+        let frames = Source::Frames(FrameSource::other(frames));
+        let input = Input::new(frames, count, self.inputs.clone(), path);
+        Ok(Input { recording: Some(path.to_owned()), ..input })
     }
 
     fn source(&self) -> std::result::Result<Input, Failure> {

@@ -50,25 +50,41 @@ pub(crate) fn sinks(
     table: &str,
     motion: &Motion,
     cameras: &[live::Camera],
-) -> Result<Option<Box<dyn Sink>>, Failure> {
+) -> Result<Vec<Box<dyn Sink>>, Failure> {
     let tables: Tables = table::parse(config.text(), config.path()).map_err(Failure::input)?;
     let cameras: Vec<Camera> = cameras.iter().map(linked).collect();
+    let one = |sink: photinus_io::Result<Box<dyn Sink>>| sink.map(|sink| vec![sink]);
     #[cfg(not(any(feature = "ros2", feature = "mavlink", feature = "zenoh")))]
     let _ = motion;
     let opened = match table {
         "record" => tables.record.map(|record| {
             let file = config.located(&record.file);
-            Record { file, ..record }.open(&cameras)
+            one(Record { file, ..record }.open(&cameras))
         }),
         #[cfg(feature = "ros2")]
-        "ros2" => tables.ros2.map(|ros2| ros2.open(&cameras, motion.clone())),
+        "ros2" => tables
+            .ros2
+            .map(|ros2| drawing(&cameras).and_then(|draw| ros2.open(&cameras, motion.clone(), draw))),
         #[cfg(feature = "mavlink")]
-        "mavlink" => tables.mavlink.map(|mavlink| mavlink.open(&cameras, motion.clone())),
+        "mavlink" => tables.mavlink.map(|mavlink| one(mavlink.open(&cameras, motion.clone()))),
         #[cfg(feature = "zenoh")]
-        "zenoh" => tables.zenoh.map(|zenoh| zenoh.open(&cameras, motion.clone())),
+        "zenoh" => tables.zenoh.map(|zenoh| one(zenoh.open(&cameras, motion.clone()))),
         _ => return Err(missing(config, table)),
     };
-    opened.transpose().map_err(Failure::input)
+    opened.transpose().map(Option::unwrap_or_default).map_err(Failure::input)
+}
+
+/// What draws the pictures that ROS 2 carries: as `locate --overlay` does, without the view from above.
+#[cfg(feature = "ros2")]
+fn drawing(cameras: &[Camera]) -> photinus_io::Result<photinus_link::ros2::Draw> {
+    let lenses = cameras.iter().map(|camera| camera.lens.clone()).collect();
+    let mut drawing = crate::overlay::Drawing::new(lenses, false)?;
+    Ok(Box::new(move |entry| {
+        let frame = entry.image.as_ref().map(photinus_io::image::GreyImage::view);
+        let drawn = drawing.draw(entry.camera, &entry.record, frame, entry.gravity.as_ref(), &[])?;
+        let rgb = drawn.data().chunks_exact(4).flat_map(|pixel| [pixel[0], pixel[1], pixel[2]]).collect();
+        Ok(photinus_link::ros2::Picture { width: drawn.width(), height: drawn.height(), rgb })
+    }))
 }
 
 /// What opens a topic as a camera's source; the tables `[ros2]` and `[zenoh]` say where it is. `None` where that is not in this program, or where

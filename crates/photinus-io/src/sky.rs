@@ -126,11 +126,19 @@ impl Sky {
 
     /// The sun at a time of the recording, s, for a camera in whose frame `down` is down; `None` at night.
     pub fn sun(&self, time_s: f64, down: &Unit<Vector3<f64>>) -> Option<Sun> {
-        let day = self.start.julian_date() + time_s / SECONDS_PER_DAY;
+        Some(self.seen(&self.direction(time_s)?, down))
+    }
+
+    /// Where the sun stands in the second of the recording that `time_s` is in, x east, y north, z up; `None` at night. It is the same for the whole
+    /// second, in which the sun goes 0.004 deg, so that it need not be worked out for every frame.
+    pub fn direction(&self, time_s: f64) -> Option<Unit<Vector3<f64>>> {
+        let day = self.start.julian_date() + time_s.floor() / SECONDS_PER_DAY;
         let sun = sun_of_day(&self.site, &JulianDate::new(day, self.start.delta_t()).ok()?)?;
-        if libm::asin(sun.z) < LOWEST_RAD {
-            return None;
-        }
+        (libm::asin(sun.z) >= LOWEST_RAD).then_some(sun)
+    }
+
+    /// The sun of [`Self::direction`] in the frame of a camera in which `down` is down.
+    pub fn seen(&self, sun: &Unit<Vector3<f64>>, down: &Unit<Vector3<f64>>) -> Sun {
         let up = -*down;
         // A camera that looks straight up or down has no heading.
         let ahead = Vector3::z() - up.into_inner() * up.z;
@@ -143,7 +151,7 @@ impl Sky {
         let north = UnitQuaternion::from_axis_angle(&up, heading_rad) * ahead.into_inner();
         let east = north.cross(&up);
         let towards = east * sun.x + north * sun.y + up.into_inner() * sun.z;
-        Some(Sun::new(Unit::new_normalize(towards), up, TILT_SIGMA_RAD, sigma_rad))
+        Sun::new(Unit::new_normalize(towards), up, TILT_SIGMA_RAD, sigma_rad)
     }
 }
 

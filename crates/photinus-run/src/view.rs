@@ -3,7 +3,7 @@
 use nalgebra::{Unit, Vector3};
 use photinus::camera::Camera;
 use photinus::frame::Mask;
-use photinus::locator::{Input, Kind, Locator, LocatorError, Settings, Stage};
+use photinus::locator::{Input, Kind, Locator, LocatorError, Settings, Stage, Sun};
 use photinus::ranging::SpotCurve;
 use photinus::spots::Spot;
 use photinus_io::calibration::MountingFile;
@@ -26,6 +26,8 @@ pub struct View {
     airframes: Vec<String>,
     gravity: Option<Unit<Vector3<f64>>>,
     sky: Option<Sky>,
+    /// The second that the sun was looked for last, and where it stands.
+    sun: Option<(f64, Option<Unit<Vector3<f64>>>)>,
 }
 
 impl View {
@@ -44,7 +46,17 @@ impl View {
         locator.set_mask(mask.cloned())?;
         let airframes = kinds.iter().map(|kind| kind.airframe.name().to_owned()).collect();
         let mask = mask.cloned();
-        Ok(Self { camera, mounting: None, mask, locator, watch: None, airframes, gravity: None, sky: None })
+        Ok(Self {
+            camera,
+            mounting: None,
+            mask,
+            locator,
+            watch: None,
+            airframes,
+            gravity: None,
+            sky: None,
+            sun: None,
+        })
     }
 
     /// How it sits on its vehicle, where that is known.
@@ -80,14 +92,25 @@ impl View {
     pub fn under(self, sky: Option<Sky>) -> Self {
         Self { sky, ..self }
     }
+
+    /// Where the sun stands in this frame: the place in the sky is worked out once a second.
+    fn sun(&mut self, entry: &Entry) -> Option<Sun> {
+        let (sky, down, time_s) = (self.sky.as_ref()?, entry.gravity.as_ref()?, entry.record.time_s?);
+        let second = time_s.floor();
+        let sun = match self.sun {
+            Some((known, sun)) if known.total_cmp(&second).is_eq() => sun,
+            _ => sky.direction(second),
+        };
+        self.sun = Some((second, sun));
+        Some(sky.seen(&sun?, down))
+    }
 }
 
 impl Work for View {
     fn fill(&mut self, entry: &mut Entry, clock: &mut Clock) -> Result<()> {
         let live = || self.watch.as_ref()?.down(entry);
         entry.gravity = self.gravity.or(entry.gravity).or_else(live);
-        let sun = |sky: &Sky| sky.sun(entry.record.time_s?, entry.gravity.as_ref()?);
-        entry.sun = self.sky.as_ref().and_then(sun);
+        entry.sun = self.sun(entry);
         locate(entry, &mut self.locator, &self.airframes, clock)?;
         if let Some(watch) = &mut self.watch {
             watch.follow(entry, self.locator.located());

@@ -51,18 +51,24 @@ const LARGEST_MAP_PX: u32 = 2480;
 /// The picture's smallest height without legend, px: the map needs room.
 const SMALLEST_HEIGHT_PX: u32 = 480;
 
-/// Pictures in the making, one after the other.
+/// Pictures in the making, one after the other, and where they go.
 pub(crate) struct Overlay {
     place: Place,
+    drawing: Drawing,
+    palette: Palette,
+    bytes: Vec<u8>,
+}
+
+/// Draws pictures, one after the other.
+pub(crate) struct Drawing {
     cameras: Vec<Camera>,
+    has_map: bool,
     font: Font,
     /// What was seen in the last picture of each camera.
     last: Vec<Last>,
     /// What is under the marks of the last picture, and what it was drawn for.
     under: Option<(Under, Pixmap)>,
     picture: Option<Pixmap>,
-    palette: Palette,
-    bytes: Vec<u8>,
 }
 
 /// What pictures of a camera take over from the one before, so that names, colours and the range of the map stay.
@@ -88,19 +94,8 @@ impl Overlay {
     /// # Errors
     /// [`Error`] when the program's font is damaged.
     pub(crate) fn new(place: Place, cameras: Vec<Camera>) -> Result<Self> {
-        let font =
-            Font::new().ok_or_else(|| Error::format("the pictures", "the font of the program is damaged"))?;
-        let last = cameras.iter().map(|_| Last::default()).collect();
-        Ok(Self {
-            place,
-            cameras,
-            font,
-            last,
-            under: None,
-            picture: None,
-            palette: Palette::new(),
-            bytes: Vec::new(),
-        })
+        let drawing = Drawing::new(cameras, true)?;
+        Ok(Self { place, drawing, palette: Palette::new(), bytes: Vec::new() })
     }
 
     /// Writes the picture of a frame; without pixels, spots stand on black. `truth_m` is where neighbours are, camera frame, m,
@@ -116,6 +111,35 @@ impl Overlay {
         gravity: Option<&Unit<Vector3<f64>>>,
         truth_m: &[Vector3<f64>],
     ) -> Result<()> {
+        let picture = self.drawing.draw(camera, record, frame, gravity, truth_m)?;
+        self.place.write(picture, &self.palette, record, &mut self.bytes)
+    }
+}
+
+impl Drawing {
+    /// Pictures of frames; with `has_map`, of those whose camera is known with the view from above.
+    ///
+    /// # Errors
+    /// As [`Overlay::new`].
+    pub(crate) fn new(cameras: Vec<Camera>, has_map: bool) -> Result<Self> {
+        let font =
+            Font::new().ok_or_else(|| Error::format("the pictures", "the font of the program is damaged"))?;
+        let last = cameras.iter().map(|_| Last::default()).collect();
+        Ok(Self { cameras, has_map, font, last, under: None, picture: None })
+    }
+
+    /// The picture of a frame, as [`Overlay::draw`] says.
+    ///
+    /// # Errors
+    /// [`Error`] when there is no memory for it.
+    pub(crate) fn draw(
+        &mut self,
+        camera: usize,
+        record: &FrameRecord,
+        frame: Option<FrameView<'_>>,
+        gravity: Option<&Unit<Vector3<f64>>>,
+        truth_m: &[Vector3<f64>],
+    ) -> Result<&Pixmap> {
         let mut alone = Last::default();
         let last = self.last.get_mut(camera).unwrap_or(&mut alone);
         let range_m = map_panel::range_after(last.range_m, record);
@@ -124,7 +148,7 @@ impl Overlay {
         let followed = last.tails.follow(record, &called.tracks);
         let names = &called.neighbours;
         let camera = self.cameras.get(camera);
-        let layout = Layout::new(size(camera, record, frame), camera.is_some());
+        let layout = Layout::new(size(camera, record, frame), camera.is_some() && self.has_map);
         let ground = Ground::new(gravity);
         let field = camera.map_or(Vec::new(), |camera| ground.field(camera));
         let map = layout.map.map(|area| MapPanel::new(area, ground, &field, range_m, layout.unit));
@@ -158,7 +182,7 @@ impl Overlay {
             map.draw(&mut canvas, record, names, &followed);
             truth_m.iter().for_each(|place_m| map.truth(&mut canvas, place_m));
         }
-        self.place.write(picture, &self.palette, record, &mut self.bytes)
+        Ok(picture)
     }
 }
 

@@ -39,6 +39,38 @@ fn a_dataset_run_fast_gives_what_locate_gives_byte_for_byte() {
 }
 
 #[test]
+fn a_sky_is_that_of_locate_byte_for_byte_and_its_sun_costs_a_neighbour_probability() {
+    let stage = Stage::new("run-sky");
+    stage.dataset("rec", 3);
+    // At the equinox the sun rises in the east on the equator: there the camera looks, and there the neighbour is.
+    let sky =
+        "[sky]\nlatitude_deg = 0.0\nlongitude_deg = 0.0\ntime = 2024-03-20T06:08:00Z\nheading_deg = 90.0\n";
+    let live = |sky: &str| {
+        config(&stage, "fast", "dataset = \"rec\"", &format!("[json]\nfile = \"live.jsonl\"\n{sky}"));
+        assert_eq!(stage.run("run run.toml -q").code, 0);
+        let told = stage.read("live.jsonl").replace("\"camera\":\"front\",", "");
+        std::fs::remove_file(stage.path("live.jsonl")).unwrap();
+        told
+    };
+    let located = |sky: &str| {
+        assert_eq!(stage.run(&format!("locate rec --out located.jsonl -q -f {sky}")).code, 0);
+        stage.read("located.jsonl")
+    };
+    let (without, with) = (live(""), live(sky));
+    assert_eq!(with, located("--sky 0,0,2024-03-20T06:08:00Z,90"));
+    assert_eq!(without, located(""));
+    let probability = |told: &str| {
+        let line: serde_json::Value = serde_json::from_str(told.lines().next().unwrap()).unwrap();
+        line["neighbours"][0]["probability"].as_f64().unwrap_or(0.0)
+    };
+    assert!(probability(&with) < probability(&without), "{with}\n{without}");
+    // A dataset's own sky counts where the configuration has none.
+    let table = stage.read("rec/dataset.toml");
+    stage.file("rec/dataset.toml", format!("{table}{sky}"));
+    assert_eq!(live(""), with);
+}
+
+#[test]
 fn live_every_frame_is_located_or_counted_with_its_latency() {
     let stage = Stage::new("run-live");
     stage.dataset("rec", 20);

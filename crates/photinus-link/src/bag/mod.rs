@@ -6,9 +6,11 @@
 //! mod       the index at the end of the file -> which chunks hold a topic -> its messages
 //! serial    what ROS 1 writes of a message -> its fields
 //! images    topics with images -> frames
+//! motion    its imu and odometry
 //! ```
 
 mod images;
+mod motion;
 mod record;
 pub(crate) mod serial;
 
@@ -20,6 +22,7 @@ use photinus_io::{Error, Result};
 
 use crate::recording::{MOST_BYTES, Topic};
 pub use images::{BagFrames, image_topics};
+pub(crate) use motion::{imu, odometry};
 use record::{Record, field, records};
 
 const MAGIC: &[u8] = b"#ROSBAG V2.0\n";

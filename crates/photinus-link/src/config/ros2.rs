@@ -22,7 +22,7 @@ pub struct Ros2 {
     pub imu: Option<String>,
     /// Topic of its nav_msgs/Odometry.
     pub odometry: Option<String>,
-    /// The parent of `base_frame` on `/tf`, a frame with z up: tells the attitude.
+    /// A frame of tf with z up: how `base_frame` is turned against it tells the attitude.
     pub world_frame: Option<String>,
     /// `uvdar`: the topics and messages of UVDAR's own stack, too.
     pub compat: Option<Compat>,
@@ -37,11 +37,16 @@ pub enum Compat {
 }
 
 impl Ros2 {
-    /// Joins the domain; what is heard of the vehicle's motion goes into `motion`.
+    /// Joins the domain; what is heard of the vehicle's motion goes into `motion`, and `draw` draws pictures for who subscribes to them.
     ///
     /// # Errors
     /// When the network refuses, or a name is none.
-    pub fn open(&self, cameras: &[Camera], motion: photinus_run::motion::Motion) -> Result<Box<dyn Sink>> {
+    pub fn open(
+        &self,
+        cameras: &[Camera],
+        motion: photinus_run::motion::Motion,
+        draw: crate::ros2::Draw,
+    ) -> Result<Vec<Box<dyn Sink>>> {
         use crate::ros2::{MotionTopics, Ros2Sink};
         let base = self.base_frame.as_deref().unwrap_or(BASE);
         let tf = self.world_frame.clone().map(|world| [world, base.to_owned()]);
@@ -54,7 +59,8 @@ impl Ros2 {
         let mut sink = sink.and_then(|sink| sink.hearing(&topics, motion)).map_err(refuse)?;
         let mounted = cameras.iter().filter_map(|camera| Some((camera.view.header(None), camera.mounting?)));
         sink.topics().tell_mountings(base, &mounted.collect::<Vec<_>>());
-        Ok(Box::new(sink))
+        let overlay = sink.overlay(draw).map_err(refuse)?;
+        Ok(vec![Box::new(sink), Box::new(overlay)])
     }
 
     /// What opens a topic with images, or with `spots` one with the points of UVDAR's detector.

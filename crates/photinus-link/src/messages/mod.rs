@@ -15,15 +15,17 @@ mod motion;
 mod neighbours;
 mod running;
 mod transforms;
+mod tree;
 mod uvdar;
 
 use photinus_io::results::FrameRecord;
 
 pub use covariance::{bearing_covariance, pose_covariance};
 pub use health::{Health, diagnostics};
-pub use motion::{Turning, of_imu, of_odometry, of_transforms};
+pub use motion::{Turning, of_imu, of_odometry};
 pub use running::parts;
 pub use transforms::mounting_transform;
+pub use tree::Tree;
 pub use uvdar::{Uvdar, spots_of};
 
 use crate::ros::{Detection3DArray, Header, MarkerArray, NeighbourArray, TFMessage, Time};

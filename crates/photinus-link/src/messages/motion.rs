@@ -1,8 +1,8 @@
-//! sensor_msgs/Imu, nav_msgs/Odometry and tf -> attitudes and rates of the body, where they say such.
+//! sensor_msgs/Imu and nav_msgs/Odometry -> attitudes and rates of the body, where they say such.
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
-use crate::ros::{self, Imu, Odometry, TFMessage};
+use crate::ros::{self, Imu, Odometry};
 
 /// How a body is turned, and turns, at a time.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,21 +36,8 @@ pub fn of_odometry(odometry: &Odometry) -> Turning {
     }
 }
 
-/// What tf says of `body`, whose parent is `world`, a frame with z up: the last such transform of the message.
-#[must_use]
-pub fn of_transforms(told: &TFMessage, world: &str, body: &str) -> Option<Turning> {
-    let is = |frame: &str, wanted: &str| frame.trim_start_matches('/') == wanted.trim_start_matches('/');
-    let mut transforms = told.transforms.iter().rev();
-    let found = transforms.find(|told| is(&told.header.frame_id, world) && is(&told.child_frame_id, body))?;
-    Some(Turning {
-        time_s: found.header.stamp.seconds(),
-        attitude: attitude(&found.transform.rotation),
-        rate_rad_s: None,
-    })
-}
-
 /// Four numbers that are a turn; `None` for zeros and other numbers that are none.
-fn attitude(told: &ros::Quaternion) -> Option<UnitQuaternion<f64>> {
+pub(super) fn attitude(told: &ros::Quaternion) -> Option<UnitQuaternion<f64>> {
     let turn = Quaternion::new(told.w, told.x, told.y, told.z);
     // false for NaN, too
     ((turn.norm() - 1.0).abs() < 0.01).then(|| UnitQuaternion::from_quaternion(turn))
@@ -103,33 +90,5 @@ mod tests {
         );
         odometry.twist.twist.angular.x = f64::NAN;
         assert_eq!(of_odometry(&odometry).rate_rad_s, None);
-    }
-
-    #[test]
-    fn tf_says_how_the_body_is_turned_against_its_own_parent_only() {
-        let quarter = std::f64::consts::FRAC_1_SQRT_2;
-        let transform = |parent: &str, child: &str, sec, rotation: [f64; 4]| {
-            let mut told = ros::TransformStamped::default();
-            told.header.frame_id = parent.to_owned();
-            told.header.stamp = ros::Time { sec, nanosec: 0 };
-            told.child_frame_id = child.to_owned();
-            told.transform.rotation = rotation.into();
-            told
-        };
-        let roll = [quarter, 0.0, 0.0, quarter];
-        let told = TFMessage {
-            transforms: vec![
-                transform("odom", "base_link", 3, [0.0, 0.0, 0.0, 1.0]),
-                transform("/odom", "base_link", 4, roll),
-                transform("map", "base_link", 5, [0.0, 0.0, 0.0, 1.0]),
-                transform("odom", "camera", 6, [0.0, 0.0, 0.0, 1.0]),
-            ],
-        };
-        let said = of_transforms(&told, "odom", "base_link").unwrap();
-        assert!((said.time_s - 4.0).abs() < 1e-12 && said.rate_rad_s.is_none());
-        assert!((said.attitude.unwrap() * Vector3::y() - Vector3::z()).norm() < 1e-12);
-        assert_eq!(of_transforms(&told, "odom", "imu"), None);
-        let zeros = TFMessage { transforms: vec![transform("odom", "base_link", 1, [0.0; 4])] };
-        assert_eq!(of_transforms(&zeros, "odom", "base_link").unwrap().attitude, None);
     }
 }

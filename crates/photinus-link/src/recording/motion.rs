@@ -1,11 +1,13 @@
-//! What others' recordings say of the vehicle's own motion: sensor_msgs/Imu and nav_msgs/Odometry come in, attitudes and rates come out.
+//! What others' recordings, MCAP or bags of ROS 1, say of the vehicle's own motion: sensor_msgs/Imu and nav_msgs/Odometry come in, attitudes and rates come out.
 
 use std::path::Path;
 
 use nalgebra::{UnitQuaternion, Vector3};
+use photinus_io::kind::Kind;
 use photinus_io::{Error, Result};
 
-use super::Recording;
+use super::{Recording, Topic};
+use crate::bag::{self, Bag};
 use crate::cdr;
 use crate::messages::{Turning, of_imu, of_odometry};
 use crate::ros::{Imu, Message, Odometry};
@@ -27,10 +29,18 @@ impl Motions {
     /// [`Error`] when the file cannot be read, or a message is none.
     pub fn read(path: impl AsRef<Path>) -> Result<Self> {
         let path = path.as_ref();
-        let imu = Self::of_topic(path, Imu::NAME, |bytes| cdr::decode(bytes).map(|imu| of_imu(&imu)))?;
-        let odometry = Self::of_topic(path, Odometry::NAME, |bytes| {
-            cdr::decode(bytes).map(|odometry| of_odometry(&odometry))
-        })?;
+        let imu = Self::of_topic(
+            path,
+            Imu::NAME,
+            |bytes| cdr::decode(bytes).ok().map(|imu| of_imu(&imu)),
+            |bytes| bag::imu(bytes).map(|imu| of_imu(&imu)),
+        )?;
+        let odometry = Self::of_topic(
+            path,
+            Odometry::NAME,
+            |bytes| cdr::decode(bytes).ok().map(|odometry| of_odometry(&odometry)),
+            |bytes| bag::odometry(bytes).map(|odometry| of_odometry(&odometry)),
+        )?;
         let or = |own: bool| if own { &imu } else { &odometry };
         Ok(Self {
             rates: or(!imu.rates.is_empty()).rates.clone(),
@@ -41,30 +51,41 @@ impl Motions {
     fn of_topic(
         path: &Path,
         kind: &str,
-        turning: impl Fn(&[u8]) -> std::result::Result<Turning, cdr::CdrError>,
+        of_cdr: impl Fn(&[u8]) -> Option<Turning>,
+        of_ros1: impl Fn(&[u8]) -> Option<Turning>,
     ) -> Result<Self> {
-        let recording = Recording::open(path)?;
-        let topics = recording.topics();
-        let mut named = topics.iter().filter(|topic| topic.kind == kind).map(|topic| topic.name.as_str());
-        let (Some(topic), None) = (named.next(), named.next()) else { return Ok(Self::default()) };
-        let mut messages = recording.messages([topic], 0)?;
         let mut motions = Self::default();
-        while let Some(said) = messages.next(|_, bytes| turning(bytes)) {
-            let said =
-                said?.map_err(|error| Error::format(path, format!("a message of {topic}: {error}")))?;
-            let Turning { time_s, attitude, rate_rad_s } = said;
-            // What is not later than the one before says nothing new.
-            if let Some(rate) = rate_rad_s.filter(|_| motions.rates.last().is_none_or(|last| last.0 < time_s))
-            {
-                motions.rates.push((time_s, rate));
+        let none = |topic: &str| Error::format(path, format!("a message of {topic} is no {kind}"));
+        if Kind::of(path)? == Kind::Bag {
+            let bag = Bag::open(path)?;
+            if let Some(topic) = only(bag.topics(), kind) {
+                bag.messages(&topic, |bytes| {
+                    motions.put(of_ros1(bytes).ok_or_else(|| none(&topic.name))?);
+                    Ok(())
+                })?;
             }
-            if let Some(attitude) =
-                attitude.filter(|_| motions.attitudes.last().is_none_or(|last| last.0 < time_s))
-            {
-                motions.attitudes.push((time_s, attitude));
+            return Ok(motions);
+        }
+        let recording = Recording::open(path)?;
+        if let Some(topic) = only(recording.topics(), kind) {
+            let mut messages = recording.messages([topic.name.as_str()], 0)?;
+            while let Some(said) = messages.next(|_, bytes| of_cdr(bytes)) {
+                motions.put(said?.ok_or_else(|| none(&topic.name))?);
             }
         }
         Ok(motions)
+    }
+
+    /// What is not later than the one before says nothing new.
+    fn put(&mut self, said: Turning) {
+        let Turning { time_s, attitude, rate_rad_s } = said;
+        if let Some(rate) = rate_rad_s.filter(|_| self.rates.last().is_none_or(|last| last.0 < time_s)) {
+            self.rates.push((time_s, rate));
+        }
+        if let Some(attitude) = attitude.filter(|_| self.attitudes.last().is_none_or(|last| last.0 < time_s))
+        {
+            self.attitudes.push((time_s, attitude));
+        }
     }
 
     /// Whether nothing is said.
@@ -72,4 +93,10 @@ impl Motions {
     pub fn is_empty(&self) -> bool {
         self.rates.is_empty() && self.attitudes.is_empty()
     }
+}
+
+/// The only topic with messages of this kind.
+fn only(topics: Vec<Topic>, kind: &str) -> Option<Topic> {
+    let mut of_kind = topics.into_iter().filter(|topic| topic.kind == kind);
+    of_kind.next().filter(|_| of_kind.next().is_none())
 }

@@ -5,6 +5,7 @@
 
 mod motion;
 mod node;
+mod overlay;
 mod sink;
 mod source;
 mod uvdar;
@@ -13,6 +14,7 @@ use photinus_io::calibration::MountingFile;
 
 pub use motion::MotionTopics;
 pub use node::{Images, Inbox, Node, Ros2Error};
+pub use overlay::{Draw, OverlaySink, Picture};
 pub use sink::Ros2Sink;
 pub use source::{ImageSource, PointSource};
 pub use uvdar::UvdarTopics;
@@ -56,8 +58,14 @@ pub enum Quality {
     Transforms,
     /// Reliable, and who comes later gets the last one, too: tf_static.
     Latched,
+    /// Reliable, the last two: pictures, which are large.
+    Picture,
     /// Best effort, the last five: images and other sensors.
     Sensor,
+    /// Best effort, the last hundred: tf of others.
+    TransformsIn,
+    /// Reliable, also what was said before: tf_static of others.
+    StaticTransformsIn,
 }
 
 /// Where messages of one type go.

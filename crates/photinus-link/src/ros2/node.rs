@@ -74,17 +74,24 @@ impl Node {
         images.map(Images).map_err(|error| Ros2Error::Network(error.to_string()))
     }
 
-    /// Subscribes to messages of a sensor; `topic` is its full name.
+    /// Subscribes to messages of others; `topic` is its full name.
     ///
     /// # Errors
     /// As [`Node::publisher`].
     pub fn inbox<M: Message + DeserializeOwned + 'static>(
         &mut self,
         topic: &str,
+        quality: Quality,
     ) -> Result<Inbox<M>, Ros2Error> {
-        let topic = self.named(topic, M::NAME, Quality::Sensor)?;
+        let topic = self.named(topic, M::NAME, quality)?;
         let inbox = self.node.create_subscription::<M>(&topic, None);
         inbox.map(Inbox).map_err(|error| Ros2Error::Network(error.to_string()))
+    }
+
+    /// How many subscribe to a topic of this node, as far as is known by now.
+    #[must_use]
+    pub fn subscribers(&self, topic: &str) -> usize {
+        self.node.subscription_count(&self.settings.name(topic))
     }
 
     fn topic(&self, topic: &str, kind: &str, quality: Quality) -> Result<Topic, Ros2Error> {
@@ -108,7 +115,11 @@ fn profile(quality: Quality) -> QosProfile {
         Quality::Results => reliable.history(last(10)),
         Quality::Transforms => reliable.history(last(100)),
         Quality::Latched => reliable.history(last(1)).durability(Durability::TransientLocal),
+        Quality::Picture => reliable.history(last(2)),
         Quality::Sensor => QosProfile::subscription_default().history(last(5)),
+        Quality::TransformsIn => QosProfile::subscription_default().history(last(100)),
+        // The last one of each of their publishers, all on one topic.
+        Quality::StaticTransformsIn => reliable.history(last(100)).durability(Durability::TransientLocal),
     }
 }
 

@@ -6,7 +6,8 @@ use photinus_run::health::Health;
 use photinus_run::motion::Motion;
 use photinus_run::sink::Sink;
 
-use super::{MotionTopics, Node, Ros2Error, Settings, Topics, UvdarTopics};
+use super::overlay::Watched;
+use super::{Draw, MotionTopics, Node, OverlaySink, Ros2Error, Settings, Topics, UvdarTopics};
 use crate::config::Camera;
 use crate::heard::Heard;
 use crate::messages::{Messages, Uvdar, diagnostics, parts};
@@ -19,6 +20,7 @@ pub struct Ros2Sink {
     node: Node,
     topics: Topics,
     uvdar: Option<UvdarTopics>,
+    watched: Watched,
     heard: Option<Heard>,
     cameras: Vec<Camera>,
     clock: SinkClock,
@@ -32,7 +34,8 @@ impl Ros2Sink {
     pub fn new(settings: Settings, cameras: Vec<Camera>) -> std::result::Result<Self, Ros2Error> {
         let mut node = Node::new(settings)?;
         let topics = Topics::new(&mut node)?;
-        Ok(Self { node, topics, uvdar: None, heard: None, cameras, clock: SinkClock::new() })
+        let watched = Watched::default();
+        Ok(Self { node, topics, uvdar: None, watched, heard: None, cameras, clock: SinkClock::new() })
     }
 
     /// Publishes on the topics of UVDAR's own stack, too.
@@ -43,6 +46,16 @@ impl Ros2Sink {
         let cameras = self.cameras.iter().map(|camera| camera.view.camera.as_str());
         self.uvdar = Some(UvdarTopics::new(&mut self.node, cameras)?);
         Ok(self)
+    }
+
+    /// What publishes pictures by `draw` while somebody subscribes: a sink beside this one, which looks who does.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn overlay(&mut self, draw: Draw) -> std::result::Result<OverlaySink, Ros2Error> {
+        let (sink, watched) = OverlaySink::new(&mut self.node, &self.cameras, draw)?;
+        self.watched = watched;
+        Ok(sink)
     }
 
     /// Hears of the vehicle's motion on these topics; what they say goes into `motion`.
@@ -84,6 +97,7 @@ impl Sink for Ros2Sink {
     }
 
     fn health(&mut self, health: &Health) -> Result<()> {
+        self.watched.look(&self.node);
         let mut parts = parts(health);
         parts.extend(self.heard.as_ref().map(|heard| heard.health("ROS 2 topics")));
         self.topics.tell_health(diagnostics(&parts, Time::from_nanoseconds(self.clock.now_ns())));

@@ -2,7 +2,7 @@
 
 use photinus_run::source::{Next, Source};
 
-use super::{Images, Inbox, Node, Ros2Error, Settings};
+use super::{Images, Inbox, Node, Quality, Ros2Error, Settings};
 use crate::arriving::{Arriving, of_image, of_points};
 use crate::ros::ImagePointsWithCovariancesStamped;
 
@@ -51,7 +51,7 @@ impl PointSource {
     /// [`Ros2Error`] when the network refuses, or the name is none.
     pub fn new(settings: Settings, topic: &str) -> Result<Self, Ros2Error> {
         let mut node = Node::new(settings)?;
-        let points = node.inbox(topic)?;
+        let points = node.inbox(topic, Quality::Sensor)?;
         Ok(Self { points, arriving: Arriving::new(topic), _node: node })
     }
 }

@@ -45,6 +45,14 @@ def stamped():
     return wire.of("std_msgs/msg/Header")(stamp=stamp, frame_id="base_link")
 
 
+def transform(parent, child, rotation):
+    told = wire.of("geometry_msgs/msg/TransformStamped")(
+        header=wire.of("std_msgs/msg/Header")(stamp=stamped().stamp, frame_id=parent), child_frame_id=child,
+        transform=wire.of("geometry_msgs/msg/Transform")(translation=vector(x=1.0, y=2.0, z=3.0), rotation=rotation),
+    )
+    return wire.of("tf2_msgs/msg/TFMessage")(transforms=[told])
+
+
 def write_motion():
     imus.write(wire.of("sensor_msgs/msg/Imu")(
         header=stamped(), orientation=turn(x=0.0, y=0.0, z=0.0, w=0.0), orientation_covariance=[-1.0] + 8 * [0.0],
@@ -60,11 +68,7 @@ def write_motion():
         pose=wire.of("geometry_msgs/msg/PoseWithCovariance")(pose=pose, covariance=36 * [0.0]),
         twist=wire.of("geometry_msgs/msg/TwistWithCovariance")(twist=twist, covariance=36 * [0.0]),
     ))
-    transform = wire.of("geometry_msgs/msg/TransformStamped")(
-        header=wire.of("std_msgs/msg/Header")(stamp=stamped().stamp, frame_id="odom"), child_frame_id="uav1/base_link",
-        transform=wire.of("geometry_msgs/msg/Transform")(translation=vector(x=1.0, y=2.0, z=3.0), rotation=turn(x=0.6, y=0.0, z=0.0, w=0.8)),
-    )
-    transforms.write(wire.of("tf2_msgs/msg/TFMessage")(transforms=[transform]))
+    transforms.write(transform("odom", "frame", turn(x=0.6, y=0.0, z=0.0, w=0.8)))
     point = wire.of("uvdar_core/msg/Point2DWithCovariance")(
         x=20.5, y=30.25, covariance_00=1.0, covariance_01=0.0, covariance_10=0.0, covariance_11=1.0
     )
@@ -73,13 +77,17 @@ def write_motion():
     ))
 
 
+# The body is turned by half a circle about its nose in a frame that stands between it and the odometry's, said once.
+fixed_transforms = DataWriter(participant, Topic(participant, "rt/tf_static", wire.of("tf2_msgs/msg/TFMessage"), qos=latched), qos=latched)
+fixed_transforms.write(transform("frame", "uav1/base_link", turn(x=1.0, y=0.0, z=0.0, w=0.0)))
+
 heard, end = {}, time.monotonic() + 40
 while len(heard) < len(readers) and time.monotonic() < end:
     writer.write(image)
     write_motion()
     for name, reader in readers.items():
         for message in reader.take(10):
-            own = name == "/tf" and message.transforms[0].header.frame_id == "odom"
+            own = name in ("/tf", "/tf_static") and message.transforms[0].header.frame_id in ("odom", "frame")
             if name not in heard and not own:
                 heard[name] = plain(message)
     time.sleep(0.02)

@@ -11,6 +11,8 @@ mod killed;
 mod malformed;
 #[cfg(feature = "recording")]
 mod motion;
+#[cfg(feature = "ros2")]
+mod overlay;
 #[cfg(feature = "recording")]
 mod poses;
 #[cfg(feature = "recording")]

@@ -2,7 +2,7 @@
 //! come by ROS 2 and by Zenoh: both carry CDR.
 
 use photinus_link::cdr::{decode, encode};
-use photinus_link::messages::{Messages, Uvdar, Viewpoint, of_imu, of_odometry, of_transforms, spots_of};
+use photinus_link::messages::{Messages, Tree, Uvdar, Viewpoint, of_imu, of_odometry, spots_of};
 use photinus_link::ros::{
     CameraInfo, CompressedImage, Frame, Image, ImagePointsWithCovariancesStamped, Imu, NeighbourArray,
     Odometry, PoseStamped, TFMessage, Text,
@@ -87,7 +87,7 @@ fn uses() -> Vec<(Vec<u8>, Use)> {
             decode::<Odometry>(bytes).map(|odometry| of_odometry(&odometry)).is_ok()
         }),
         (made(encode(&told.transforms)), |bytes| {
-            decode::<TFMessage>(bytes).map(|told| of_transforms(&told, "odom", "base_link")).is_ok()
+            decode::<TFMessage>(bytes).map(|told| Tree::new("odom", "base_link").hear(&told, false)).is_ok()
         }),
         (made(encode(&points)), |bytes| {
             decode::<ImagePointsWithCovariancesStamped>(bytes).map(|points| spots_of(&points)).is_ok()

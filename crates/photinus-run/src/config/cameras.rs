@@ -15,7 +15,8 @@ use photinus_io::mask::read_mask;
 use photinus_io::spot_curve::{SpotCurveFile, read_spot_curve};
 use photinus_io::{Error, Place, Result, read_camera};
 
-use super::{CameraKeys, Config, LocateKeys, SourceKeys, TimesKey};
+use super::Config;
+use super::keys::{CameraKeys, LocateKeys, SourceKeys, TimesKey};
 use crate::exposure::Exposure;
 use crate::live::{Camera, Pace};
 use crate::motion::Motion;
@@ -212,7 +213,8 @@ impl Config {
         let mut view = View::new(camera.clone(), kinds, curve, settings, mask.as_ref())
             .map_err(|error| refuse(error.to_string()))?
             .mounted(mounting)
-            .level(self.gravity()?);
+            .level(self.gravity()?)
+            .under(self.sky()?.or_else(|| named.of_dataset()?.0.sky()));
         let exposure_us =
             keys.exposure_us.or_else(|| named.of_dataset().map(|(_, camera)| camera.exposure_us));
         if self.keys.locate.time.unwrap_or(true) {

@@ -1,12 +1,14 @@
 //! The configuration of `photinus run`: enters a TOML file, leaves cameras and sinks that are ready to run.
 //!
 //! ```text
-//! mod      what the file may hold; what it does not know is refused with its line
+//! keys     what the file may hold; what it does not know is refused with its line
+//! mod      what has a meaning, and the sinks
 //! cameras  tables -> what looks through each camera, and what opens it
 //! ```
 //! Paths are relative to the file's folder. Tables of protocols that are linked elsewhere are handed on as they stand: [`Config::text`].
 
 mod cameras;
+mod keys;
 #[cfg(test)]
 mod tests;
 
@@ -14,12 +16,12 @@ use std::io::ErrorKind;
 use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
 
-use photinus_io::dataset::AirframeFiles;
-use photinus_io::video::RawFormat;
+use photinus_io::sky::{Sky, SkyInfo};
 use photinus_io::{Cause, Error, Place, Result, table, whole};
-use serde::Deserialize;
+use toml::value::{Date, Datetime, Offset, Time};
 
 pub use cameras::{Linked, Topic};
+use keys::{ExposureKeys, Keys, PaceKey, SkyKeys, SourceKeys};
 
 use crate::exposure::Wanted;
 use crate::live::Pace;
@@ -29,175 +31,19 @@ use crate::source::PixelFormat;
 /// An example with every key, to be written to a file and changed.
 pub const EXAMPLE: &str = include_str!("example.toml");
 
+/// When times of frames that are taken now are 0.
+const EPOCH: Datetime = Datetime {
+    date: Some(Date { year: 1970, month: 1, day: 1 }),
+    time: Some(Time { hour: 0, minute: 0, second: Some(0), nanosecond: None }),
+    offset: Some(Offset::Z),
+};
+
 /// What a configuration holds.
 #[derive(Clone, Debug)]
 pub struct Config {
     path: PathBuf,
     text: String,
     keys: Keys,
-}
-
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Keys {
-    #[serde(default)]
-    pace: PaceKey,
-    #[serde(default)]
-    camera: Vec<CameraKeys>,
-    airframe: Option<AirframeKeys>,
-    vehicles: Option<VehiclesKeys>,
-    #[serde(default)]
-    locate: LocateKeys,
-    exposure: Option<ExposureKeys>,
-    json: Option<JsonKeys>,
-    health: Option<HealthKeys>,
-    page: Option<PageKeys>,
-    record: Option<toml::Table>,
-    ros2: Option<toml::Table>,
-    mavlink: Option<toml::Table>,
-    zenoh: Option<toml::Table>,
-}
-
-#[derive(Clone, Copy, Debug, Default, Deserialize)]
-#[serde(rename_all = "lowercase")]
-enum PaceKey {
-    #[default]
-    Live,
-    Fast,
-}
-
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct CameraKeys {
-    name: String,
-    source: SourceKeys,
-    camera: Option<PathBuf>,
-    mounting: Option<PathBuf>,
-    mask: Option<PathBuf>,
-    spot_curve: Option<PathBuf>,
-    exposure_us: Option<f64>,
-}
-
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct SourceKeys {
-    dataset: Option<PathBuf>,
-    /// Which camera of a dataset with several.
-    camera: Option<String>,
-    #[serde(default)]
-    repeat: bool,
-    command: Option<Vec<String>>,
-    stdin: Option<bool>,
-    tcp: Option<String>,
-    unix: Option<PathBuf>,
-    raw: Option<RawKeys>,
-    times: Option<TimesKey>,
-    /// Lines of spots come in place of frames.
-    #[serde(default)]
-    spots: bool,
-    /// A topic of ROS 2.
-    ros2: Option<String>,
-    /// A key of Zenoh.
-    zenoh: Option<String>,
-    v4l2: Option<PathBuf>,
-    /// How a V4L2 camera lays out its pixels.
-    format: Option<String>,
-    rate_hz: Option<f64>,
-    gain: Option<i64>,
-}
-
-impl SourceKeys {
-    /// Where messages of others are taken from, if they are.
-    fn topic(&self) -> Option<Topic<'_>> {
-        let of_zenoh = || self.zenoh.as_deref().map(Topic::Zenoh);
-        self.ros2.as_deref().map(Topic::Ros2).or_else(of_zenoh)
-    }
-}
-
-#[derive(Clone, Copy, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct RawKeys {
-    width: usize,
-    height: usize,
-    rate_hz: Option<f64>,
-}
-
-impl From<RawKeys> for RawFormat {
-    fn from(keys: RawKeys) -> Self {
-        Self { width: keys.width, height: keys.height, rate_hz: keys.rate_hz }
-    }
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "lowercase")]
-enum TimesKey {
-    Arrival,
-    Stream,
-}
-
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct AirframeKeys {
-    file: AirframeFiles,
-}
-
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct VehiclesKeys {
-    file: PathBuf,
-    codes: Option<PathBuf>,
-}
-
-#[derive(Clone, Debug, Default, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct LocateKeys {
-    contrast: Option<u8>,
-    threshold: Option<u8>,
-    reflection_ratio: Option<f64>,
-    max_tilt_deg: Option<f64>,
-    min_probability: Option<f64>,
-    budget: Option<u32>,
-    tilt_sigma_deg: Option<f64>,
-    marker_sigma_m: Option<f64>,
-    power_spread: Option<f64>,
-    scale_sigma: Option<f64>,
-    miss_rate: Option<f64>,
-    brightness: Option<bool>,
-    time: Option<bool>,
-    gravity: Option<[f64; 3]>,
-}
-
-#[derive(Clone, Copy, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct ExposureKeys {
-    reach_m: f64,
-    shortest_us: f64,
-    longest_us: f64,
-    #[serde(default)]
-    alternate: bool,
-}
-
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct JsonKeys {
-    file: Option<PathBuf>,
-    #[serde(default)]
-    stdout: bool,
-    tcp: Option<SocketAddr>,
-    unix: Option<PathBuf>,
-}
-
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct HealthKeys {
-    file: PathBuf,
-}
-
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct PageKeys {
-    listen: SocketAddr,
-    token: Option<String>,
 }
 
 /// Where the page is served.
@@ -298,6 +144,19 @@ impl Config {
         Ok(sinks)
     }
 
+    /// The sky over the vehicle, where it is described here.
+    fn sky(&self) -> Result<Option<Sky>> {
+        let Some(keys) = self.keys.sky.clone() else { return Ok(None) };
+        let SkyKeys { latitude_deg, longitude_deg, height_m, time, heading_deg, heading_sigma_deg } = keys;
+        if heading_deg.is_some() && self.keys.camera.len() > 1 {
+            let advice = "leave it out: the sun is then looked for at its height all around";
+            return Err(self.refuse("sky.heading_deg", "it is not said of which camera", advice));
+        }
+        let time = time.unwrap_or(EPOCH);
+        let info = SkyInfo { latitude_deg, longitude_deg, height_m, time, heading_deg, heading_sigma_deg };
+        Sky::new(&info, &self.path).map(Some)
+    }
+
     fn wanted_exposure(&self) -> Option<Wanted> {
         let keys = self.keys.exposure?;
         let limits_us = [keys.shortest_us, keys.longest_us];
@@ -339,6 +198,7 @@ impl Config {
                 "add a token of 8 letters or more, or listen at 127.0.0.1",
             ));
         }
+        self.sky()?;
         if let Some(ExposureKeys { reach_m, shortest_us, longest_us, .. }) = keys.exposure
             && !(reach_m > 0.0
                 && reach_m < 1e4

@@ -107,3 +107,43 @@ fn tables_of_protocols_are_handed_on() {
             .unwrap();
     assert_eq!(config.protocols().collect::<Vec<_>>(), ["record", "mavlink"]);
 }
+
+const SKY: &str =
+    "[sky]\nlatitude_deg = 50.08\nlongitude_deg = 14.42\ntime = 2018-05-10T10:00:00Z\nheading_deg = 90.0\n";
+
+#[test]
+fn a_sky_is_refused_with_its_key_or_line_where_it_has_no_meaning() {
+    Config::parse(&format!("{CAMERA}{SKY}"), "run.toml").unwrap();
+    for (from, to, expected) in [
+        ("50.08", "95.0", "run.toml, `sky.latitude_deg`: 95.0 is out of range"),
+        ("10:00:00Z", "10:00:00", "`sky.time`: 2018-05-10T10:00:00 is no date and time in UTC"),
+        ("heading_deg = 90.0", "heading_sigma_deg = -1.0", "`sky.heading_sigma_deg`: -1.0 is out of range"),
+        (
+            "heading_deg",
+            "headin_deg",
+            "run.toml, line 8: unknown key `headin_deg`, expected one of `latitude_deg`",
+        ),
+        ("longitude_deg = 14.42\n", "", "missing field `longitude_deg`"),
+    ] {
+        let message = told(&format!("{CAMERA}{}", SKY.replace(from, to)));
+        assert!(message.contains(expected), "{to}: {message}");
+    }
+    let two = format!("{CAMERA}{}{SKY}", CAMERA.replace("\"a\"", "\"b\""));
+    assert!(told(&two).contains("`sky.heading_deg`: it is not said of which camera; leave it out"));
+}
+
+#[test]
+fn times_of_frames_are_seconds_since_1970_where_the_sky_says_no_time() {
+    let sky = |text: &str| Config::parse(&format!("{CAMERA}{text}"), "t").unwrap().sky().unwrap().unwrap();
+    let began = sky(SKY);
+    let since_1970 = sky(&SKY.replace("time = 2018-05-10T10:00:00Z\n", ""));
+    // 2018-05-10T10:00:00Z by `date -u +%s`, and a night.
+    for passed_s in [0.0, 3600.25, 12.0 * 3600.0] {
+        let [expected, told] = [began.direction(passed_s), since_1970.direction(1_525_946_400.0 + passed_s)];
+        match (expected, told) {
+            (Some(expected), Some(told)) => assert!(expected.angle(&told) < 1e-5, "{expected:?} {told:?}"),
+            (expected, told) => assert_eq!((expected, told), (None, None)),
+        }
+    }
+    assert!(began.direction(0.0).is_some() && began.direction(12.0 * 3600.0).is_none());
+}

@@ -15,7 +15,8 @@ domain, asked = int(sys.argv[1]), json.loads(sys.argv[2])
 wire = Wire(asked["definitions"])
 participant = DomainParticipant(domain)
 reliable = Qos(Policy.Reliability.Reliable(duration(seconds=1)), Policy.History.KeepLast(10))
-latched = Qos(Policy.Reliability.Reliable(duration(seconds=1)), Policy.History.KeepLast(1), Policy.Durability.TransientLocal)
+# As tf2 does: the last one of every publisher, all on one topic.
+latched = Qos(Policy.Reliability.Reliable(duration(seconds=1)), Policy.History.KeepLast(100), Policy.Durability.TransientLocal)
 readers = {}
 for name, kind in asked["topics"].items():
     qos = latched if name == "/tf_static" else reliable

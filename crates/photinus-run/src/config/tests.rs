@@ -123,7 +123,7 @@ fn a_sky_is_refused_with_its_key_or_line_where_it_has_no_meaning() {
             "headin_deg",
             "run.toml, line 8: unknown key `headin_deg`, expected one of `latitude_deg`",
         ),
-        ("longitude_deg = 14.42\n", "", "missing field `longitude_deg`"),
+        ("longitude_deg = 14.42\n", "", "run.toml, line 4: missing key `longitude_deg`; add it"),
     ] {
         let message = told(&format!("{CAMERA}{}", SKY.replace(from, to)));
         assert!(message.contains(expected), "{to}: {message}");

@@ -87,7 +87,6 @@ pub(super) struct Fitter {
     pub(super) frames: u32,
     pub(super) window: Window,
     pub(super) widths: Vec<f64>,
-    pub(super) misfits: Vec<f64>,
     models: Vec<Option<Model>>,
     /// Whether light moved in this frame while the shutter was open.
     pub(super) is_smeared: bool,
@@ -109,7 +108,6 @@ impl Fitter {
             frames: 0,
             window: Window::default(),
             widths: Vec::new(),
-            misfits: Vec::new(),
             models: Vec::new(),
             is_smeared: false,
             resolution_px: 0.0,

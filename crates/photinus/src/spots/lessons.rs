@@ -25,8 +25,6 @@ const MOST_TELLING: usize = 40;
 const ROUNDS: usize = 5;
 /// Frames after which a belief that is sure of itself learns no more of the spread.
 pub(super) const LEARNT_FRAMES: u32 = 32;
-/// A spot that leaves more than so many times what half of them leave, and this much more, is two LEDs, or an LED and its mirror image.
-const TWO_LEAVE: (f64, f64) = (2.5, 0.5);
 /// A spot with less contrast than this says little of the spread, grey levels.
 const TELLING_DN: f64 = 30.0;
 
@@ -98,10 +96,8 @@ impl Fitter {
             }
         }
         let mut any = false;
-        let mut most_misfit = NO_POINT;
         for round in 0..ROUNDS {
             let mut told = Told::default();
-            self.misfits.clear();
             let numbers = self.belief.numbers();
             let is_last = round + 1 == ROUNDS;
             let mut telling = MOST_TELLING;
@@ -119,8 +115,7 @@ impl Fitter {
                 let weights = shape.weights;
                 let Some(fitted) = fit::fit(&mut self.window, &mut shape, guess, noise) else { continue };
                 let misfit = fitted.chi2 / fitted.freedom;
-                self.misfits.push(misfit);
-                if misfit < most_misfit {
+                if misfit < NO_POINT {
                     let widths = fitted.covariance.fixed_view::<NUMBERS, NUMBERS>(WIDTH, WIDTH).into_owned();
                     told.add(&fitted.numbers, &widths, weights, 1.0 / misfit.max(1.0));
                     any = true;
@@ -129,14 +124,13 @@ impl Fitter {
             if !any {
                 return;
             }
-            most_misfit = most_misfit_of_one(&mut self.misfits);
             let moved = self.belief.take(&told);
             if !moved || is_last {
                 self.belief.keep(&told, numbers);
                 break;
             }
         }
-        self.learn_noise(frame, parts, &tells, full_from, most_misfit);
+        self.learn_noise(frame, parts, &tells, full_from);
         self.frames += 1;
     }
 
@@ -159,7 +153,6 @@ impl Fitter {
         parts: &[Part],
         tells: &dyn Fn(usize, &Part) -> bool,
         full_from: u8,
-        most_misfit: f64,
     ) {
         let mut telling = MOST_TELLING;
         for (index, part) in parts.iter().enumerate() {
@@ -176,7 +169,7 @@ impl Fitter {
             let mut shape = PointSource::new(self.belief.spread(), SIZE_PX2, self.belief.spill());
             if let Some(fitted) = fit::fit(&mut self.window, &mut shape, guess, noise) {
                 let spills = self.window.full_px > 0 && self.window.spilled_share() > LEAST_SPILT;
-                if fitted.chi2 / fitted.freedom < most_misfit && !spills {
+                if fitted.chi2 / fitted.freedom < NO_POINT && !spills {
                     fit::residuals(&self.window, &mut shape, &fitted, noise, |light, square| {
                         bins.add(light, square);
                     });
@@ -186,14 +179,4 @@ impl Fitter {
         }
         self.belief.noise_bins().solve();
     }
-}
-
-/// The misfit from which a spot is not one point, by the misfits of all.
-fn most_misfit_of_one(misfits: &mut [f64]) -> f64 {
-    let middle = misfits.len() / 2;
-    if misfits.is_empty() {
-        return NO_POINT;
-    }
-    let (_, median, _) = misfits.select_nth_unstable_by(middle, f64::total_cmp);
-    (TWO_LEAVE.0 * *median + TWO_LEAVE.1).min(NO_POINT)
 }

@@ -159,15 +159,3 @@ fn pairs_that_are_full_in_the_middle_do_not_lean_towards_each_other() {
         assert!(kept.rms_px() < 0.03, "{kept:?}");
     }
 }
-
-/// A tenth of what stands alone is two: it must not teach that the point spread is none of the shapes that are known.
-#[test]
-fn frames_tell_of_the_camera_though_some_spots_are_two() {
-    for width_px in [0.6, 0.9] {
-        let mut detector = Detector::new(Settings::default()).unwrap();
-        let kept = pairs(&mut detector, width_px, range(0.8, 8.0), [range(60.0, 200.0); 2], 33);
-        assert!(kept.light * 10 > kept.spots * 9, "{kept:?}");
-        assert!((0.3..1.5).contains(&kept.nees()), "{kept:?}");
-        assert!(kept.rms_px() < 0.03, "{kept:?}");
-    }
-}

@@ -50,6 +50,7 @@ mod resume;
 mod run;
 mod shell;
 mod simulate;
+mod simulated;
 mod spot_options;
 mod summary;
 mod swarm;

@@ -53,7 +53,7 @@ fn a_file_that_cannot_be_read_is_told_with_the_key_that_names_it() {
     let path = folder.join("run.toml");
     let told = |text: &str| {
         let config = Config::parse(text, &path).unwrap();
-        config.cameras(&Motion::default(), &|_, _| None, &mut |_| {}).err().unwrap().to_string()
+        config.cameras(&Motion::default(), &|_, _| Ok(None), &mut |_| {}).err().unwrap().to_string()
     };
     let missing = told(CAMERA);
     let [config, dataset] = [path.clone(), folder.join("rec")].map(|path| path.display().to_string());
@@ -123,7 +123,7 @@ fn a_sky_is_refused_with_its_key_or_line_where_it_has_no_meaning() {
             "headin_deg",
             "run.toml, line 8: unknown key `headin_deg`, expected one of `latitude_deg`",
         ),
-        ("longitude_deg = 14.42\n", "", "missing field `longitude_deg`"),
+        ("longitude_deg = 14.42\n", "", "missing key `longitude_deg`; add it"),
     ] {
         let message = told(&format!("{CAMERA}{}", SKY.replace(from, to)));
         assert!(message.contains(expected), "{to}: {message}");

@@ -66,6 +66,11 @@ use failure::Failure;
 use photinus_run::fault;
 use terminal::Terminal;
 
+/// That of the C library that static programs are linked with spins where threads meet: at real-time priorities nobody gets on.
+#[cfg(target_env = "musl")]
+#[global_allocator]
+static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
+
 /// Tells a flying robot where its neighbours are, from one ultraviolet camera.
 #[derive(Parser)]
 #[command(name = "photinus", version, subcommand_required = true, arg_required_else_help = true, after_help = EXAMPLES)]

@@ -197,7 +197,7 @@ mod tests {
     #[test]
     fn a_spot_that_faces_away_says_nothing_beside_one_that_is_full() {
         let mut entry = seen(10.0, 4000.0, 4.0);
-        let mut dim = entry.record.spots[0].clone();
+        let mut dim = entry.record.spots[0];
         (dim.peak, dim.saturated_px) = (30, 0);
         entry.record.spots.push(dim);
         entry.record.neighbours[0].spots.push(1);

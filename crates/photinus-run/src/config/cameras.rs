@@ -249,10 +249,12 @@ impl Config {
         }
         let source = match (&keys.source.v4l2, self.origin(keys, &clock)) {
             (Some(path), _) => self.v4l2(named, path, [camera.width(), camera.height()], clock)?,
-            (_, Some(origin)) => linked(origin.clone(), keys.source.spots)?.ok_or_else(|| {
-                let (what, advice) = origin.wants();
-                self.refuse(&format!("camera {}", keys.name), &format!("nothing opens {what}"), advice)
-            })?,
+            (_, Some(origin)) => linked(origin.clone(), keys.source.spots)
+                .map_err(|error| of_key("source.scene", keys.source.scene.is_some(), error))?
+                .ok_or_else(|| {
+                    let (what, advice) = origin.wants();
+                    self.refuse(&format!("camera {}", keys.name), &format!("nothing opens {what}"), advice)
+                })?,
             _ => self.opener(named, exposure_us, (clock, start_s)),
         };
         let exposure = self.wanted_exposure().map(Exposure::new);

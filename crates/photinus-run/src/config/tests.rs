@@ -83,6 +83,13 @@ fn what_has_no_meaning_is_refused_with_what_to_do() {
     assert!(of("v4l2 = \"/dev/video0\", format = \"H264\"").contains("no grey frame is known to be in H264"));
     assert!(of("v4l2 = \"/dev/video0\", rate_hz = 0").contains("no camera has this rate"));
     assert!(of("tcp = \"b:1\", camera = \"left\"").contains("do not go together"));
+    assert!(of("scene = \"s.toml\", dataset = \"rec\"").contains("exactly one source"));
+    assert!(of("scene = \"s.toml\", raw = { width = 8, height = 8 }").contains("do not go together"));
+    Config::parse(
+        &CAMERA.replace("dataset = \"rec\"", "scene = \"s.toml\", camera = \"left\", repeat = true"),
+        "t",
+    )
+    .unwrap();
     assert!(
         told(&format!("{CAMERA}[exposure]\nreach_m = -1\nshortest_us = 1\nlongest_us = 2\n"))
             .contains("`exposure`")

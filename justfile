@@ -31,6 +31,22 @@ python *arguments:
     cargo build -p photinus-cli --locked
     crates/photinus-py/try-wheel {{arguments}}
 
+# Static programs for x86_64 and aarch64, and whether they compute what this machine's own does, bit for bit; needs rustup and qemu-user.
+static:
+    packaging/static
+    cargo build -p photinus-cli --locked
+    packaging/try-static
+
+# The Debian package, installed into a folder of its own; needs cargo-deb.
+deb:
+    packaging/deb
+    packaging/try-deb
+
+# Ten minutes of `photinus run` with every sink on; with `--soak 5000000` hours as fast as it goes. For a machine that does nothing else.
+long *arguments:
+    cargo build --release -p photinus-cli --features ros2,mavlink --locked
+    crates/photinus-run/try-long {{arguments}}
+
 # Times beside floors measured in the same run.
 bench:
     cargo bench -p photinus -p photinus-sim

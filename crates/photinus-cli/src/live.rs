@@ -69,7 +69,7 @@ pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> Result<(), Failure> {
 fn fly(config: &Config, terminal: &mut Terminal) -> Result<(), Failure> {
     let motion = Motion::default();
     let cameras = config
-        .cameras(&motion, &|topic, spots| protocols::source(config, topic, spots), &mut |text| {
+        .cameras(&motion, &|origin, spots| protocols::source(config, origin, spots), &mut |text| {
             terminal.note(text);
         })
         .map_err(Failure::input)?;
@@ -99,7 +99,7 @@ fn is_whole(sink: &SinkHealth) -> bool {
 fn check(config: &Config, terminal: &mut Terminal) -> Result<(), Failure> {
     let motion = Motion::default();
     let cameras = config
-        .cameras(&motion, &|topic, spots| protocols::source(config, topic, spots), &mut |text| {
+        .cameras(&motion, &|origin, spots| protocols::source(config, origin, spots), &mut |text| {
             terminal.note(text);
         })
         .map_err(Failure::input)?;

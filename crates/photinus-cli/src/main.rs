@@ -50,6 +50,7 @@ mod resume;
 mod run;
 mod shell;
 mod simulate;
+mod simulated;
 mod spot_options;
 mod summary;
 mod swarm;
@@ -64,6 +65,11 @@ use clap::{CommandFactory, Parser, Subcommand};
 use failure::Failure;
 use photinus_run::fault;
 use terminal::Terminal;
+
+/// That of the C library that static programs are linked with spins where threads meet: at real-time priorities nobody gets on.
+#[cfg(target_env = "musl")]
+#[global_allocator]
+static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
 
 /// Tells a flying robot where its neighbours are, from one ultraviolet camera.
 #[derive(Parser)]

@@ -3,7 +3,7 @@
 use photinus_io::{Error, table};
 use photinus_link::config::{Camera, Record};
 use photinus_link::messages::Viewpoint;
-use photinus_run::config::{Config, Topic};
+use photinus_run::config::{Config, Origin};
 use photinus_run::live;
 use photinus_run::motion::Motion;
 use photinus_run::sink::Sink;
@@ -11,6 +11,7 @@ use photinus_run::source::Opener;
 use serde::Deserialize;
 
 use crate::failure::Failure;
+use crate::simulated::Simulated;
 
 /// A sink, and where it can be looked at.
 type Shown = (Box<dyn Sink>, String);
@@ -87,20 +88,27 @@ fn drawing(cameras: &[Camera]) -> photinus_io::Result<photinus_link::ros2::Draw>
     }))
 }
 
-/// What opens a topic as a camera's source; the tables `[ros2]` and `[zenoh]` say where it is. `None` where that is not in this program, or where
-/// `[zenoh]` is missing.
-pub(crate) fn source(config: &Config, topic: Topic<'_>, spots: bool) -> Option<Opener> {
-    let tables: Tables = table::parse(config.text(), config.path()).ok()?;
+/// What opens a topic or a scene as a camera's source; the tables `[ros2]` and `[zenoh]` say where a topic is. `None` where that is not in this program,
+/// or where `[zenoh]` is missing.
+pub(crate) fn source(
+    config: &Config,
+    origin: Origin<'_>,
+    spots: bool,
+) -> photinus_io::Result<Option<Opener>> {
+    let tables: Tables = table::parse(config.text(), config.path())?;
     #[cfg(not(any(feature = "ros2", feature = "zenoh")))]
     let _ = (tables, spots);
-    match topic {
+    Ok(match origin {
+        Origin::Scene { path, camera, exposure_us, began, repeat } => {
+            Some(Simulated::opener(&path, camera, exposure_us, began, repeat)?)
+        }
         #[cfg(feature = "ros2")]
-        Topic::Ros2(topic) => Some(tables.ros2.unwrap_or_default().source(topic, spots)),
+        Origin::Ros2(topic) => Some(tables.ros2.unwrap_or_default().source(topic, spots)),
         #[cfg(feature = "zenoh")]
-        Topic::Zenoh(key) => Some(tables.zenoh?.source(key, spots)),
+        Origin::Zenoh(key) => tables.zenoh.map(|zenoh| zenoh.source(key, spots)),
         #[cfg(not(all(feature = "ros2", feature = "zenoh")))]
         _ => None,
-    }
+    })
 }
 
 /// A camera as links need to know it.

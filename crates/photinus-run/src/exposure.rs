@@ -2,14 +2,16 @@
 //! sets by exposure at which distance neighbours appear.
 //!
 //! The light of a marker falls with the square of its distance, and grows with the exposure: level above the background = k * exposure / distance^2, with
-//! a k that is learnt from located neighbours whose spots are not saturated. Before any was seen, nothing is changed.
+//! a k that is learnt from located neighbours. One with saturated spots tells only that k is at least so much: until k is known, the exposure is halved
+//! for such a one. Before any neighbour was seen, nothing is changed.
 
 use photinus_io::results::{FrameRecord, NeighbourRecord};
 
 use crate::Entry;
 
-/// How many times the detector's contrast the farthest marker stands out: of two LEDs of an airframe one faces away by half.
-const MARGIN: f64 = 2.0;
+/// How many times the detector's contrast the farthest marker stands out: of two LEDs of an airframe one faces away by half, and of a spot between
+/// pixels each has a part.
+const MARGIN: f64 = 3.0;
 /// Share of a new k that is believed, per neighbour and frame.
 const LEARNT: f64 = 0.05;
 /// Exposures that differ by a smaller share are the same.
@@ -34,17 +36,26 @@ pub struct Wanted {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Exposure {
     wanted: Wanted,
-    /// Level times m^2 per us.
-    k: Option<f64>,
-    nearest_m: Option<f64>,
+    k: Option<Light>,
+    /// How far the nearest neighbour is in this frame and in the one before, which alternating exposes otherwise: one of them may tell it badly.
+    nearest_m: [Option<f64>; 2],
     told_us: Option<f64>,
     frames: u64,
+}
+
+/// How bright markers are: level times m^2 per us.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Light {
+    /// Of spots that are not saturated.
+    Is(f64),
+    /// Where the brightest spots are.
+    AtLeast(f64),
 }
 
 impl Exposure {
     /// Nothing is known of the markers' light yet.
     pub fn new(wanted: Wanted) -> Self {
-        Self { wanted, k: None, nearest_m: None, told_us: None, frames: 0 }
+        Self { wanted, k: None, nearest_m: [None; 2], told_us: None, frames: 0 }
     }
 
     /// The exposure of the frames after this one, us, where it is to be another.
@@ -64,33 +75,51 @@ impl Exposure {
     /// The exposure that is wanted now, us; `None` before any neighbour was seen.
     fn wished(&self) -> Option<f64> {
         let Wanted { reach_m, limits_us, contrast, alternate } = self.wanted;
-        let far_us = MARGIN * contrast * reach_m * reach_m / self.k?;
-        let is_near = alternate && self.frames % 2 == 1;
         // Half of full scale for the nearest.
-        let near_us = self.nearest_m.map(|nearest_m| 128.0 * nearest_m * nearest_m / self.k.unwrap_or(1.0));
-        let wished_us = near_us.filter(|_| is_near).map_or(far_us, |near_us| near_us.min(far_us));
+        let nearest_m = self.nearest_m.into_iter().flatten().reduce(f64::min);
+        let near_us = |k: f64| nearest_m.map(|nearest_m| 128.0 * nearest_m * nearest_m / k);
+        let wished_us = match self.k? {
+            Light::AtLeast(k) => near_us(k)?,
+            Light::Is(k) => {
+                let far_us = MARGIN * contrast * reach_m * reach_m / k;
+                let is_near = alternate && self.frames % 2 == 1;
+                near_us(k).filter(|_| is_near).map_or(far_us, |near_us| near_us.min(far_us))
+            }
+        };
         Some(wished_us.clamp(limits_us[0], limits_us[1]))
     }
 
     fn learn(&mut self, record: &FrameRecord, exposure_us: f64) {
-        self.nearest_m =
-            record.neighbours.iter().filter_map(|neighbour| neighbour.distance_m.estimate).reduce(f64::min);
+        let distances_m = record.neighbours.iter().filter_map(|neighbour| neighbour.distance_m.estimate);
+        self.nearest_m = [distances_m.reduce(f64::min), self.nearest_m[0]];
         for neighbour in &record.neighbours {
-            let Some(k) = light(record, neighbour, exposure_us) else { continue };
-            self.k = Some(self.k.map_or(k, |known| known + LEARNT * (k - known)));
+            let Some(seen) = light(record, neighbour, exposure_us) else { continue };
+            self.k = Some(self.k.map_or(seen, |known| known.with(seen)));
         }
     }
 }
 
-/// k of a neighbour: by the brightest of its spots that is not saturated.
-fn light(record: &FrameRecord, neighbour: &NeighbourRecord, exposure_us: f64) -> Option<f64> {
+impl Light {
+    fn with(self, seen: Self) -> Self {
+        let believed = |known: f64, seen: f64| known + LEARNT * (seen - known);
+        match (self, seen) {
+            (Self::Is(known), Self::Is(seen)) => Self::Is(believed(known, seen)),
+            (Self::Is(known), Self::AtLeast(seen)) => Self::Is(believed(known, seen.max(known))),
+            (Self::AtLeast(known), Self::AtLeast(seen)) => Self::AtLeast(seen.max(known)),
+            (Self::AtLeast(_), Self::Is(_)) => seen,
+        }
+    }
+}
+
+/// By the brightest spot of a neighbour.
+fn light(record: &FrameRecord, neighbour: &NeighbourRecord, exposure_us: f64) -> Option<Light> {
     let distance_m = neighbour.distance_m.estimate?;
-    let spots = neighbour.spots.iter().filter_map(|&spot| record.spots.get(spot));
-    let levels = spots
-        .filter(|spot| spot.peak < FULL && spot.saturated_px == 0)
-        .map(|spot| f64::from(spot.peak) - spot.background);
+    let spots = || neighbour.spots.iter().filter_map(|&spot| record.spots.get(spot));
+    let levels = spots().map(|spot| f64::from(spot.peak) - spot.background);
     let level = levels.reduce(f64::max).filter(|level| *level > 0.0)?;
-    Some(level * distance_m * distance_m / exposure_us)
+    let k = level * distance_m * distance_m / exposure_us;
+    let is_full = spots().any(|spot| spot.peak >= FULL || spot.saturated_px > 0);
+    Some(if is_full { Light::AtLeast(k) } else { Light::Is(k) })
 }
 
 #[cfg(test)]
@@ -137,16 +166,44 @@ mod tests {
                 let first_us = 60.0 * distance_m * distance_m / light;
                 let exposure_us = settled(light, WANTED, first_us, distance_m);
                 let level = light * exposure_us / (WANTED.reach_m * WANTED.reach_m);
-                assert!((level / 40.0 - 1.0).abs() < 0.1, "light {light}, {distance_m} m: level {level}");
+                assert!(
+                    (level / (MARGIN * WANTED.contrast) - 1.0).abs() < 0.1,
+                    "light {light}, {distance_m} m: level {level}"
+                );
             }
         }
     }
 
     #[test]
-    fn limits_hold_and_a_sensor_that_only_sees_full_scale_teaches_nothing() {
+    fn limits_hold_whatever_the_light() {
         assert!((settled(0.001, WANTED, 5000.0, 1.0) - 10_000.0).abs() < 1e-9);
+        assert!((settled(1e6, WANTED, 5000.0, 3.0) - 20.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn full_scale_is_left_by_halves_until_the_light_is_known() {
         let mut control = Exposure::new(WANTED);
-        assert_eq!(control.after(&seen(1e6, 1000.0, 3.0)), None);
+        let mut exposure_us = 8000.0;
+        let mut told = Vec::new();
+        for _ in 0..12 {
+            exposure_us = control.after(&seen(10.0, exposure_us, 4.0)).unwrap_or(exposure_us);
+            told.push(exposure_us);
+        }
+        // At 4 m a marker is full above 392 us; then the reach of 20 m counts.
+        assert!(told[..4].windows(2).all(|pair| (0.45..0.6).contains(&(pair[1] / pair[0]))), "{told:?}");
+        assert!((10.0 * exposure_us / 400.0 / (MARGIN * WANTED.contrast) - 1.0).abs() < 0.1, "{told:?}");
+    }
+
+    #[test]
+    fn a_spot_that_faces_away_says_nothing_beside_one_that_is_full() {
+        let mut entry = seen(10.0, 4000.0, 4.0);
+        let mut dim = entry.record.spots[0];
+        (dim.peak, dim.saturated_px) = (30, 0);
+        entry.record.spots.push(dim);
+        entry.record.neighbours[0].spots.push(1);
+        let mut control = Exposure::new(WANTED);
+        let asked_us = control.after(&entry).unwrap();
+        assert!((asked_us / 4000.0 - 128.0 / 245.0).abs() < 0.01, "{asked_us}");
     }
 
     #[test]
@@ -159,7 +216,7 @@ mod tests {
         }
         let last = &set[98..];
         let (short_us, long_us) = (last[0].min(last[1]), last[0].max(last[1]));
-        assert!((10.0 * long_us / 400.0 / 40.0 - 1.0).abs() < 0.1, "{long_us}");
+        assert!((10.0 * long_us / 400.0 / (MARGIN * WANTED.contrast) - 1.0).abs() < 0.1, "{long_us}");
         assert!((10.0 * short_us / 25.0 / 128.0 - 1.0).abs() < 0.1, "{short_us}");
     }
 }

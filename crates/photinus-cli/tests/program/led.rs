@@ -233,3 +233,51 @@ fn a_camera_sees_which_led_is_dark_and_which_are_swapped() {
     }
     assert!(!swapped.err.contains("dark"), "{}", swapped.err);
 }
+
+#[test]
+fn a_camera_sees_which_led_is_out_of_step_and_by_how_much() {
+    // The LEDs of a simulated vehicle blink by one clock: two at one place stand for a board with two.
+    let filmed = |name: &str, late_s: f64| {
+        let stage = Stage::new(name);
+        stage.file("book.txt", BOOK);
+        let scenes = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes");
+        let led = |y_m: f64, signal: u32| {
+            format!(
+                "[[led]]\nposition_m = [0.0, {y_m}, 0.0]\naxis = [1.0, 0.0, 0.0]\nlobe = \"lambertian\"\nsignal = {signal}\n"
+            )
+        };
+        stage.file("one.toml", format!("name = \"one\"\n{}{}", led(0.3, 0), led(0.1, 1)));
+        stage.file("other.toml", format!("name = \"other\"\n{}", led(-0.2, 0)));
+        let target = |id: u32, airframe: &str, words: &str, shift_s: f64| {
+            format!(
+                "[[target]]\nid = {id}\nairframe = \"{airframe}.toml\"\nheading_deg = 180\nmotion = {{ hover = {{ position_m = [2.5, 0.0, 5.0] }} }}\n\
+                 blink = {{ codes = \"{scenes}/codes/l12-d3-r3.txt\", words = {words}, rate_hz = 60.0, shift_s = {shift_s} }}\n"
+            )
+        };
+        stage.file(
+            "scene.toml",
+            format!(
+                "name = \"step\"\nseed = 5\npreset = \"bluefox-dsl215-bp365\"\nrate_hz = 59.9\nduration_s = 2.0\nexposure_us = 1000.0\n\
+                 [observer]\nmotion = {{ hover = {{ position_m = [0.0, 0.0, 5.0] }} }}\n\
+                 [[camera]]\nname = \"front\"\nfile = \"{scenes}/cameras/bluefox-dsl215.toml\"\nposition_m = [0.0, 0.0, 0.0]\n{}{}",
+                target(1, "one", "[0, 1]", 0.003),
+                target(2, "other", "[2]", 0.003 - late_s)
+            ),
+        );
+        let done = stage.run("simulate scene.toml --out rec -q");
+        assert_eq!(done.code, 0, "{}", done.err);
+        stage.run("led --book book.txt --vehicle 0 --signals 3 --verify rec")
+    };
+    let good = filmed("led-in-step", 0.0);
+    assert!(
+        good.code == 0 && good.out.matches("in 100 % of the frames").count() == 3,
+        "{} {}",
+        good.out,
+        good.err
+    );
+    let late = filmed("led-late", 2.0 / 60.0);
+    let told: Vec<&str> = late.err.lines().filter(|line| line.contains("out of step")).collect();
+    assert!(late.code == 1 && told.len() == 1, "{} {}", late.out, late.err);
+    let by: f64 = told[0].split_whitespace().rev().nth(1).unwrap().parse().unwrap();
+    assert!((by.abs() - 2.0).abs() < 0.5, "{}", late.err);
+}

@@ -21,6 +21,7 @@ mod demo;
 mod doctor;
 mod evaluate;
 mod evaluate_recordings;
+mod exposure;
 mod files_survive;
 mod inject;
 mod kinds;

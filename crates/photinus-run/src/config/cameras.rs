@@ -27,24 +27,41 @@ use crate::{HostClock, View};
 /// The exposure of frames of which nobody says it, us.
 const EXPOSURE_US: f64 = 1000.0;
 
-/// Opens a topic with images, or with spots where that is said; `None` where nothing is linked that can.
-pub type Linked<'a> = &'a dyn Fn(Topic<'_>, bool) -> Option<Opener>;
+/// Opens frames that come from elsewhere, or spots where that is said; `None` where nothing is linked that can.
+pub type Linked<'a> = &'a dyn Fn(Origin<'_>, bool) -> Result<Option<Opener>>;
 
-/// Where messages of others come from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Topic<'a> {
+/// Where frames come from that this crate cannot open itself.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Origin<'a> {
     /// A topic of ROS 2.
     Ros2(&'a str),
     /// A key of Zenoh.
     Zenoh(&'a str),
+    /// A scene, rendered while it runs.
+    Scene {
+        /// Its file.
+        path: PathBuf,
+        /// Which of its cameras, where it has several.
+        camera: Option<&'a str>,
+        /// How long it is exposed, us, where that is not as the scene says.
+        exposure_us: Option<f64>,
+        /// When its clock showed 0 by ours; without, frames come as fast as they are taken.
+        began: Option<Instant>,
+        /// It goes on past its duration.
+        repeat: bool,
+    },
 }
 
-impl Topic<'_> {
-    /// The feature, and the table, of what opens it.
-    fn link(self) -> &'static str {
+impl Origin<'_> {
+    /// What opens it, and what to do where that is missing.
+    fn wants(&self) -> (&'static str, &'static str) {
         match self {
-            Topic::Ros2(_) => "ros2",
-            Topic::Zenoh(_) => "zenoh",
+            Origin::Ros2(_) => ("messages of ros2", "build with --features ros2, or name another source"),
+            Origin::Zenoh(_) => (
+                "messages of zenoh",
+                "build with --features zenoh and add the table [zenoh], or name another source",
+            ),
+            Origin::Scene { .. } => ("scenes", "name another source"),
         }
     }
 }
@@ -73,7 +90,7 @@ impl Named<'_> {
 }
 
 impl Config {
-    /// The cameras, ready to run. `motion` is what arrives of the vehicle's own motion; `linked` opens topics of others, where it can; `note` takes what
+    /// The cameras, ready to run. `motion` is what arrives of the vehicle's own motion; `linked` opens frames from elsewhere, where it can; `note` takes what
     /// was read otherwise than it stands in a file.
     ///
     /// # Errors
@@ -230,23 +247,32 @@ impl Config {
                 .map_err(|error| refuse(error.to_string()))?;
             view = view.following(watch);
         }
-        let source = match (&keys.source.v4l2, keys.source.topic()) {
+        let source = match (&keys.source.v4l2, self.origin(keys, &clock)) {
             (Some(path), _) => self.v4l2(named, path, [camera.width(), camera.height()], clock)?,
-            (_, Some(topic)) => linked(topic, keys.source.spots).ok_or_else(|| {
-                let link = topic.link();
-                let reason = format!("nothing opens messages of {link}");
-                let advice = match topic {
-                    Topic::Ros2(_) => "build with --features ros2, or name another source",
-                    Topic::Zenoh(_) => {
-                        "build with --features zenoh and add the table [zenoh], or name another source"
-                    }
-                };
-                self.refuse(&format!("camera {}", keys.name), &reason, advice)
-            })?,
+            (_, Some(origin)) => linked(origin.clone(), keys.source.spots)
+                .map_err(|error| of_key("source.scene", keys.source.scene.is_some(), error))?
+                .ok_or_else(|| {
+                    let (what, advice) = origin.wants();
+                    self.refuse(&format!("camera {}", keys.name), &format!("nothing opens {what}"), advice)
+                })?,
             _ => self.opener(named, exposure_us, (clock, start_s)),
         };
         let exposure = self.wanted_exposure().map(Exposure::new);
         Ok(Camera { name: keys.name.clone(), source, view, exposure })
+    }
+
+    /// Where its frames come from, where others open it.
+    fn origin<'a>(&self, keys: &'a CameraKeys, clock: &HostClock) -> Option<Origin<'a>> {
+        let SourceKeys { scene, camera, repeat, ros2, zenoh, .. } = &keys.source;
+        let topic = || ros2.as_deref().map(Origin::Ros2).or_else(|| zenoh.as_deref().map(Origin::Zenoh));
+        let scene = scene.as_ref().map(|path| Origin::Scene {
+            path: self.located(path),
+            camera: camera.as_deref(),
+            exposure_us: keys.exposure_us,
+            began: (self.pace() == Pace::Live).then(|| began(clock, 0.0)),
+            repeat: *repeat,
+        });
+        scene.or_else(topic)
     }
 
     fn gravity(&self) -> Result<Option<Unit<Vector3<f64>>>> {

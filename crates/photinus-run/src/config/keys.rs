@@ -8,8 +8,6 @@ use photinus_io::video::RawFormat;
 use serde::Deserialize;
 use toml::value::Datetime;
 
-use super::Topic;
-
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Keys {
@@ -56,7 +54,9 @@ pub(super) struct CameraKeys {
 #[serde(deny_unknown_fields)]
 pub(super) struct SourceKeys {
     pub(super) dataset: Option<PathBuf>,
-    /// Which camera of a dataset with several.
+    /// What the simulator renders while it runs.
+    pub(super) scene: Option<PathBuf>,
+    /// Which camera of a dataset or a scene with several.
     pub(super) camera: Option<String>,
     #[serde(default)]
     pub(super) repeat: bool,
@@ -81,10 +81,9 @@ pub(super) struct SourceKeys {
 }
 
 impl SourceKeys {
-    /// Where messages of others are taken from, if they are.
-    pub(super) fn topic(&self) -> Option<Topic<'_>> {
-        let of_zenoh = || self.zenoh.as_deref().map(Topic::Zenoh);
-        self.ros2.as_deref().map(Topic::Ros2).or_else(of_zenoh)
+    /// Whether messages of others are taken.
+    pub(super) fn is_topic(&self) -> bool {
+        self.ros2.is_some() || self.zenoh.is_some()
     }
 }
 

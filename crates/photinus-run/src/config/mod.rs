@@ -20,7 +20,7 @@ use photinus_io::sky::{Sky, SkyInfo};
 use photinus_io::{Cause, Error, Place, Result, table, whole};
 use toml::value::{Date, Datetime, Offset, Time};
 
-pub use cameras::{Linked, Topic};
+pub use cameras::{Linked, Origin};
 use keys::{ExposureKeys, Keys, PaceKey, SkyKeys, SourceKeys};
 
 use crate::exposure::Wanted;
@@ -216,11 +216,14 @@ impl Config {
     }
 
     fn check_source(&self, source: &SourceKeys, key: &str) -> Result<()> {
-        let SourceKeys { dataset, camera, repeat, command, stdin, tcp, unix, raw, times, spots, .. } = source;
+        let SourceKeys {
+            dataset, scene, camera, repeat, command, stdin, tcp, unix, raw, times, spots, ..
+        } = source;
         let SourceKeys { ros2, zenoh, v4l2, format, rate_hz, gain, .. } = source;
         let is_stream = command.is_some() || *stdin == Some(true) || tcp.is_some() || unix.is_some();
         let kinds = [
             dataset.is_some(),
+            scene.is_some(),
             command.is_some(),
             *stdin == Some(true),
             tcp.is_some(),
@@ -233,19 +236,22 @@ impl Config {
             return Err(self.refuse(
                 key,
                 "it needs exactly one source",
-                "give one of dataset, command, stdin = true, tcp, unix, v4l2, ros2, zenoh",
+                "give one of dataset, scene, command, stdin = true, tcp, unix, v4l2, ros2, zenoh",
             ));
         }
-        let of_dataset = camera.is_some() || *repeat;
+        let of_frames = camera.is_some() || *repeat;
         let of_stream = raw.is_some() || times.is_some();
-        let is_lost = *spots && !is_stream && source.topic().is_none();
+        let is_lost = *spots && !is_stream && !source.is_topic();
         let of_v4l2 = format.is_some() || rate_hz.is_some() || gain.is_some();
-        if of_dataset && dataset.is_none() || of_stream && !is_stream || of_v4l2 && v4l2.is_none() || is_lost
+        if of_frames && dataset.is_none() && scene.is_none()
+            || of_stream && !is_stream
+            || of_v4l2 && v4l2.is_none()
+            || is_lost
         {
             return Err(self.refuse(
                 key,
                 "these keys do not go together",
-                "`camera` and `repeat` are of a dataset, `raw` and `times` of a stream, `spots` of a stream, ros2 or zenoh, `format`, `rate_hz` and `gain` of v4l2",
+                "`camera` and `repeat` are of a dataset or a scene, `raw` and `times` of a stream, `spots` of a stream, ros2 or zenoh, `format`, `rate_hz` and `gain` of v4l2",
             ));
         }
         if *spots && raw.is_some() {

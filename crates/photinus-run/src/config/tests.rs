@@ -53,7 +53,7 @@ fn a_file_that_cannot_be_read_is_told_with_the_key_that_names_it() {
     let path = folder.join("run.toml");
     let told = |text: &str| {
         let config = Config::parse(text, &path).unwrap();
-        config.cameras(&Motion::default(), &|_, _| None, &mut |_| {}).err().unwrap().to_string()
+        config.cameras(&Motion::default(), &|_, _| Ok(None), &mut |_| {}).err().unwrap().to_string()
     };
     let missing = told(CAMERA);
     let [config, dataset] = [path.clone(), folder.join("rec")].map(|path| path.display().to_string());
@@ -83,6 +83,13 @@ fn what_has_no_meaning_is_refused_with_what_to_do() {
     assert!(of("v4l2 = \"/dev/video0\", format = \"H264\"").contains("no grey frame is known to be in H264"));
     assert!(of("v4l2 = \"/dev/video0\", rate_hz = 0").contains("no camera has this rate"));
     assert!(of("tcp = \"b:1\", camera = \"left\"").contains("do not go together"));
+    assert!(of("scene = \"s.toml\", dataset = \"rec\"").contains("exactly one source"));
+    assert!(of("scene = \"s.toml\", raw = { width = 8, height = 8 }").contains("do not go together"));
+    Config::parse(
+        &CAMERA.replace("dataset = \"rec\"", "scene = \"s.toml\", camera = \"left\", repeat = true"),
+        "t",
+    )
+    .unwrap();
     assert!(
         told(&format!("{CAMERA}[exposure]\nreach_m = -1\nshortest_us = 1\nlongest_us = 2\n"))
             .contains("`exposure`")
@@ -123,7 +130,7 @@ fn a_sky_is_refused_with_its_key_or_line_where_it_has_no_meaning() {
             "headin_deg",
             "run.toml, line 8: unknown key `headin_deg`, expected one of `latitude_deg`",
         ),
-        ("longitude_deg = 14.42\n", "", "run.toml, line 4: missing key `longitude_deg`; add it"),
+        ("longitude_deg = 14.42\n", "", "missing key `longitude_deg`; add it"),
     ] {
         let message = told(&format!("{CAMERA}{}", SKY.replace(from, to)));
         assert!(message.contains(expected), "{to}: {message}");

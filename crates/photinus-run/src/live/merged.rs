@@ -5,13 +5,14 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use photinus_io::{Error, Result};
 
+use super::lane::Lane;
 use crate::Entry;
 use crate::source::{Next, Source};
 
 /// Frames of several sources, the earliest first; of the same time, in the order of the sources.
 pub(super) struct Merged {
     sources: Vec<Box<dyn Source>>,
-    names: Vec<String>,
+    lanes: Vec<Arc<Lane>>,
     /// What each source gives next; `None` when it has ended.
     heads: Vec<Option<Result<Entry>>>,
     /// Which source the last frame was of.
@@ -19,9 +20,13 @@ pub(super) struct Merged {
 }
 
 impl Merged {
-    pub(super) fn new(mut sources: Vec<Box<dyn Source>>, names: Vec<String>, at: Arc<AtomicUsize>) -> Self {
+    pub(super) fn new(
+        mut sources: Vec<Box<dyn Source>>,
+        lanes: Vec<Arc<Lane>>,
+        at: Arc<AtomicUsize>,
+    ) -> Self {
         let heads = sources.iter_mut().map(|source| head(source.as_mut())).collect();
-        Self { sources, names, heads, at }
+        Self { sources, lanes, heads, at }
     }
 }
 
@@ -37,12 +42,16 @@ impl Iterator for Merged {
         let there =
             self.heads.iter().enumerate().filter_map(|(number, head)| Some((number, time_s(head.as_ref()?))));
         let (number, _) = there.min_by(|a, b| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0)))?;
+        // The frame that is given now was exposed before this was wished for.
+        if let Some(exposure_us) = self.lanes[number].slot.take_wish() {
+            let _ = self.sources[number].expose(exposure_us);
+        }
         let next = head(self.sources[number].as_mut());
         self.at.store(number, Ordering::Relaxed);
         let entry = std::mem::replace(&mut self.heads[number], next)?;
         Some(entry.map(|mut entry| {
             entry.camera = number;
-            entry.record.camera = Some(self.names[number].clone());
+            entry.record.camera = Some(self.lanes[number].name.clone());
             entry
         }))
     }

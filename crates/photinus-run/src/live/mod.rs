@@ -178,11 +178,10 @@ fn fast(cameras: Vec<Camera>, desk: Desk) -> Result<std::thread::JoinHandle<()>>
         views.push(camera.view);
         exposures.push(camera.exposure);
     }
-    let names = desk.lanes.iter().map(|lane| lane.name.clone()).collect();
     let mut desk = Desk { exposures, ..desk };
     spawn("locate", move || {
         let Ok(()) = crate::run(
-            Merged::new(sources, names, desk.at.clone()),
+            Merged::new(sources, desk.lanes.clone(), desk.at.clone()),
             &mut views,
             &mut desk,
             &mut Clock::new(),

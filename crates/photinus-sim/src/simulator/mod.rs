@@ -26,6 +26,7 @@ use crate::source::Blink;
 pub struct Simulator {
     scene: Arc<Scene>,
     camera: usize,
+    exposure_us: f64,
     blinks: Arc<[Vec<Option<Blink>>]>,
     snapshot: Snapshot,
     renderer: Renderer,
@@ -50,7 +51,8 @@ impl Simulator {
         let mut random = Pcg64::new(u128::from(scene.seed), 0x1ed);
         let mut draw = || StandardNormal.sample(&mut random);
         let vehicles = scene.targets.iter().map(|target| vehicle(target, &scene, &mut draw)).collect();
-        let exposure = renderer.view().exposure(0.0, scene.exposure_us * 1e-6);
+        let exposure_us = mounted.exposure_us.unwrap_or(scene.exposure_us);
+        let exposure = renderer.view().exposure(0.0, exposure_us * 1e-6);
         let snapshot = Snapshot {
             exposure,
             camera: Moving::still(mounted.body_from_camera),
@@ -61,7 +63,7 @@ impl Simulator {
             lamps: scene.lamps.iter().map(lamp).collect(),
         };
         let blinks = scene.targets.iter().map(|target| blinks(target, scene.seed)).collect();
-        Some(Self { camera, blinks, snapshot, renderer, scene })
+        Some(Self { camera, exposure_us, blinks, snapshot, renderer, scene })
     }
 
     /// Frame number `number`, counted from 0; any, in any order.
@@ -86,8 +88,15 @@ impl Simulator {
     pub fn exposure(&self, number: u64) -> Exposure {
         let mounted = &self.scene.cameras[self.camera];
         let start_s = mounted.clock.time_s(mounted.phase_s + number as f64 / self.scene.rate_hz);
-        let exposure_us = mounted.exposure_us.unwrap_or(self.scene.exposure_us);
-        self.renderer.view().exposure(start_s, exposure_us * 1e-6)
+        self.renderer.view().exposure(start_s, self.exposure_us * 1e-6)
+    }
+
+    /// Exposes the frames that are asked for from now on so long, us, in place of what the scene says: a camera whose exposure is set while it runs.
+    /// What is not above 0 and at most a minute changes nothing.
+    pub fn set_exposure_us(&mut self, exposure_us: f64) {
+        if exposure_us > 0.0 && exposure_us <= 6e7 {
+            self.exposure_us = exposure_us;
+        }
     }
 
     /// Brings the snapshot to an exposure.

@@ -53,7 +53,7 @@ fn a_sky_is_that_of_locate_byte_for_byte_and_its_sun_costs_a_neighbour_probabili
         told
     };
     let located = |sky: &str| {
-        assert_eq!(stage.run(&format!("locate rec --out located.jsonl -q -f {sky}")).code, 0);
+        assert_eq!(stage.run(&format!("locate rec --out located.jsonl -q --force {sky}")).code, 0);
         stage.read("located.jsonl")
     };
     let (without, with) = (live(""), live(sky));

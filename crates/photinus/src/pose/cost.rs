@@ -90,7 +90,7 @@ impl Problem<'_> {
         let place_m = camera_from_body * at_m + pose.position_m;
         let range_m = place_m.norm();
         let seen = place_m / range_m;
-        let Whitened { direction, map, log_sigmas } = &self.whitened[spot];
+        let Whitened { direction, map, log_sigmas, .. } = &self.whitened[spot];
         normal.nats += log_sigmas + LOG_TAU;
         if factor < 1.0 {
             normal.nats -= 2.0 * libm::log(factor);

@@ -242,7 +242,7 @@ impl Problem<'_> {
         }
         shining.centre.at_m = middle.at_m;
         shining.centre.by_camera = middle.by_camera;
-        let sigma2_rad2 = self.observations[spot].variance_rad2();
+        let sigma2_rad2 = self.whitened[spot].variance_rad2;
         let unsure_rad2 = unsure_m2 / (total * total * camera_m.norm_squared()).max(f64::MIN_POSITIVE);
         shining.centre.factor = (sigma2_rad2 / (sigma2_rad2 + unsure_rad2)).sqrt();
         shining

@@ -38,13 +38,6 @@ pub struct LogLight {
     pub sigma: f64,
 }
 
-impl Observation {
-    /// Mean variance of the direction over its two axes, rad^2.
-    pub(super) fn variance_rad2(&self) -> f64 {
-        (self.covariance_rad2.trace() / 2.0).clamp(LEAST_RAD2, MOST_RAD2)
-    }
-}
-
 /// A direction with the map that makes its error one of unit covariance: e = map (u - direction).
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Whitened {
@@ -52,6 +45,8 @@ pub(crate) struct Whitened {
     pub(crate) map: Matrix2x3<f64>,
     /// Half the logarithm of the covariance's determinant: the density's normaliser but for 2 pi.
     pub(crate) log_sigmas: f64,
+    /// Mean variance over its two axes, rad^2.
+    pub(crate) variance_rad2: f64,
 }
 
 impl Whitened {
@@ -75,7 +70,7 @@ impl Whitened {
         let second = (yy - below * below).max(1e-3 * yy).sqrt();
         let row = across / first;
         let map = Matrix2x3::from_rows(&[row.transpose(), ((along - row * below) / second).transpose()]);
-        Self { direction, map, log_sigmas: libm::log(first * second) }
+        Self { direction, map, log_sigmas: libm::log(first * second), variance_rad2: 0.5 * (xx + yy) }
     }
 }
 

@@ -225,7 +225,7 @@ fn problem<'a>(
     whitened: &'a [Whitened],
     known: &'a Known<'a>,
 ) -> Problem<'a> {
-    Problem { airframe, settings, observations, whitened, known, markers: &[], merging: true }
+    Problem { airframe, settings, observations, whitened, known, markers: &[], merging: true, repeats: 1.0 }
 }
 
 /// Assigns spots to the nearest markers and refines the pose in turns, until nothing changes.

@@ -21,15 +21,46 @@ pub(crate) const POWER_RANGE: f64 = 10.0;
 
 /// The light of the spots in use against that of their markers.
 pub(super) struct Light {
-    weight: f64,
+    scale: Scale,
+    /// The same if lobes were as sure from every side as from straight ahead, where errors repeat.
+    even: Scale,
     first: f64,
     second: f64,
     slope: Vector6<f64>,
     /// Sums of w r a and of w a a', before the power of the LEDs is solved for.
     normal: Normal,
-    log_sigmas: f64,
     /// By how much each tells less for not being independent of the others.
     shared: f64,
+    repeats: f64,
+}
+
+/// What lights are measured by: sums of inverse variances, and of the logarithms of sigmas.
+#[derive(Clone, Copy)]
+struct Scale {
+    weight: f64,
+    log_sigmas: f64,
+}
+
+impl Scale {
+    /// Where nothing tells the power of the LEDs.
+    fn any_power() -> Self {
+        Self { weight: 0.0, log_sigmas: libm::log(POWER_RANGE) }
+    }
+
+    fn of(variance: f64) -> Self {
+        Self { weight: 1.0 / variance, log_sigmas: 0.5 * libm::log(TAU * variance) }
+    }
+
+    fn add(&mut self, variance: f64) {
+        let Self { weight, log_sigmas } = Self::of(variance);
+        self.weight += weight;
+        self.log_sigmas += log_sigmas;
+    }
+
+    /// The negative logarithm of the density of lights that are as expected, the power solved for.
+    fn nats(&self) -> f64 {
+        self.log_sigmas + 0.5 * libm::log(self.weight / TAU)
+    }
 }
 
 impl Light {
@@ -47,21 +78,20 @@ impl Light {
     /// What is known of the power of the LEDs before any spot.
     pub(super) fn beforehand(problem: &Problem<'_>) -> Self {
         let mut light = Self {
-            weight: 0.0,
+            scale: Scale::any_power(),
+            even: Scale::any_power(),
             first: 0.0,
             second: 0.0,
             slope: Vector6::zeros(),
             normal: Normal::zero(),
-            log_sigmas: 0.0,
             shared: (problem.used().count() as f64 / INDEPENDENT).max(1.0),
+            repeats: problem.repeats,
         };
-        light.log_sigmas = match problem.known.power {
-            Some(LogLight { value, sigma }) => {
-                light.add(1.0 / (sigma * sigma), value, &Vector6::zeros());
-                0.5 * libm::log(TAU * sigma * sigma)
-            }
-            None => libm::log(POWER_RANGE),
-        };
+        if let Some(LogLight { value, sigma }) = problem.known.power {
+            light.scale = Scale::of(sigma * sigma);
+            light.even = light.scale;
+            light.add(1.0 / (sigma * sigma), value, &Vector6::zeros());
+        }
         light
     }
 
@@ -76,10 +106,13 @@ impl Light {
         if shining.intensity > DARK {
             by_camera += shining.intensity_gradient / shining.intensity;
         }
-        let lobe = problem.settings.lobe_sigma / shines;
         let unit = problem.settings.unit_sigma;
-        let variance = (seen.sigma * seen.sigma + unit * unit + lobe * lobe) * self.shared;
-        self.log_sigmas += 0.5 * libm::log(TAU * variance);
+        let variance = |lobe: f64| (seen.sigma * seen.sigma + unit * unit + lobe * lobe) * self.shared;
+        if self.repeats > 1.0 {
+            self.even.add(variance(problem.settings.lobe_sigma));
+        }
+        let variance = variance(problem.settings.lobe_sigma / shines);
+        self.scale.add(variance);
         // The camera in the body frame moves by -R' distance delta, and by c x omega.
         let by_delta = pose.camera_from_body.matrix() * by_camera * -pose.position_m.norm();
         let by_omega = by_camera.cross(&shining.camera_m);
@@ -88,7 +121,6 @@ impl Light {
     }
 
     fn add(&mut self, weight: f64, residual: f64, row: &Vector6<f64>) {
-        self.weight += weight;
         self.first += weight * residual;
         self.second += weight * residual * residual;
         self.slope += weight * row;
@@ -97,12 +129,24 @@ impl Light {
 
     /// Logarithm of the light of an LED of intensity 1 at 1 m that fits best; `None` where no spot has a light.
     pub(super) fn log_power(&self) -> Option<f64> {
-        (self.weight > 0.0).then(|| self.first / self.weight)
+        (self.scale.weight > 0.0).then(|| self.first / self.scale.weight)
     }
 
     /// Squares of what is left when the power of the LEDs is solved for.
     pub(super) fn misfit(&self) -> f64 {
         self.log_power().map_or(0.0, |power| (self.second - self.first * power).max(0.0))
+    }
+
+    /// What it costs that lights are told so surely. How much less sure they are for the side of a lobe that is seen is the same in all frames that err
+    /// alike, and is told once.
+    fn scale_nats(&self) -> f64 {
+        let own = self.scale.nats();
+        if self.repeats > 1.0 {
+            let even = self.even.nats();
+            even + (own - even) / self.repeats
+        } else {
+            own
+        }
     }
 
     /// Adds what is left when the power of the LEDs is solved for.
@@ -114,13 +158,13 @@ impl Light {
         } else {
             (0.5 * AS_TOLD * (1.0 + libm::log(misfit / AS_TOLD)), AS_TOLD / misfit)
         };
-        normal.nats += half + self.log_sigmas + 0.5 * libm::log(self.weight / TAU);
+        normal.nats += half + self.scale_nats();
         normal.gradient += (self.normal.gradient - self.slope * power) * share;
         for column in 0..6 {
             for line in 0..=column {
                 normal.information[(line, column)] += share
                     * (self.normal.information[(line, column)]
-                        - self.slope[line] * self.slope[column] / self.weight);
+                        - self.slope[line] * self.slope[column] / self.scale.weight);
             }
         }
     }

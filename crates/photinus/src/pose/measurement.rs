@@ -26,15 +26,25 @@ pub(crate) struct Seen<'a> {
     pub(crate) per_frame: &'a Settings,
     pub(crate) observations: &'a [Observation],
     pub(crate) whitened: &'a [Whitened],
+    /// In so many frames what errs alike from frame to frame is the same.
+    pub(crate) repeats: f64,
     pub(crate) known: &'a Known<'a>,
 }
 
 impl<'a> Measurement<'a> {
     /// `markers` has the marker of every observation, `None` for clutter; `near` is where poses are asked for.
     pub(crate) fn new(seen: &Seen<'a>, markers: &'a [Option<u16>], near: &Pose) -> Self {
-        let Seen { airframe, settings, per_frame, observations, whitened, known } = *seen;
-        let problem =
-            Problem { airframe, settings: per_frame, observations, whitened, markers, known, merging: true };
+        let Seen { airframe, settings, per_frame, observations, whitened, repeats, known } = *seen;
+        let problem = Problem {
+            airframe,
+            settings: per_frame,
+            observations,
+            whitened,
+            markers,
+            known,
+            merging: true,
+            repeats,
+        };
         let merging = problem.may_merge(near);
         Self { problem: Problem { merging, ..problem }, told: settings }
     }

@@ -49,6 +49,8 @@ pub(super) struct Problem<'a> {
     pub(super) known: &'a Known<'a>,
     /// Whether markers may merge into one spot.
     pub(super) merging: bool,
+    /// In so many frames what errs alike from frame to frame is the same, 1 where each is looked at by itself.
+    pub(super) repeats: f64,
 }
 
 /// The cost of a pose, nats, with gradient and Gauss-Newton information for a step [delta; omega].

@@ -81,7 +81,7 @@ proptest! {
         };
         let problem = Problem {
             airframe: &airframe, settings: &settings, observations: &observations, whitened: &whitened, markers: &markers,
-            known: &known, merging: false,
+            known: &known, merging: false, repeats: 1.0,
         };
         let normal = problem.normal(&pose);
         prop_assert!((normal.information - normal.information.transpose()).norm() == 0.0);
@@ -136,7 +136,7 @@ proptest! {
         let (settings, markers) = (Settings::default(), [Some(brightest as u16)]);
         let problem = Problem {
             airframe: &airframe, settings: &settings, observations: &observations, whitened: &whitened, markers: &markers,
-            known: &nothing(), merging: true,
+            known: &nothing(), merging: true, repeats: 1.0,
         };
         let shining = |at: &Vector3<f64>| problem.shining(0, brightest, at);
         let centre = |at: &Vector3<f64>| shining(at).centre;
@@ -171,7 +171,7 @@ proptest! {
         let (settings, markers) = (Settings::default(), [Some(0)]);
         let problem = Problem {
             airframe: &airframe, settings: &settings, observations: &observations, whitened: &whitened, markers: &markers,
-            known: &nothing(), merging: true,
+            known: &nothing(), merging: true, repeats: 1.0,
         };
         let centre = problem.shining(0, 0, &camera_m).centre;
         let merged = problem.merged(0, 0, 1, &camera_m);
@@ -180,4 +180,107 @@ proptest! {
         prop_assert!((0.0..=1.0).contains(&merged) && (gap < 2.01 || merged == 0.0) && (gap > 0.2 || merged > 0.99), "{merged}");
         prop_assert!(centre.factor <= 1.0 && (gap < 2.01 || centre.factor > 1.0 - 1e-12));
     }
+}
+
+/// Two markers of one light 0.1 m apart, side by side, to a camera 5 m away that makes one spot of them.
+fn merged_pair() -> (Airframe, Pose) {
+    let leds = [-0.05, 0.05].map(|y| Led {
+        position_m: Vector3::new(0.0, y, 0.0),
+        axis: Vector3::x_axis(),
+        lobe: Lobe::Omni,
+        power: 1.0,
+        signal: None,
+    });
+    let camera_from_body = Rotation3::from_basis_unchecked(&[Vector3::x(), -Vector3::z(), Vector3::y()])
+        * Rotation3::from_axis_angle(&Vector3::z_axis(), core::f64::consts::FRAC_PI_2);
+    let pose = Pose { position_m: Vector3::z() * 5.0, camera_from_body };
+    (Airframe::new("pair", leds.to_vec()).unwrap(), pose)
+}
+
+#[test]
+fn what_is_unsure_of_a_merged_centre_adds_to_what_is_unsure_of_its_marker() {
+    let (airframe, pose) = merged_pair();
+    let unsure_rad2 = |sigma_rad: f64, extra_rad2: f64| {
+        let observations =
+            [Observation { resolution_rad: 0.03, ..observation(Vector3::z(), sigma_rad, 1.0) }];
+        let whitened = observations.map(|seen| Whitened::of(&seen, extra_rad2));
+        let (settings, known) = (Settings::default(), nothing());
+        let problem = Problem {
+            airframe: &airframe,
+            settings: &settings,
+            observations: &observations,
+            whitened: &whitened,
+            markers: &[Some(0)],
+            known: &known,
+            merging: true,
+            repeats: 1.0,
+        };
+        let told_rad2 = sigma_rad * sigma_rad + extra_rad2;
+        told_rad2 / problem.shining(0, 0, &pose.camera_in_body_m()).centre.factor.powi(2) - told_rad2
+    };
+    // The other LED's share of the light, a half, is sure to the spread of two powers: so much of their gap.
+    let share = 0.25 * Settings::default().unit_sigma * core::f64::consts::SQRT_2 * 0.1 / 5.0;
+    let alone = unsure_rad2(1e-3, 0.0);
+    assert!((0.5..8.0).contains(&(alone.sqrt() / share)), "{} {share}", alone.sqrt());
+    for (sigma_rad, extra_rad2) in [(1e-5, 0.0), (1e-5, 1e-6), (1e-5, 1.6e-5), (1e-3, 1.6e-5)] {
+        let unsure = unsure_rad2(sigma_rad, extra_rad2);
+        assert!((unsure / alone - 1.0).abs() < 1e-2, "{sigma_rad} {extra_rad2}: {unsure} {alone}");
+    }
+}
+
+#[test]
+fn what_errs_alike_from_frame_to_frame_is_told_once() {
+    let (airframe, pose) = merged_pair();
+    let nats = |repeats: f64| {
+        let observations = [Observation { resolution_rad: 0.03, ..observation(Vector3::z(), 1e-5, 1.0) }];
+        let whitened = observations.map(|seen| Whitened::of(&seen, 0.0));
+        let (settings, known) = (Settings::default(), nothing());
+        let problem = Problem {
+            airframe: &airframe,
+            settings: &settings,
+            observations: &observations,
+            whitened: &whitened,
+            markers: &[Some(0)],
+            known: &known,
+            merging: true,
+            repeats,
+        };
+        problem.normal_of_spots(&pose).nats
+    };
+    let [one, two, four] = [1.0, 2.0, 4.0].map(nats);
+    assert!(one - two > 1.0 && (one - two - 2.0 * (two - four)).abs() < 1e-9, "{one} {two} {four}");
+}
+
+/// On the sphere's other side a spot's tangent plane is the same.
+#[test]
+fn nobody_is_behind_the_camera_that_sees_them() {
+    let airframe = hexarotor();
+    let pose = Pose { position_m: Vector3::z() * 4.0, camera_from_body: level() };
+    let camera_m = pose.camera_in_body_m();
+    let shown: Vec<usize> =
+        (0..airframe.markers().len()).filter(|&own| airframe.intensity(own, &camera_m) > 0.3).collect();
+    let direction =
+        |own: &usize| pose.camera_from_body * airframe.markers()[*own].position_m + pose.position_m;
+    let observations: Vec<_> = shown.iter().map(|own| observation(direction(own), 1e-3, 1.0)).collect();
+    let whitened: Vec<_> = observations.iter().map(|seen| Whitened::of(seen, 0.0)).collect();
+    let markers: Vec<_> = shown.iter().map(|&own| Some(own as u16)).collect();
+    let (settings, known) = (Settings::default(), nothing());
+    let problem = Problem {
+        airframe: &airframe,
+        settings: &settings,
+        observations: &observations,
+        whitened: &whitened,
+        markers: &markers,
+        known: &known,
+        merging: false,
+        repeats: 1.0,
+    };
+    // Mirrored at the camera every direction is the opposite, and every map gives nothing.
+    let mirrored = Pose {
+        position_m: -pose.position_m,
+        camera_from_body: pose.camera_from_body
+            * Rotation3::from_axis_angle(&Vector3::z_axis(), core::f64::consts::PI),
+    };
+    assert!(problem.normal_of_spots(&pose).nats.is_finite());
+    assert_eq!(problem.normal_of_spots(&mirrored).nats, f64::INFINITY);
 }

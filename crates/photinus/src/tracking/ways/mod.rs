@@ -348,6 +348,7 @@ impl Ways {
             per_frame: &self.per_frame,
             observations: &self.observations,
             whitened: &self.whitened,
+            repeats: self.correlated,
             known: &known,
         };
         with(&Measurement::new(&seen, &self.markers, near))

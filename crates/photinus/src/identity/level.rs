@@ -71,11 +71,13 @@ impl Level {
         self.spread = (libm::sqrt((1.0 - gain) * own) / self.full).clamp(Self::LEAST_SPREAD, Self::AT_FIRST);
     }
 
-    /// How far `light` is from what an LED shows that shone for `share` of the exposure, in standard deviations, and these.
+    /// How far `light` is from what an LED shows that shone for `share` of the exposure, in standard deviations, and these. What is unsure of a bright light
+    /// is a share of it, as where pixels are saturated: a darker one is surer, and none at all shows nothing.
     pub(super) fn standing(&self, light: f64, sigma: f64, share: f64) -> (f64, f64) {
         let mean = share * self.full;
         let own = mean * self.spread;
-        let deviation = libm::sqrt(sigma * sigma + own * own);
+        let noise = if light > 0.0 { sigma * (mean / light).min(1.0) } else { sigma };
+        let deviation = libm::sqrt(noise * noise + own * own);
         ((light - mean) / deviation, deviation)
     }
 }

@@ -27,6 +27,12 @@ use crate::tracking::Called;
 const HEARD: f64 = 0.5;
 /// ... and those of a vehicle together from this one on: they are wrong when each of them is.
 const HEARD_TOGETHER: f64 = 0.95;
+/// A vehicle is anywhere in a ball of so many of its radii, ...
+const FARTHEST_RADII: f64 = 60.0;
+/// ... and two of its markers are two radii apart, or less.
+const APART_RADII: f64 = 2.0;
+/// Closer than this, rad, markers tell nothing by their gap.
+const LEAST_GAP_RAD: f64 = 0.01;
 /// Whose place is less sure is no help to tell one, rad: half a small vehicle at 10 m.
 const PLACED_RAD: f64 = 0.015;
 /// Markers that are needed for a pose.
@@ -103,6 +109,7 @@ impl Calling {
             for &one in own {
                 add(&mut self.own, one, markers);
             }
+            leave_strays_out(&mut self.own, markers);
             if (FEWEST..=MOST).contains(&self.own.len()) {
                 let own = core::mem::take(&mut self.own);
                 self.call(markers, &own, gravity.map(|down| -down), watched);
@@ -173,6 +180,27 @@ fn add(own: &mut Vec<Heard>, one: Heard, markers: &[MarkerTrack]) {
     }
 }
 
+/// Leaves out what is rather another's marker that was heard wrong: two of one vehicle are as far apart as few of those near are large, two lights of
+/// whomever anyhow.
+fn leave_strays_out(own: &mut Vec<Heard>, markers: &[MarkerTrack]) {
+    let of = |heard: &Heard| &markers[heard.2];
+    let heard = |own: &Heard| of(own).identity.map_or(0.0, |identity| identity.probability);
+    let Some(surest) = own.iter().copied().max_by(|a, b| heard(a).total_cmp(&heard(b))) else { return };
+    own.retain(|one| {
+        let gap_rad = (of(one).bearing.vector() - of(&surest).bearing.vector()).norm();
+        let odds = heard(one) / (1.0 - heard(one)).max(f64::MIN_POSITIVE) * gap_odds(gap_rad);
+        one.2 == surest.2 || odds * (1.0 - HEARD_TOGETHER) > HEARD_TOGETHER
+    });
+}
+
+/// How much likelier two markers of a vehicle are so far apart, rad, than two lights that have nothing to do with each other.
+fn gap_odds(gap_rad: f64) -> f64 {
+    let gap_rad = gap_rad.max(LEAST_GAP_RAD);
+    // In a ball the distance has the density 3 r^2 / R^3, and the gap is 2 / r; over the sphere that of a gap is as wide as it is.
+    let share = APART_RADII / (FARTHEST_RADII * gap_rad);
+    3.0 * share * share * share / (gap_rad * gap_rad)
+}
+
 /// A marker that is followed, as one frame would show it.
 fn observe(marker: &MarkerTrack, signal: Option<u32>) -> Observation {
     let light =
@@ -185,5 +213,39 @@ fn observe(marker: &MarkerTrack, signal: Option<u32>) -> Observation {
         resolution_rad: marker.resolution_rad,
         signal,
         clutter_log_density: log_light.map_or(0.0, |_| -libm::log(POWER_RANGE)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand_distr::{Distribution as _, StandardUniform};
+    use rand_pcg::Pcg64Mcg;
+
+    /// Vehicles drawn from a ball, and pairs of lights from the sphere: how many of each have such a gap.
+    #[test]
+    fn gaps_are_as_likely_as_those_of_vehicles_that_are_drawn() {
+        let mut random = Pcg64Mcg::new(5);
+        let mut uniform = || -> f64 { StandardUniform.sample(&mut random) };
+        let bins = [[0.036, 0.044], [0.06, 0.075], [0.1, 0.13]];
+        let (mut of_vehicles, mut of_lights) = ([0_u32; 3], [0_u32; 3]);
+        let count = |counts: &mut [u32; 3], gap_rad: f64| {
+            for (bin, count) in bins.iter().zip(counts) {
+                *count += u32::from((bin[0]..bin[1]).contains(&gap_rad));
+            }
+        };
+        for _ in 0..2_000_000 {
+            let distance_radii = FARTHEST_RADII * libm::cbrt(uniform());
+            count(&mut of_vehicles, APART_RADII / distance_radii);
+            // Of two directions that are anywhere the cosine of their angle is anything.
+            let cosine = 1.0 - 2.0 * uniform();
+            count(&mut of_lights, libm::acos(cosine));
+        }
+        for ((bin, vehicles), lights) in bins.iter().zip(of_vehicles).zip(of_lights) {
+            let drawn = f64::from(vehicles) / f64::from(lights);
+            // Lights are anywhere in half of the sphere that a camera sees, which makes such a pair about twice as likely.
+            let told = 2.0 * gap_odds((bin[0] * bin[1]).sqrt());
+            assert!((0.6..1.7).contains(&(told / drawn)), "{bin:?}: {told} {drawn}");
+        }
     }
 }

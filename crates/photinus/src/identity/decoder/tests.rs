@@ -151,6 +151,36 @@ fn words_are_known_from_spots_whose_light_was_not_known() {
     assert_eq!((Level::of_first(0.0), Level::known(1.0, -0.1)), (None, None));
 }
 
+/// The light of a saturated spot is unsure by half of it and more: that is no doubt whether there was light.
+#[test]
+fn words_are_known_from_spots_whose_light_is_unsure() {
+    use rand_distr::StandardNormal;
+    let (decoder, book) = (decoder(), book());
+    let mut random = Pcg64Mcg::new(12);
+    let (full, sigma_log, limit) = (1600.0, 0.63, 100.0);
+    let mut listener = decoder.listener();
+    let mut level = Level::of_first(full).unwrap();
+    for frame in 0..40 {
+        let time_s = f64::from(frame) * FRAME_S;
+        let lit = share_lit(book.words()[3], f64::from(frame) + 4.3, EXPOSURE_S * 60.0);
+        let normal: f64 = StandardNormal.sample(&mut random);
+        let light = lit * full * libm::exp(0.3 * normal);
+        level.wait(FRAME_S);
+        let evidence = if light < limit {
+            Evidence::of_absence(limit, 10.0, &level)
+        } else {
+            Evidence::of_light(light, sigma_log * light, &level)
+        };
+        decoder.hear(&mut listener, time_s, EXPOSURE_S, &evidence).unwrap();
+        if light >= limit {
+            level.see(light, sigma_log * light, 1.0);
+            assert!(lit < 1.0 || evidence.off() < 0.05 * evidence.on(), "{evidence:?} {level:?} {light}");
+        }
+    }
+    let probability = decoder.probability(&listener, Who::Word(3));
+    assert!(probability > 0.99, "{probability} {:?}", decoder.identity(&listener));
+}
+
 #[test]
 fn times_that_stand_change_nothing() {
     let decoder = decoder();

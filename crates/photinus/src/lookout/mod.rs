@@ -45,12 +45,12 @@ use crate::following::{self, Follower, Frame, MarkerTrack};
 use crate::frame::Mask;
 use crate::identity::decoder::{self, Decoder, DecoderError};
 use crate::locator::{self, Located};
-use crate::pose::SettingsError;
+use crate::pose::{LogLight, SettingsError};
 use crate::tracking::{
     self, Appearing, Followed, Look, Placed, Signalled, TrackError, Tracked, Tracker, TrackerError, Turned,
 };
 use belonging::Belongings;
-use calling::Calling;
+use calling::{Calling, Known};
 use directory::Directory;
 pub use fleet::{Fleet, FleetError, Vehicle};
 pub use naming::Name;
@@ -110,6 +110,16 @@ struct Parts {
     strangers: Vec<bool>,
 }
 
+/// What is known before a frame.
+#[derive(Clone, Copy, Debug)]
+struct Before<'a> {
+    /// Where anybody looks.
+    watched: Watched<'a>,
+    tracked: &'a Tracked,
+    /// The light of an LED of intensity 1 at 1 m, where several tracks tell it.
+    power: Option<LogLight>,
+}
+
 /// Why there can be no lookout.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -167,8 +177,8 @@ impl Lookout {
         look.check()?;
         if let Some(blinking) = &mut self.blinking {
             let watched = Watched::new(&self.camera, self.mask.as_ref());
-            (look.blinking, look.signals) =
-                blinking.hear(glance, self.faintest_light, watched, &self.tracked);
+            let heard = Before { watched, tracked: &self.tracked, power: self.tracker.power() };
+            (look.blinking, look.signals) = blinking.hear(glance, self.faintest_light, &heard);
         }
         self.tracked.take_over(self.tracker.track(&look)?);
         if let Some(blinking) = &mut self.blinking {
@@ -224,9 +234,9 @@ impl Blinking {
         &mut self,
         glance: &Glance<'_>,
         faintest_light: f64,
-        watched: Watched<'_>,
-        tracked: &Tracked,
+        before: &Before<'_>,
     ) -> (Option<tracking::Blinking<'_>>, &[Option<Signalled>]) {
+        let Before { watched, tracked, .. } = *before;
         if (glance.time_s - tracked.time_s).abs() > Tracker::JUMP_S {
             self.follower.restart();
         }
@@ -249,7 +259,7 @@ impl Blinking {
         }));
         let (appearing, signals) = match &mut self.parts {
             Some(parts) => {
-                let (appearing, signals) = parts.hear(glance, markers, watched, tracked);
+                let (appearing, signals) = parts.hear(glance, markers, before);
                 (Some(appearing), signals)
             }
             None => (None, &[][..]),
@@ -287,9 +297,9 @@ impl Parts {
         &mut self,
         glance: &Glance<'_>,
         markers: &[MarkerTrack],
-        watched: Watched<'_>,
-        tracked: &Tracked,
+        before: &Before<'_>,
     ) -> (Appearing<'_>, &[Option<Signalled>]) {
+        let Before { watched, tracked, power } = *before;
         let Self { directory, calling, signals, strangers } = self;
         let sightings = glance.located.sightings.len();
         signals.clear();
@@ -306,7 +316,8 @@ impl Parts {
             strangers[sighting] = probability > SURE_STRANGER && directory.is_stranger(identity.who);
         }
         let is_followed = |vehicle: u32| tracked.is_followed(vehicle);
-        let called = calling.listen(markers, directory, glance.gravity, watched, is_followed);
+        let known = Known { up: glance.gravity.map(|down| -down), power, watched };
+        let called = calling.listen(markers, directory, &known, is_followed);
         (Appearing { called, strangers }, signals)
     }
 }

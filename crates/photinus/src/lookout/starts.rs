@@ -66,6 +66,16 @@ impl Starts {
         }
     }
 
+    /// How far apart two markers with these signals are at most, in radii.
+    pub(super) fn apart_radii(&self, one: Option<u32>, other: Option<u32>) -> f64 {
+        let with = |signal: Option<u32>| {
+            let markers = self.airframe.markers().iter().enumerate();
+            markers.filter(move |own| self.carries(own.0, signal)).map(|own| own.1.position_m)
+        };
+        let apart_m = with(one).flat_map(|one_m| with(other).map(move |other_m| (other_m - one_m).norm()));
+        apart_m.fold(0.0, f64::max) / self.airframe.max_radius_m()
+    }
+
     fn carries(&self, marker: usize, signal: Option<u32>) -> bool {
         let leds = &self.airframe.markers()[marker].leds;
         signal.is_none_or(|signal| {

@@ -42,7 +42,7 @@ use crate::airframe::Airframe;
 use crate::camera::{Camera, Watched};
 use crate::frame::Mask;
 use crate::locator;
-use crate::pose::Symmetry;
+use crate::pose::{LogLight, Symmetry};
 pub use error::{TrackError, TrackerError};
 pub use gyro::turned;
 use history::History;
@@ -107,6 +107,11 @@ impl Tracker {
     /// Forgets all tracks. Their ids are not given again.
     pub fn forget(&mut self) {
         self.history.forget();
+    }
+
+    /// The light of an LED of intensity 1 at 1 m, where several tracks tell it.
+    pub(crate) fn power(&mut self) -> Option<LogLight> {
+        self.stepper.power(self.history.newest()?)
     }
 
     /// Takes a frame in, and tells the tracks at the time of the newest frame, in its camera's axes. Frames up to [`Self::MOST_LATE_S`] behind the newest

@@ -22,10 +22,10 @@ use super::motion::Motion;
 use super::reduction::reduce;
 use super::splitting::split;
 use super::state::{MOST_TARGETS, State, Target};
-use super::ways::{Scene, Way, Ways};
+use super::ways::{POWER_SIGMA, Scene, Way, Ways};
 use crate::airframe::Airframe;
 use crate::camera::Watched;
-use crate::pose::{self, Symmetry};
+use crate::pose::{self, LogLight, Symmetry};
 
 /// Clutter is counted over this many frames, and is at least this many points.
 const CLUTTER_FRAMES: f64 = 32.0;
@@ -78,6 +78,11 @@ impl Stepper {
             reduced: Vec::with_capacity(512),
             powers: Vec::with_capacity(MOST_TARGETS),
         }
+    }
+
+    /// The light of an LED of intensity 1 at 1 m, as far as the vehicles of a state tell it.
+    pub(super) fn power(&mut self, state: &State) -> Option<LogLight> {
+        state.log_power(&mut self.powers).map(|value| LogLight { value, sigma: POWER_SIGMA })
     }
 
     /// Fills `after` with what is believed after a frame.

@@ -38,7 +38,7 @@ const ANY_MARKER: f64 = 1e-3;
 /// What was followed and heard is another light so seldom.
 const WRONG_MARKER: f64 = 1e-4;
 /// LEDs of a fleet differ in power by so much from vehicle to vehicle, as a logarithm, with what distances leave of it.
-const POWER_SIGMA: f64 = 0.3;
+pub(super) const POWER_SIGMA: f64 = 0.3;
 /// Spots within so many radii of a vehicle may hide its markers.
 const NEAR_RADII: f64 = 3.0;
 

@@ -18,7 +18,7 @@ use scene::{Built, MOTIONS};
 use score::Score;
 
 /// Seeds that nothing was developed on.
-const SEEDS: [u64; 2] = [31, 36];
+const SEEDS: [u64; 2] = [71, 76];
 
 fn main() {
     let given = |place: usize| std::env::args().nth(place).and_then(|text| text.parse().ok());

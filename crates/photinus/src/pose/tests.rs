@@ -282,5 +282,5 @@ fn nobody_is_behind_the_camera_that_sees_them() {
             * Rotation3::from_axis_angle(&Vector3::z_axis(), core::f64::consts::PI),
     };
     assert!(problem.normal_of_spots(&pose).nats.is_finite());
-    assert_eq!(problem.normal_of_spots(&mirrored).nats, f64::INFINITY);
+    assert!(problem.normal_of_spots(&mirrored).nats.is_infinite());
 }

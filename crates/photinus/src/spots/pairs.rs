@@ -11,8 +11,6 @@ use super::neighbourhood::Neighbourhood;
 use super::part::Part;
 use super::window::{Spill, WIDEST_PX};
 use crate::camera::Pixel;
-#[cfg(not(feature = "std"))]
-use crate::float::Float as _;
 use crate::frame::FrameView;
 use crate::lanes::Lanes;
 

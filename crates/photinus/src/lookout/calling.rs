@@ -14,13 +14,13 @@ use alloc::vec::Vec;
 
 use nalgebra::{Unit, Vector3};
 
+use super::Before;
 use super::directory::Directory;
 use super::starts::Starts;
 use crate::airframe::Airframe;
-use crate::camera::Watched;
 use crate::following::MarkerTrack;
 use crate::locator::{Settings, faintest_light};
-use crate::pose::{self, Estimator, Hypotheses, LogLight, Observation, POWER_RANGE, SettingsError, Visible};
+use crate::pose::{Estimator, Hypotheses, Known, LogLight, Observation, POWER_RANGE, SettingsError, Visible};
 use crate::tracking::Called;
 
 /// A marker tells whose it is from this probability on, ...
@@ -28,7 +28,7 @@ const HEARD: f64 = 0.5;
 /// ... and those of a vehicle together from this one on: they are wrong when each of them is.
 const HEARD_TOGETHER: f64 = 0.95;
 /// A vehicle is anywhere in a ball of so many of its radii.
-const FARTHEST_RADII: f64 = 60.0;
+const BALL_RADII: f64 = 60.0;
 /// Closer than this, rad, markers tell nothing by their gap.
 const LEAST_GAP_RAD: f64 = 0.01;
 /// Whose place is less sure is no help to tell one, rad: half a small vehicle at 10 m.
@@ -41,17 +41,6 @@ const MOST: usize = 16;
 const MOST_MISFIT_SIGMA: f64 = 6.0;
 /// A marker that was not heard is lit so likely.
 const UNHEARD_LIT: f64 = 0.5;
-
-/// What is known of those that call.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Known<'a> {
-    /// Away from the ground, in the camera frame.
-    pub(super) up: Option<Unit<Vector3<f64>>>,
-    /// The light of an LED of intensity 1 at 1 m.
-    pub(super) power: Option<LogLight>,
-    /// Where anybody looks.
-    pub(super) watched: Watched<'a>,
-}
 
 /// Vehicle, signal, and place among the markers that are followed.
 type Heard = (u32, Option<u32>, usize);
@@ -94,8 +83,8 @@ impl Calling {
         &mut self,
         markers: &[MarkerTrack],
         directory: &Directory,
-        known: &Known<'_>,
-        is_followed: impl Fn(u32) -> bool,
+        gravity: Option<Unit<Vector3<f64>>>,
+        before: &Before<'_>,
     ) -> &[Called] {
         self.count = 0;
         self.heard.clear();
@@ -104,8 +93,9 @@ impl Calling {
         };
         for (place, marker) in markers.iter().enumerate().filter(|own| is_placed(own.1)) {
             let entry = marker.identity.filter(|own| own.probability > HEARD);
-            if let Some(entry) =
-                entry.and_then(|own| directory.entry(own.who)).filter(|own| !is_followed(own.vehicle))
+            if let Some(entry) = entry
+                .and_then(|own| directory.entry(own.who))
+                .filter(|own| !before.tracked.is_followed(own.vehicle))
             {
                 self.heard.push((entry.vehicle, entry.signal, place));
             }
@@ -117,10 +107,10 @@ impl Calling {
             for &one in own {
                 add(&mut self.own, one, markers);
             }
-            leave_strays_out(&mut self.own, markers, |one, other| self.starts.apart_radii(one, other));
+            leave_strays_out(&mut self.own, markers, &self.starts);
             if (FEWEST..=MOST).contains(&self.own.len()) {
                 let own = core::mem::take(&mut self.own);
-                self.call(markers, &own, known);
+                self.call(markers, &own, gravity.map(|down| -down), before);
                 self.own = own;
             }
         }
@@ -129,11 +119,15 @@ impl Calling {
     }
 
     /// Adds a vehicle that has these markers, if they have a pose.
-    fn call(&mut self, markers: &[MarkerTrack], own: &[Heard], known: &Known<'_>) {
-        let Known { up, power, watched } = *known;
+    fn call(
+        &mut self,
+        markers: &[MarkerTrack],
+        own: &[Heard],
+        up: Option<Unit<Vector3<f64>>>,
+        before: &Before<'_>,
+    ) {
         let of = |&(.., place): &Heard| &markers[place];
-        let wrong = |own: &Heard| of(own).identity.map_or(1.0, |identity| 1.0 - identity.probability);
-        let probability = 1.0 - own.iter().map(wrong).product::<f64>();
+        let probability = 1.0 - own.iter().map(|own| 1.0 - sure(of(own))).product::<f64>();
         if probability < HEARD_TOGETHER {
             return;
         }
@@ -142,11 +136,11 @@ impl Calling {
         self.starts.offer(&self.observations, up, &mut self.hypotheses);
         let visible = Visible {
             faintest_light: self.faintest_light,
-            watched: Some(watched),
+            watched: Some(before.watched),
             others: &[],
             lit: &self.lit,
         };
-        let known = pose::Known { up, bounds: self.starts.reach(), size: None, power, visible };
+        let known = Known { up, bounds: self.starts.reach(), size: None, power: before.power, visible };
         let posterior = self.estimator.estimate(&self.observations, &mut self.hypotheses, &known);
         if posterior.summary.is_none() || posterior.worst_sigma > MOST_MISFIT_SIGMA {
             return;
@@ -184,28 +178,28 @@ fn add(own: &mut Vec<Heard>, one: Heard, markers: &[MarkerTrack]) {
 }
 
 /// Leaves out what is rather another's marker that was heard wrong: two of one vehicle are as far apart as few of those near are large, two lights of
-/// whomever anyhow. `apart_radii` tells how far apart markers with two signals are.
-fn leave_strays_out(
-    own: &mut Vec<Heard>,
-    markers: &[MarkerTrack],
-    apart_radii: impl Fn(Option<u32>, Option<u32>) -> f64,
-) {
+/// whomever anyhow.
+fn leave_strays_out(own: &mut Vec<Heard>, markers: &[MarkerTrack], starts: &Starts) {
     let of = |heard: &Heard| &markers[heard.2];
-    let heard = |own: &Heard| of(own).identity.map_or(0.0, |identity| identity.probability);
-    let Some(surest) = own.iter().copied().max_by(|a, b| heard(a).total_cmp(&heard(b))) else { return };
+    let Some(surest) = own.iter().copied().max_by(|a, b| sure(of(a)).total_cmp(&sure(of(b)))) else { return };
     own.retain(|one| {
         let gap_rad = (of(one).bearing.vector() - of(&surest).bearing.vector()).norm();
-        let is_own = heard(one) / (1.0 - heard(one)).max(f64::MIN_POSITIVE);
-        let odds = is_own * gap_odds(gap_rad, apart_radii(surest.1, one.1));
+        let is_own = sure(of(one)) / (1.0 - sure(of(one))).max(f64::MIN_POSITIVE);
+        let odds = is_own * gap_odds(gap_rad, starts.apart_radii(surest.1, one.1));
         one.2 == surest.2 || odds * (1.0 - HEARD_TOGETHER) > HEARD_TOGETHER
     });
+}
+
+/// How surely a marker was heard.
+fn sure(marker: &MarkerTrack) -> f64 {
+    marker.identity.map_or(0.0, |identity| identity.probability)
 }
 
 /// How much likelier two markers of a vehicle, so many radii apart, have this gap, rad, than two lights that have nothing to do with each other.
 fn gap_odds(gap_rad: f64, apart_radii: f64) -> f64 {
     let gap_rad = gap_rad.max(LEAST_GAP_RAD);
     // In a ball the distance r has the density 3 r^2 / R^3, and the gap is what they are apart over r; over the sphere that of a gap is as wide as it is.
-    let share = apart_radii / (FARTHEST_RADII * gap_rad);
+    let share = apart_radii / (BALL_RADII * gap_rad);
     3.0 * share * share * share / (gap_rad * gap_rad)
 }
 
@@ -243,7 +237,7 @@ mod tests {
             }
         };
         for _ in 0..2_000_000 {
-            let distance_radii = FARTHEST_RADII * libm::cbrt(uniform());
+            let distance_radii = BALL_RADII * libm::cbrt(uniform());
             count(&mut of_vehicles, 2.0 / distance_radii);
             // Of two directions that are anywhere the cosine of their angle is anything.
             let cosine = 1.0 - 2.0 * uniform();

@@ -50,7 +50,7 @@ use crate::tracking::{
     self, Appearing, Followed, Look, Placed, Signalled, TrackError, Tracked, Tracker, TrackerError, Turned,
 };
 use belonging::Belongings;
-use calling::{Calling, Known};
+use calling::Calling;
 use directory::Directory;
 pub use fleet::{Fleet, FleetError, Vehicle};
 pub use naming::Name;
@@ -299,7 +299,6 @@ impl Parts {
         markers: &[MarkerTrack],
         before: &Before<'_>,
     ) -> (Appearing<'_>, &[Option<Signalled>]) {
-        let Before { watched, tracked, power } = *before;
         let Self { directory, calling, signals, strangers } = self;
         let sightings = glance.located.sightings.len();
         signals.clear();
@@ -315,9 +314,7 @@ impl Parts {
             }
             strangers[sighting] = probability > SURE_STRANGER && directory.is_stranger(identity.who);
         }
-        let is_followed = |vehicle: u32| tracked.is_followed(vehicle);
-        let known = Known { up: glance.gravity.map(|down| -down), power, watched };
-        let called = calling.listen(markers, directory, &known, is_followed);
+        let called = calling.listen(markers, directory, glance.gravity, before);
         (Appearing { called, strangers }, signals)
     }
 }

@@ -159,11 +159,7 @@ proptest! {
     #[test]
     fn markers_that_merge_are_seen_between_them(gap in 0.0f64..2.5) {
         // Two markers of one light 0.1 m apart, side by side, the first seen: as one spot they are in their middle, as rendered pairs are; far apart it is alone.
-        let leds = [-0.05, 0.05].map(|y| crate::airframe::Led {
-            position_m: Vector3::new(0.0, y, 0.0), axis: Vector3::x_axis(), lobe: crate::airframe::Lobe::Omni, power: 1.0,
-            signal: None,
-        });
-        let airframe = Airframe::new("pair", leds.to_vec()).unwrap();
+        let airframe = pair();
         let camera_m = Vector3::new(5.0, 0.0, 0.0);
         let resolution_rad = 0.02 / gap.max(1e-3);
         let observations = [Observation { resolution_rad, ..observation(Vector3::z(), 1e-3, 1.0) }];
@@ -182,8 +178,8 @@ proptest! {
     }
 }
 
-/// Two markers of one light 0.1 m apart, side by side, to a camera 5 m away that makes one spot of them.
-fn merged_pair() -> (Airframe, Pose) {
+/// Two markers of one light 0.1 m apart, side by side.
+fn pair() -> Airframe {
     let leds = [-0.05, 0.05].map(|y| Led {
         position_m: Vector3::new(0.0, y, 0.0),
         axis: Vector3::x_axis(),
@@ -191,32 +187,41 @@ fn merged_pair() -> (Airframe, Pose) {
         power: 1.0,
         signal: None,
     });
+    Airframe::new("pair", leds.to_vec()).unwrap()
+}
+
+/// The pair, side by side to a camera 5 m away that makes one spot of it.
+fn with_merged_pair<T>(
+    (sigma_rad, extra_rad2): (f64, f64),
+    repeats: f64,
+    tell: impl FnOnce(&Problem<'_>, &Pose) -> T,
+) -> T {
+    let (airframe, settings, known) = (pair(), Settings::default(), nothing());
+    let observations = [Observation { resolution_rad: 0.03, ..observation(Vector3::z(), sigma_rad, 1.0) }];
+    let whitened = observations.map(|seen| Whitened::of(&seen, extra_rad2));
+    let problem = Problem {
+        airframe: &airframe,
+        settings: &settings,
+        observations: &observations,
+        whitened: &whitened,
+        markers: &[Some(0)],
+        known: &known,
+        merging: true,
+        repeats,
+    };
     let camera_from_body = Rotation3::from_basis_unchecked(&[Vector3::x(), -Vector3::z(), Vector3::y()])
         * Rotation3::from_axis_angle(&Vector3::z_axis(), core::f64::consts::FRAC_PI_2);
-    let pose = Pose { position_m: Vector3::z() * 5.0, camera_from_body };
-    (Airframe::new("pair", leds.to_vec()).unwrap(), pose)
+    tell(&problem, &Pose { position_m: Vector3::z() * 5.0, camera_from_body })
 }
 
 #[test]
 fn what_is_unsure_of_a_merged_centre_adds_to_what_is_unsure_of_its_marker() {
-    let (airframe, pose) = merged_pair();
     let unsure_rad2 = |sigma_rad: f64, extra_rad2: f64| {
-        let observations =
-            [Observation { resolution_rad: 0.03, ..observation(Vector3::z(), sigma_rad, 1.0) }];
-        let whitened = observations.map(|seen| Whitened::of(&seen, extra_rad2));
-        let (settings, known) = (Settings::default(), nothing());
-        let problem = Problem {
-            airframe: &airframe,
-            settings: &settings,
-            observations: &observations,
-            whitened: &whitened,
-            markers: &[Some(0)],
-            known: &known,
-            merging: true,
-            repeats: 1.0,
-        };
         let told_rad2 = sigma_rad * sigma_rad + extra_rad2;
-        told_rad2 / problem.shining(0, 0, &pose.camera_in_body_m()).centre.factor.powi(2) - told_rad2
+        let factor = with_merged_pair((sigma_rad, extra_rad2), 1.0, |problem, pose| {
+            problem.shining(0, 0, &pose.camera_in_body_m()).centre.factor
+        });
+        told_rad2 / factor.powi(2) - told_rad2
     };
     // The other LED's share of the light, a half, is sure to the spread of two powers: so much of their gap.
     let share = 0.25 * Settings::default().unit_sigma * core::f64::consts::SQRT_2 * 0.1 / 5.0;
@@ -230,22 +235,8 @@ fn what_is_unsure_of_a_merged_centre_adds_to_what_is_unsure_of_its_marker() {
 
 #[test]
 fn what_errs_alike_from_frame_to_frame_is_told_once() {
-    let (airframe, pose) = merged_pair();
     let nats = |repeats: f64| {
-        let observations = [Observation { resolution_rad: 0.03, ..observation(Vector3::z(), 1e-5, 1.0) }];
-        let whitened = observations.map(|seen| Whitened::of(&seen, 0.0));
-        let (settings, known) = (Settings::default(), nothing());
-        let problem = Problem {
-            airframe: &airframe,
-            settings: &settings,
-            observations: &observations,
-            whitened: &whitened,
-            markers: &[Some(0)],
-            known: &known,
-            merging: true,
-            repeats,
-        };
-        problem.normal_of_spots(&pose).nats
+        with_merged_pair((1e-5, 0.0), repeats, |problem, pose| problem.normal_of_spots(pose).nats)
     };
     let [one, two, four] = [1.0, 2.0, 4.0].map(nats);
     assert!(one - two > 1.0 && (one - two - 2.0 * (two - four)).abs() < 1e-9, "{one} {two} {four}");

@@ -84,7 +84,7 @@ pub(super) struct Ways {
     /// The light of an LED of intensity 1 at 1 m, as one frame may count it, and where it counts.
     power: Option<LogLight>,
     own_power: Option<LogLight>,
-    correlated: f64,
+    repeats: f64,
     whitened: Vec<Whitened>,
     /// Who the vehicle is, where it was heard.
     who: Option<u32>,
@@ -119,7 +119,7 @@ impl Ways {
             per_frame: pose::Settings::default(),
             power: None,
             own_power: None,
-            correlated: 1.0,
+            repeats: 1.0,
             whitened: Vec::new(),
             who: None,
             told_lit: Vec::with_capacity(markers),
@@ -180,8 +180,8 @@ impl Ways {
         );
         self.clutter_nats = -self.observations.iter().map(|seen| seen.clutter_log_density).sum::<f64>();
         // An error that lasts for a time is as white noise of the density 2 time sigma^2.
-        self.correlated = (2.0 * model.settings.correlation_s / interval_s).max(1.0);
-        let widening = self.correlated.sqrt();
+        self.repeats = (2.0 * model.settings.correlation_s / interval_s).max(1.0);
+        let widening = self.repeats.sqrt();
         let sigma = POWER_SIGMA * widening;
         self.power = log_power.map(|value| LogLight { value, sigma });
         self.per_frame = pose::Settings {
@@ -229,7 +229,7 @@ impl Ways {
         let Scene { model, moment, .. } = *scene;
         let distance_m = components.first().map_or(1.0, |first| first.pose.position_m.norm()).max(1e-3);
         let angle_rad = model.pose.marker_sigma_m / distance_m;
-        let extra_rad2 = self.correlated * angle_rad * angle_rad;
+        let extra_rad2 = self.repeats * angle_rad * angle_rad;
         self.whitened.clear();
         self.whitened.extend(self.observations.iter().map(|seen| Whitened::of(seen, extra_rad2)));
         self.who = target.vehicle;
@@ -348,7 +348,7 @@ impl Ways {
             per_frame: &self.per_frame,
             observations: &self.observations,
             whitened: &self.whitened,
-            repeats: self.correlated,
+            repeats: self.repeats,
             known: &known,
         };
         with(&Measurement::new(&seen, &self.markers, near))

@@ -23,6 +23,7 @@ pub(super) const LOST_S: f64 = 0.15;
 pub(super) fn appear(
     model: &Model,
     moment: &Moment,
+    straight_rad: f64,
     claimed: &[f64],
     modes: &mut Vec<Component>,
     after: &mut State,
@@ -50,7 +51,7 @@ pub(super) fn appear(
             let first = modes.first().copied();
             modes.push(begin(model, mode, first.as_ref(), turns));
         }
-        reduce(modes);
+        reduce(modes, straight_rad);
         if modes.is_empty() {
             continue;
         }

@@ -3,7 +3,6 @@
 use alloc::vec::Vec;
 
 use super::component::{Component, merged};
-use super::splitting::STRAIGHT_RAD;
 use super::state::MOST_COMPONENTS;
 
 /// A share of the weight that counts for nothing.
@@ -12,7 +11,7 @@ const NEGLIGIBLE: f64 = 1e-4;
 const SAME: f64 = 1.0;
 
 /// Reduces normal distributions in place; their weights add up to 1 afterwards, the heaviest first.
-pub(super) fn reduce(components: &mut Vec<Component>) {
+pub(super) fn reduce(components: &mut Vec<Component>, straight_rad: f64) {
     let total: f64 = components.iter().map(|component| component.weight).sum();
     components.retain(|component| component.weight > NEGLIGIBLE * total);
     let mut kept = 0;
@@ -26,7 +25,7 @@ pub(super) fn reduce(components: &mut Vec<Component>) {
         let is_same = |other: &Component| {
             let off = heaviest.step_to(other);
             let yaw_rad2 = heaviest.covariance[(8, 8)].max(other.covariance[(8, 8)]) + 0.25 * off[8] * off[8];
-            yaw_rad2 < STRAIGHT_RAD * STRAIGHT_RAD && off.dot(&factor.solve(&off)) < SAME
+            yaw_rad2 < straight_rad * straight_rad && off.dot(&factor.solve(&off)) < SAME
         };
         // Those that say the same, brought next to it.
         let mut end = kept + 1;

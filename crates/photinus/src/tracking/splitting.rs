@@ -9,8 +9,10 @@ use super::component::{Component, Covariance};
 #[cfg(not(feature = "std"))]
 use crate::float::Float as _;
 
-/// Over so wide a yaw, one standard deviation, rad, valleys are straight.
-pub(super) const STRAIGHT_RAD: f64 = 0.06;
+/// A valley that bends by less than this share of the sigma of a marker's place, across one standard deviation of yaw, is straight.
+const BEND: f64 = 1.0 / 3.0;
+/// No narrower and no wider yaw is asked for, rad: spots are not exact either, and lobes bend, too.
+const STRAIGHT_RAD: [f64; 2] = [0.06, 0.25];
 /// Most that one is split into.
 const MOST_PARTS: usize = 13;
 /// Parts are at most so far apart, in their own standard deviations, and reach so far, in those of the whole.
@@ -19,15 +21,21 @@ const REACH: f64 = 2.4;
 /// The yaw in an error of the state.
 const YAW: usize = 8;
 
-/// Adds a distribution, in parts where its yaw is unsure.
-pub(super) fn split(whole: &Component, parts: &mut Vec<Component>) {
+/// Over so wide a yaw, one standard deviation, rad, valleys are straight, for markers so far from the axis whose places have this sigma in a frame.
+pub(super) fn straight_rad(radius_m: f64, sigma_m: f64) -> f64 {
+    // A marker that turns by yaw leaves its tangent by radius yaw^2 / 2.
+    (2.0 * BEND * sigma_m / radius_m.max(f64::MIN_POSITIVE)).sqrt().clamp(STRAIGHT_RAD[0], STRAIGHT_RAD[1])
+}
+
+/// Adds a distribution, in parts where its yaw is less sure than `straight_rad`.
+pub(super) fn split(whole: &Component, straight_rad: f64, parts: &mut Vec<Component>) {
     let variance = whole.covariance[(YAW, YAW)];
     let sigma = variance.sqrt();
-    if sigma.is_nan() || sigma <= STRAIGHT_RAD {
+    if sigma.is_nan() || sigma <= straight_rad {
         parts.push(*whole);
         return;
     }
-    let beside = (REACH * sigma / (SPACING * STRAIGHT_RAD)).ceil().min((MOST_PARTS / 2) as f64);
+    let beside = (REACH * sigma / (SPACING * straight_rad)).ceil().min((MOST_PARTS / 2) as f64);
     let step = REACH * sigma / beside;
     let own = (step / SPACING).min(0.9 * sigma);
     let rest = variance - own * own;

@@ -20,7 +20,7 @@ use super::joint::Joint;
 use super::look::Moment;
 use super::motion::Motion;
 use super::reduction::reduce;
-use super::splitting::split;
+use super::splitting::{split, straight_rad};
 use super::state::{MOST_TARGETS, State, Target};
 use super::ways::{POWER_SIGMA, Scene, Way, Ways};
 use crate::airframe::Airframe;
@@ -46,6 +46,18 @@ pub(super) struct Model {
 }
 
 impl Model {
+    /// In so many frames at such intervals errors of markers, lobes and powers are the same: one that lasts for a time is as white noise of the density
+    /// 2 time sigma^2.
+    pub(super) fn repeats(&self, interval_s: f64) -> f64 {
+        (2.0 * self.settings.correlation_s / interval_s).max(1.0)
+    }
+
+    /// Over so wide a yaw, one standard deviation, rad, a frame after such an interval takes the vehicle's distance for a straight line.
+    fn straight_rad(&self, interval_s: f64) -> f64 {
+        let sigma_m = self.repeats(interval_s).sqrt() * self.pose.marker_sigma_m;
+        straight_rad(self.airframe.max_radius_m(), sigma_m)
+    }
+
     /// Whether a marker blinks a signal: LEDs without one blink the first.
     pub(super) fn blinks(&self, marker: u16, signal: u32) -> bool {
         let leds = &self.airframe.markers()[usize::from(marker)].leds;
@@ -101,12 +113,13 @@ impl Stepper {
             up: moment.up,
             tilt_sigma_rad: model.pose.tilt_sigma_rad,
         };
+        let straight_rad = model.straight_rad(interval_s);
         self.predicted.clear();
         self.first_predicted.clear();
         for target in &before.targets {
             self.first_predicted.push(self.predicted.len());
             for component in before.components(target) {
-                split(&motion.predict(component, &model.settings), &mut self.predicted);
+                split(&motion.predict(component, &model.settings), straight_rad, &mut self.predicted);
             }
         }
         self.first_predicted.push(self.predicted.len());
@@ -128,7 +141,7 @@ impl Stepper {
         for (vehicle, target) in before.targets.iter().enumerate() {
             self.conclude(vehicle, target, model, moment, interval_s, after);
         }
-        let unexplained = appearing::appear(model, moment, &self.claimed, &mut self.reduced, after);
+        let unexplained = appearing::appear(model, moment, straight_rad, &self.claimed, &mut self.reduced, after);
         let clutter = before.clutter + (unexplained - before.clutter) / CLUTTER_FRAMES;
         after.clutter = clutter.max(LEAST_CLUTTER);
     }
@@ -167,7 +180,7 @@ impl Stepper {
             let there = existence.hidden + existence.shown * unseen_if_shown;
             reduced.push(Component { weight: unseen * component.weight * there / all, ..*component });
         }
-        reduce(reduced);
+        reduce(reduced, model.straight_rad(interval_s));
         let is_seen = unseen < 0.5;
         let seen_s = if is_seen { moment.time_s } else { before.seen_s };
         let is_lost = moment.time_s - seen_s > model.settings.coast_s;

@@ -117,6 +117,9 @@ fn joint_probabilities_are_those_of_all_ways_listed() {
     }
 }
 
+/// Over so wide a yaw valleys are straight here, rad.
+const STRAIGHT_RAD: f64 = 0.06;
+
 #[test]
 fn what_is_split_and_reduced_has_the_moments_of_the_whole() {
     let mut rng = Pcg64::new(4, 1);
@@ -124,13 +127,13 @@ fn what_is_split_and_reduced_has_the_moments_of_the_whole() {
         let mut whole = any_component(&mut rng);
         whole.covariance *= spread * spread / whole.covariance[(8, 8)];
         let mut parts = Vec::new();
-        split(&whole, &mut parts);
-        assert_eq!(parts.len() > 1, spread > 0.06);
+        split(&whole, STRAIGHT_RAD, &mut parts);
+        assert_eq!(parts.len() > 1, spread > STRAIGHT_RAD);
         assert!(parts.iter().all(|part| part.covariance.cholesky().is_some()));
         let one = merged(parts.iter()).unwrap();
         assert!((one.weight - 1.0).abs() < 1e-12 && whole.step_to(&one).norm() < 1e-9);
         assert!((one.covariance - whole.covariance).norm() < 0.02 * whole.covariance.norm());
-        reduce(&mut parts);
+        reduce(&mut parts, STRAIGHT_RAD);
         let reduced = merged(parts.iter()).unwrap();
         assert!((reduced.covariance - whole.covariance).norm() < 0.1 * whole.covariance.norm());
     }

@@ -179,8 +179,7 @@ impl Ways {
             }),
         );
         self.clutter_nats = -self.observations.iter().map(|seen| seen.clutter_log_density).sum::<f64>();
-        // An error that lasts for a time is as white noise of the density 2 time sigma^2.
-        self.repeats = (2.0 * model.settings.correlation_s / interval_s).max(1.0);
+        self.repeats = model.repeats(interval_s);
         let widening = self.repeats.sqrt();
         let sigma = POWER_SIGMA * widening;
         self.power = log_power.map(|value| LogLight { value, sigma });

@@ -9,6 +9,8 @@ use crate::contest::Contest;
 use crate::frames::{self, PAPER, Scene};
 
 const BOOK: &str = include_str!("../../../../scenes/codes/l18-d3-r2.txt");
+/// 168 words of 18 bits.
+const LARGE_BOOK: &str = include_str!("../../../../scenes/codes/l18-d3-r3.txt");
 
 /// Frames after which markers that are not yet known begin anew.
 const UNKNOWN_FOR: usize = 18;
@@ -51,8 +53,17 @@ impl Markers {
 
 /// The words of the book.
 pub(crate) fn words() -> Vec<Word> {
+    words_of(BOOK)
+}
+
+/// Those of one that has enough for a fleet whose vehicles blink several.
+pub(crate) fn many_words() -> Vec<Word> {
+    words_of(LARGE_BOOK)
+}
+
+fn words_of(book: &str) -> Vec<Word> {
     let word = |line: &str| Word::new(&line.split(',').map(|bit| bit == "1").collect::<Vec<_>>());
-    BOOK.lines().filter_map(|line| word(line).filter(|_| !line.starts_with('#'))).collect()
+    book.lines().filter_map(|line| word(line).filter(|_| !line.starts_with('#'))).collect()
 }
 
 pub(crate) fn run() {

@@ -93,11 +93,18 @@ fn add_sun(light: &mut [f64], width: usize, (u, v): (f64, f64)) {
 /// Eight frames of `count` level hexarotors at random yaws, 2 to 8 m away (more than a dozen 5 to 10 m), spread over the
 /// field.
 pub(crate) fn hexarotors(count: usize, camera: &Camera, airframe: &Airframe) -> Vec<Vec<u8>> {
-    let frame = |seed: u64| hexarotors_of(count, camera, airframe, &mut Pcg64::new(seed.into(), 9));
+    let frame = |seed: u64| vehicles(count, camera, airframe, &mut Pcg64::new(seed.into(), 9), |_, _| true);
     (0..FRAMES as u64).map(frame).collect()
 }
 
-fn hexarotors_of(count: usize, camera: &Camera, airframe: &Airframe, rng: &mut Pcg64) -> Vec<u8> {
+/// A frame of level vehicles as [`hexarotors`] has them, of which only those markers shine that are lit: asked by vehicle and marker.
+pub(crate) fn vehicles(
+    count: usize,
+    camera: &Camera,
+    airframe: &Airframe,
+    rng: &mut Pcg64,
+    is_lit: impl Fn(usize, usize) -> bool,
+) -> Vec<u8> {
     let mut light = vec![5.0; PAPER.pixels()];
     let uniform = |low: f64, high: f64| Uniform::new(low, high).expect("a range");
     for index in 0..count {
@@ -116,7 +123,9 @@ fn hexarotors_of(count: usize, camera: &Camera, airframe: &Airframe, rng: &mut P
         let upright = Rotation3::from_basis_unchecked(&[Vector3::x(), Vector3::z(), -Vector3::y()]);
         let turn =
             Rotation3::from_axis_angle(&Vector3::z_axis(), uniform(0.0, std::f64::consts::TAU).sample(rng));
-        add_airframe(&mut light, camera, airframe, &(upright * turn), ahead * distance_m);
+        add_airframe(&mut light, camera, airframe, &(upright * turn), ahead * distance_m, |marker| {
+            is_lit(index, marker)
+        });
     }
     light.into_iter().map(|light| light.round().clamp(0.0, 255.0) as u8).collect()
 }
@@ -127,13 +136,14 @@ fn add_airframe(
     airframe: &Airframe,
     camera_from_body: &Rotation3<f64>,
     place_m: Vector3<f64>,
+    is_lit: impl Fn(usize) -> bool,
 ) {
     let camera_m = camera_from_body.inverse() * -place_m;
     for (marker, seen) in airframe.markers().iter().enumerate() {
         let marker_m = camera_from_body * seen.position_m + place_m;
         let intensity = airframe.intensity(marker, &camera_m);
         let pixel = Bearing::new(marker_m).and_then(|bearing| camera.pixel(&bearing));
-        if let Some(pixel) = pixel.filter(|_| intensity > 0.05) {
+        if let Some(pixel) = pixel.filter(|_| intensity > 0.05 && is_lit(marker)) {
             let area_px = intensity * f64::from(SpotCurve::paper_1000_us().max_area_px(marker_m.norm()));
             let radius = (area_px.max(1.0) / std::f64::consts::PI).sqrt();
             add_disc(light, PAPER.width, (pixel.u, pixel.v), radius, 1.0);

@@ -2,7 +2,7 @@
 //!
 //! Times differ from machine to machine and from run to run; the ratios to the floors, above all to a pass that only takes
 //! the maximum of the frame, are what to compare. Every contender runs in turn within each round, medians are over the
-//! rounds. Run only some tables with `cargo bench -p photinus -- detection` (or `decoding`, `following`, `locating`, `posing`, `clutter`), and
+//! rounds. Run only some tables with `cargo bench -p photinus -- detection` (or `decoding`, `following`, `locating`, `watching`, `posing`, `clutter`), and
 //! only some rows of one with `cargo bench -p photinus -- locating "6 hexarotors"`.
 
 #![expect(clippy::print_stdout, reason = "a benchmark prints its table")]
@@ -13,6 +13,7 @@ mod decoding;
 mod detection;
 mod following;
 mod frames;
+mod watching;
 
 use std::hint::black_box;
 
@@ -31,6 +32,7 @@ fn main() {
         ("decoding", decoding::run),
         ("following", following::run),
         ("locating", locating),
+        ("watching", watching::run),
         ("posing", posing),
         ("clutter", clutter::run),
     ];

@@ -141,7 +141,8 @@ impl Stepper {
         for (vehicle, target) in before.targets.iter().enumerate() {
             self.conclude(vehicle, target, model, moment, interval_s, after);
         }
-        let unexplained = appearing::appear(model, moment, straight_rad, &self.claimed, &mut self.reduced, after);
+        let unexplained =
+            appearing::appear(model, moment, straight_rad, &self.claimed, &mut self.reduced, after);
         let clutter = before.clutter + (unexplained - before.clutter) / CLUTTER_FRAMES;
         after.clutter = clutter.max(LEAST_CLUTTER);
     }

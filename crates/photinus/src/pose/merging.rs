@@ -28,6 +28,8 @@ const WINDOW: f64 = 1.32;
 const FAR: f64 = 2.0;
 /// The window is moved so often to where the centre is.
 const MOVES: usize = 3;
+/// Lights that are kept while a centre is followed; more are worked out again each time.
+const KEPT: usize = 8;
 /// How much farther than a pose markers are looked from to tell whether any merge near it.
 const ROOM: f64 = 1.5;
 
@@ -210,14 +212,17 @@ impl Problem<'_> {
             intensity: own,
             intensity_gradient: own_gradient,
         };
-        let beside = || self.beside(spot, marker, *camera_m);
-        if beside().next().is_none() {
-            return shining;
-        }
+        let mut beside = self.beside(spot, marker, *camera_m);
+        let Some(first) = beside.next() else { return shining };
         // A marker that hardly shines is no middle of a spot, but it keeps the others' light from being the whole of it.
         let own_gradient = if own > 1e-3 { own_gradient } else { Vector3::zeros() };
         let own = Beside { place_m: alone_m, intensity: own.max(1e-3), intensity_gradient: own_gradient };
-        let all = || core::iter::once(own).chain(beside());
+        let mut kept = [None; KEPT];
+        let lights = [own, first].into_iter().chain(beside);
+        kept.iter_mut().zip(lights).for_each(|(place, light)| *place = Some(light));
+        let are_more = kept[KEPT - 1].is_some();
+        let rest = || self.beside(spot, marker, *camera_m).skip(KEPT - 1);
+        let all = || kept.into_iter().flatten().chain(are_more.then(rest).into_iter().flatten());
         let open = |_: &Beside| Window { room: 1.0, gradient: Vector3::zeros() };
         let mut middle = centre_of(&alone_m, all(), open);
         for _ in 0..MOVES {

@@ -8,7 +8,7 @@
 use alloc::vec::Vec;
 use core::f64::consts::{PI, TAU};
 
-use nalgebra::{Cholesky, Const, Matrix3, SMatrix, Vector3};
+use nalgebra::{Cholesky, Const, Matrix3, SMatrix, Vector3, Vector5};
 
 use super::mixture::Component;
 use super::problem::{Pose, Problem};
@@ -57,12 +57,13 @@ pub(super) fn spread(
     for side in [step_rad, -step_rad] {
         // Each side has a summit of its own: a spot alone is likelier a marker at the edge of those that show.
         let (mut here, mut poor, mut best) = (held.clone(), 0, middle.log_weight);
+        let mut bend = Vector5::zeros();
         for number in 1..=MOST_SLICES {
             let yaw_rad = side * number as f64;
             if yaw_rad.abs() > PI || poor == most_poor {
                 break;
             }
-            let Some(there) = here.turned(problem, side) else { break };
+            let Some(there) = here.turned(problem, side, &mut bend) else { break };
             let component = slice(problem, &there, hypothesis, yaw_rad, step_rad);
             best = best.max(component.log_weight);
             poor = if component.log_weight < best - LITTLE_NATS { poor + 1 } else { 0 };

@@ -33,7 +33,7 @@ impl Refined {
 /// The mode downhill from `start`.
 pub(super) fn refine(problem: &Problem<'_>, start: Pose) -> Refined {
     let mut here = Refined::at(problem, start);
-    let mut damping = 1e-4;
+    let (mut damping, mut growth) = (1e-4, 2.0);
     for _ in 0..MOST_STEPS {
         let Normal { nats, gradient, mut information, .. } = here.normal;
         for axis in 0..6 {
@@ -50,10 +50,13 @@ pub(super) fn refine(problem: &Problem<'_>, start: Pose) -> Refined {
         }
         let there = Refined::at(problem, here.pose.stepped(&step));
         if there.normal.nats < nats {
-            damping = (damping * 0.1).max(1e-9);
+            // What was gained of what the slope and the bend promised.
+            let promised = gain - 0.5 * step.dot(&(here.normal.information * step));
+            let kept = (2.0 * (nats - there.normal.nats) / promised - 1.0).clamp(-1.0, 1.0);
+            (damping, growth) = ((damping * (1.0 - kept * kept * kept).max(0.1)).max(1e-9), 2.0);
             here = there;
         } else {
-            damping = damping.max(1e-4) * 10.0;
+            (damping, growth) = (damping.max(1e-4) * growth, 2.0 * growth);
         }
     }
     here
@@ -93,13 +96,19 @@ impl Held {
 
     /// The pose with the yaw turned by `yaw_rad`, all else following as far as it is coupled with yaw: [`Self::turned`] to first order.
     pub(super) fn following(&self, yaw_rad: f64) -> Pose {
-        let step = self.rest.solve(&(self.coupling() * -yaw_rad)).push(yaw_rad);
+        self.bending(yaw_rad, &Vector5::zeros())
+    }
+
+    /// The same, and by `bend` beside.
+    fn bending(&self, yaw_rad: f64, bend: &Vector5<f64>) -> Pose {
+        let step = (self.rest.solve(&(self.coupling() * -yaw_rad)) + bend).push(yaw_rad);
         self.at.pose.stepped(&shortened(step))
     }
 
-    /// The pose that costs least beside this one with the yaw turned by `yaw_rad`; `None` where its rest is not determined.
-    pub(super) fn turned(&self, problem: &Problem<'_>, yaw_rad: f64) -> Option<Self> {
-        let mut there = Self::of(Refined::at(problem, self.following(yaw_rad)))?;
+    /// The pose that costs least beside this one with the yaw turned by `yaw_rad`; `None` where its rest is not determined. `bend` is how far off the
+    /// first order was from one slice to the next, and becomes what it is here: valleys bend evenly.
+    pub(super) fn turned(&self, problem: &Problem<'_>, yaw_rad: f64, bend: &mut Vector5<f64>) -> Option<Self> {
+        let mut there = Self::of(Refined::at(problem, self.bending(yaw_rad, bend)))?;
         for _ in 0..MOST_SLICE_STEPS {
             let gradient = there.at.normal.gradient.fixed_rows::<5>(0).into_owned();
             let rest = -there.rest.solve(&gradient);
@@ -112,6 +121,7 @@ impl Held {
                 break;
             }
             there = Self::of(next)?;
+            *bend += rest;
         }
         Some(there)
     }

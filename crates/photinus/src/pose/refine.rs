@@ -107,7 +107,12 @@ impl Held {
 
     /// The pose that costs least beside this one with the yaw turned by `yaw_rad`; `None` where its rest is not determined. `bend` is how far off the
     /// first order was from one slice to the next, and becomes what it is here: valleys bend evenly.
-    pub(super) fn turned(&self, problem: &Problem<'_>, yaw_rad: f64, bend: &mut Vector5<f64>) -> Option<Self> {
+    pub(super) fn turned(
+        &self,
+        problem: &Problem<'_>,
+        yaw_rad: f64,
+        bend: &mut Vector5<f64>,
+    ) -> Option<Self> {
         let mut there = Self::of(Refined::at(problem, self.bending(yaw_rad, bend)))?;
         for _ in 0..MOST_SLICE_STEPS {
             let gradient = there.at.normal.gradient.fixed_rows::<5>(0).into_owned();

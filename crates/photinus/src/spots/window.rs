@@ -72,6 +72,8 @@ pub(super) struct Spill {
 const ROUNDS: usize = 16;
 const OVER_RELAXED: f32 = 1.5;
 const DONE_DN: f32 = 0.5;
+/// Rows of a window with one before and one after.
+const MOST_ROWS: usize = 2 * WIDEST_PX + 3;
 /// Step of the share of charge that spills and of the logarithm of the well, for slopes.
 const SPILL_STEP: f64 = 0.05;
 
@@ -210,18 +212,31 @@ impl Window {
     /// give), by over-relaxation, there and back, so that no side is preferred.
     fn spill(&mut self, share: f64, well_dn: f32, stride: usize) {
         let quarter = 0.25 * share.clamp(0.0, 1.0) as f32;
-        let (first, last) = (stride + 1, self.charge.len() - stride - 1);
-        let given = &mut self.given;
+        let Self { charge, given, .. } = self;
+        let rows = charge.len() / stride;
+        // By row: pixels that hold more than a well, and those that give. What is away from both gives nothing.
+        let (mut over, mut gives) = ([Columns::NONE; MOST_ROWS], [Columns::NONE; MOST_ROWS]);
+        for (row, (charge, given)) in charge.chunks(stride).zip(given.chunks(stride)).enumerate() {
+            over[row] = Columns::of(charge, |charge| charge > well_dn);
+            gives[row] = Columns::of(given, |given| given > 0.0);
+        }
         for round in 0..ROUNDS {
             let mut most = 0.0_f32;
-            for step in 0..last - first {
-                let at = if round % 2 == 0 { first + step } else { last - 1 - step };
-                let received =
-                    quarter * (given[at - 1] + given[at + 1] + given[at - stride] + given[at + stride]);
-                let wanted = self.charge[at] - well_dn + received;
-                let new = (given[at] + OVER_RELAXED * (wanted - given[at])).max(0.0);
-                most = most.max((new - given[at]).abs());
-                given[at] = new;
+            for step in 1..rows - 1 {
+                let is_forth = round % 2 == 0;
+                let row = if is_forth { step } else { rows - 1 - step };
+                let near = gives[row - 1].with(gives[row]).with(gives[row + 1]).with(over[row]);
+                let Columns { first, end } = near.wider(stride);
+                for step in 0..end - first {
+                    let at = row * stride + if is_forth { first + step } else { end - 1 - step };
+                    let received =
+                        quarter * (given[at - 1] + given[at + 1] + given[at - stride] + given[at + stride]);
+                    let wanted = charge[at] - well_dn + received;
+                    let new = (given[at] + OVER_RELAXED * (wanted - given[at])).max(0.0);
+                    most = most.max((new - given[at]).abs());
+                    given[at] = new;
+                }
+                gives[row] = Columns::of(&given[row * stride..(row + 1) * stride], |given| given > 0.0);
             }
             if most < DONE_DN {
                 break;
@@ -310,6 +325,79 @@ impl Window {
     }
 }
 
+/// Columns of a row from the first to the last of some pixels.
+#[derive(Clone, Copy)]
+struct Columns {
+    first: usize,
+    end: usize,
+}
+
+impl Columns {
+    const NONE: Self = Self { first: usize::MAX, end: 0 };
+
+    /// Those of a row of which something is true.
+    fn of(row: &[f32], is: impl Fn(f32) -> bool) -> Self {
+        match (row.iter().position(|&of| is(of)), row.iter().rposition(|&of| is(of))) {
+            (Some(first), Some(last)) => Self { first, end: last + 1 },
+            _ => Self::NONE,
+        }
+    }
+
+    /// These and others.
+    fn with(self, other: Self) -> Self {
+        Self { first: self.first.min(other.first), end: self.end.max(other.end) }
+    }
+
+    /// One more on both sides, in a row of so many; none where there are none.
+    fn wider(self, columns: usize) -> Self {
+        if self.end == 0 {
+            Self { first: 0, end: 0 }
+        } else {
+            Self { first: self.first.saturating_sub(1), end: (self.end + 1).min(columns) }
+        }
+    }
+}
+
 pub(super) fn nearest_pixel(place: Pixel) -> (i32, i32) {
     (place.u.round() as i32, place.v.round() as i32)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// What each pixel gives on, by whole sweeps until nothing changes.
+    fn swept(charge: &[f32], quarter: f32, well_dn: f32, stride: usize) -> Vec<f32> {
+        let mut given = vec![0.0_f32; charge.len()];
+        for _ in 0..2000 {
+            for at in stride..charge.len() - stride {
+                let received =
+                    quarter * (given[at - 1] + given[at + 1] + given[at - stride] + given[at + stride]);
+                given[at] = (charge[at] - well_dn + received).max(0.0);
+            }
+        }
+        given
+    }
+
+    proptest! {
+        #[test]
+        fn charge_spills_as_whole_sweeps_have_it(
+            share in 0.0..0.9f64,
+            cores in prop::collection::vec((4usize..15, 4usize..15, 0.0..6.0f32), 1..6),
+        ) {
+            let (reach, well_dn) = (9, 200.0);
+            let stride = 2 * reach + 1 + LANES + 1;
+            let mut charge = vec![0.0; (2 * reach + 3) * stride];
+            for (row, column, wells) in cores {
+                charge[(row + 1) * stride + column + 1] += wells * well_dn;
+            }
+            let mut window = Window { reach, given: vec![0.0; charge.len()], charge, ..Window::default() };
+            window.spill(share, well_dn, stride);
+            let swept = swept(&window.charge, 0.25 * share as f32, well_dn, stride);
+            for (given, swept) in window.given.iter().zip(swept) {
+                prop_assert!((given - swept).abs() < 4.0 * DONE_DN, "{given} {swept}");
+            }
+        }
+    }
 }

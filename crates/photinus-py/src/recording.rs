@@ -32,7 +32,7 @@ pub(crate) struct Frame {
 impl Frame {
     pub(crate) fn simulated(
         py: Python<'_>,
-        image: &GreyImage,
+        image: GreyImage,
         gravity: [f64; 3],
         truth: photinus_io::dataset::TruthFrame,
     ) -> PyResult<Self> {
@@ -49,7 +49,7 @@ impl Frame {
     fn read(py: Python<'_>, frame: sources::Frame) -> PyResult<Self> {
         let sources::Frame { image, index, time_s, source, gravity, .. } = frame;
         let gravity = gravity.map(|down| down.into_inner().into());
-        Ok(Self { image: array(py, &image)?, frame: index, time_s, gravity, source, truth: None })
+        Ok(Self { image: array(py, image)?, frame: index, time_s, gravity, source, truth: None })
     }
 }
 
@@ -250,10 +250,11 @@ pub(crate) fn read_image(py: Python<'_>, path: PathBuf) -> PyResult<Py<PyArray2<
     let file = detached(py, || image::read_image(&path).map_err(error::file))?;
     let notes: Vec<String> = file.conversions.iter().map(ToString::to_string).collect();
     error::warn(py, &path, &notes)?;
-    array(py, &file.image)
+    array(py, file.image)
 }
 
-/// The pixels as an array.
-pub(crate) fn array(py: Python<'_>, image: &GreyImage) -> PyResult<Py<PyArray2<u8>>> {
-    Ok(PyArray1::from_slice(py, image.pixels()).reshape([image.height(), image.width()])?.unbind())
+/// The pixels as an array, which keeps them: no copy.
+fn array(py: Python<'_>, image: GreyImage) -> PyResult<Py<PyArray2<u8>>> {
+    let shape = [image.height(), image.width()];
+    Ok(PyArray1::from_vec(py, image.into_pixels()).reshape(shape)?.unbind())
 }

@@ -63,7 +63,7 @@ impl Simulation {
             Ok(self.render_next(&mut state))
         })?;
         let frame = |(rendered, taken): (Rendered, Taken)| {
-            Frame::simulated(py, &rendered.image, taken.gravity.into_inner().into(), taken.truth)
+            Frame::simulated(py, rendered.image, taken.gravity.into_inner().into(), taken.truth)
         };
         rendered.map(frame).transpose()
     }

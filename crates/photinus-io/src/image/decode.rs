@@ -175,25 +175,53 @@ pub(crate) fn check_size(width: usize, height: usize) -> std::result::Result<(),
 /// An unsigned sample of 8 or 16 bit.
 trait Sample: Copy + Into<u32> {
     const LARGEST: u32;
+
+    /// A number that is no larger than [`Self::LARGEST`].
+    fn of(number: u32) -> Self;
+
+    /// Samples scaled to 8 bit: those of 8 bit as they are.
+    fn bytes(samples: Vec<Self>) -> Vec<u8>;
 }
+
 impl Sample for u8 {
     const LARGEST: u32 = 255;
+
+    fn of(number: u32) -> Self {
+        number as Self
+    }
+
+    fn bytes(samples: Vec<Self>) -> Vec<u8> {
+        samples
+    }
 }
+
 impl Sample for u16 {
     const LARGEST: u32 = 65_535;
+
+    fn of(number: u32) -> Self {
+        number as Self
+    }
+
+    fn bytes(samples: Vec<Self>) -> Vec<u8> {
+        let byte = |sample| ((u32::from(sample) * 255 + Self::LARGEST / 2) / Self::LARGEST) as u8;
+        samples.into_iter().map(byte).collect()
+    }
 }
 
 fn to_grey<S: Sample>(samples: Samples<S>) -> std::result::Result<ImageFile, Refused> {
     let Samples { values, channels, width, height, maximum } = samples;
     let mut conversions = Vec::new();
-    let pixels: Vec<u32> = if channels < 3 {
-        values.chunks_exact(channels).map(|pixel| pixel[0].into()).collect()
-    } else {
-        let colours =
-            values.chunks_exact(channels).map(|pixel| [pixel[0], pixel[1], pixel[2]].map(Into::into));
-        let equal = colours.clone().all(|[r, g, b]: [u32; 3]| r == g && g == b);
-        conversions.push(if equal { Conversion::EqualChannels } else { Conversion::Luma });
-        colours.map(|[r, g, b]| if equal { r } else { (77 * r + 150 * g + 29 * b + 128) / 256 }).collect()
+    let grey: Vec<S> = match channels {
+        1 => values,
+        2 => values.chunks_exact(2).map(|pixel| pixel[0]).collect(),
+        _ => {
+            let colours =
+                values.chunks_exact(channels).map(|pixel| [pixel[0], pixel[1], pixel[2]].map(Into::into));
+            let equal = colours.clone().all(|[r, g, b]: [u32; 3]| r == g && g == b);
+            conversions.push(if equal { Conversion::EqualChannels } else { Conversion::Luma });
+            let luma = |[r, g, b]: [u32; 3]| if equal { r } else { (77 * r + 150 * g + 29 * b + 128) / 256 };
+            colours.map(|colour| S::of(luma(colour))).collect()
+        }
     };
     if channels % 2 == 0 {
         conversions.push(Conversion::Opacity);
@@ -201,12 +229,12 @@ fn to_grey<S: Sample>(samples: Samples<S>) -> std::result::Result<ImageFile, Ref
     match maximum {
         Some(maximum) if maximum != S::LARGEST => conversions.push(Conversion::Maximum(maximum)),
         _ if S::LARGEST > 255 => {
-            let largest = pixels.iter().copied().max().unwrap_or(0);
+            let largest = grey.iter().map(|&sample| sample.into()).max().unwrap_or(0);
             conversions.push(Conversion::SixteenBit { largest: u16::try_from(largest).unwrap_or(u16::MAX) });
         }
         _ => {}
     }
-    let pixels = pixels.into_iter().map(|p| ((p * 255 + S::LARGEST / 2) / S::LARGEST) as u8).collect();
+    let pixels = S::bytes(grey);
     let image = GreyImage::new(pixels, width, height).map_err(|error| Refused::Damaged(error.to_string()))?;
     Ok(ImageFile { image, conversions })
 }

@@ -46,4 +46,9 @@ impl GreyImage {
     pub fn pixels(&self) -> &[u8] {
         &self.pixels
     }
+
+    /// The pixels, row by row, for others to keep.
+    pub fn into_pixels(self) -> Vec<u8> {
+        self.pixels
+    }
 }

@@ -203,6 +203,9 @@ fn fit_from<const N: usize>(
         }
         let factor = matrix.cholesky()?;
         let mut step = factor.solve(&right);
+        if !step.iter().all(|number| number.is_finite()) {
+            return None;
+        }
         for &number in shape.places().as_flattened() {
             step[number] = step[number].clamp(-LONGEST_PX, LONGEST_PX);
         }

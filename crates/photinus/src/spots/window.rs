@@ -183,8 +183,8 @@ impl Window {
         }
         let well_dn = self.full_dn * libm::exp(spill.ln_well) as f32;
         let relative_error = Lanes::splat(spill.relative_error as f32);
-        // What pixels gave on in the step before is where to begin, unless it was of another window.
-        if self.given.len() != self.charge.len() {
+        // What pixels gave on in the step before is where to begin, unless it was of another window, or of light without bounds.
+        if self.given.len() != self.charge.len() || self.given.iter().any(|given| !given.is_finite()) {
             self.given.clear();
             self.given.resize(self.charge.len(), 0.0);
         }
@@ -378,6 +378,16 @@ mod tests {
             }
         }
         given
+    }
+
+    #[test]
+    fn light_without_bounds_leaves_nothing_to_the_next_step() {
+        let mut window = Window { reach: 3, full_dn: 200.0, ..Window::default() };
+        let spill = Spill { share: 0.3, ln_well: 0.7, relative_error: 0.3, numbers: None };
+        window.overflow(&spill, |_| Lanes::ZERO);
+        window.given[40] = f32::INFINITY;
+        window.overflow(&spill, |_| Lanes::ZERO);
+        assert!(window.given.iter().all(|&given| given == 0.0));
     }
 
     proptest! {

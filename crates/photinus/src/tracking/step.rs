@@ -25,6 +25,8 @@ use super::state::{MOST_TARGETS, State, Target};
 use super::ways::{POWER_SIGMA, Scene, Way, Ways};
 use crate::airframe::Airframe;
 use crate::camera::Watched;
+#[cfg(not(feature = "std"))]
+use crate::float::Float as _;
 use crate::pose::{self, LogLight, Symmetry};
 
 /// Clutter is counted over this many frames, and is at least this many points.

@@ -4,6 +4,7 @@ import { once } from "node:events";
 import { readFileSync } from "node:fs";
 import { pathToFileURL } from "node:url";
 
+/// A page has so long to speak; a browser that is stuck has twice that for each.
 const LIMIT_MS = 60_000;
 const [pageFile, truthFile, ...frames] = process.argv.slice(2);
 
@@ -13,6 +14,8 @@ function open() {
     stdio: ["ignore", "ignore", "ignore", "pipe", "pipe"],
   });
   const [, , , questions, answers] = browser.stdio;
+  // That it has ended says its exit.
+  for (const pipe of [questions, answers]) pipe.on("error", () => {});
   const waiting = new Map();
   let unread = "";
   answers.setEncoding("utf8").on("data", (text) => {
@@ -86,8 +89,11 @@ const gone = once(browser, "exit").then(([code]) => {
 const look = async () => {
   for (const frame of frames) console.log(checked(await documentOf(ask, frame), frame, JSON.parse(truths[frame - 1]).neighbours));
 };
+const stuck = new Promise((_, refuse) => {
+  setTimeout(() => refuse(new Error("chromium does not answer")), 2 * LIMIT_MS * frames.length).unref();
+});
 try {
-  await Promise.race([look(), gone]);
+  await Promise.race([look(), gone, stuck]);
 } catch (error) {
   console.error(error.message);
   process.exitCode = 1;

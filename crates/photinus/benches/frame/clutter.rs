@@ -12,7 +12,7 @@ use rand_distr::{Distribution, Uniform};
 use rand_pcg::Pcg64;
 
 use crate::contest::Contest;
-use crate::frames::{self, PAPER, Scene};
+use crate::frames::{self, PAPER};
 
 /// LEDs of the airframe with many, spread evenly over a sphere.
 const LEDS: usize = 128;
@@ -21,12 +21,7 @@ const RADIUS_M: f64 = 0.5;
 const SHOWN: usize = 30;
 
 pub(crate) fn run() {
-    let mut contest = Contest::new("From spots, 752x480", "maximum of the frame");
-    let empty = frames::markers(&Scene { size: PAPER, markers: 0, sun: false });
-    contest.add("maximum of the frame", move |i| {
-        let frame = &empty[i % empty.len()];
-        black_box(frame.iter().fold(0, |high: u8, &pixel| high.max(pixel)));
-    });
+    let mut contest = Contest::beside_maximum("From spots, 752x480");
     let mut add = |name: String, airframe: Airframe, spots: Vec<Spot>| {
         let locator = Locator::new(crate::camera(), &airframe, None, Settings::default());
         let mut locator = locator.expect("a locator");

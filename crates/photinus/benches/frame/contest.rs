@@ -1,6 +1,9 @@
 //! Runs contenders in turn, so that all of them see the same moods of the machine, and tells medians.
 
+use std::hint::black_box;
 use std::time::Instant;
+
+use crate::frames::{self, PAPER, Scene};
 
 const ROUNDS: usize = 100;
 const CALLS_PER_ROUND: usize = 32;
@@ -58,6 +61,17 @@ impl<'a> Contest<'a> {
         let only = std::env::args().skip(1).filter(|argument| !argument.starts_with('-')).nth(1);
         let (title, floor) = (title.to_owned(), floor.to_owned());
         Self { title, floor, only, names: Vec::new(), contenders: Vec::new() }
+    }
+
+    /// A table whose floor is a pass over an empty frame that only takes its maximum.
+    pub(crate) fn beside_maximum(title: &str) -> Self {
+        let mut contest = Self::new(title, "maximum of the frame");
+        let empty = frames::markers(&Scene { size: PAPER, markers: 0, sun: false });
+        contest.add("maximum of the frame", move |i| {
+            let frame = &empty[i % empty.len()];
+            black_box(frame.iter().fold(0, |high: u8, &pixel| high.max(pixel)));
+        });
+        contest
     }
 
     /// A contender is called with the number of its call, to choose among its inputs.

@@ -6,7 +6,6 @@ use photinus::identity::decoder::{Decoder, Listener, Settings};
 use photinus::identity::{CodeBook, Evidence, Word};
 
 use crate::contest::Contest;
-use crate::frames::{self, PAPER, Scene};
 
 const BOOK: &str = include_str!("../../../../scenes/codes/l18-d3-r2.txt");
 /// 168 words of 18 bits.
@@ -67,12 +66,7 @@ fn words_of(book: &str) -> Vec<Word> {
 }
 
 pub(crate) fn run() {
-    let mut contest = Contest::new("Decoding the markers of a frame", "maximum of the frame");
-    let empty = frames::markers(&Scene { size: PAPER, markers: 0, sun: false });
-    contest.add("maximum of the frame", move |i| {
-        let frame = &empty[i % empty.len()];
-        black_box(frame.iter().fold(0, |high: u8, &pixel| high.max(pixel)));
-    });
+    let mut contest = Contest::beside_maximum("Decoding the markers of a frame");
     for count in [20, 120] {
         let mut known = Markers::new(count);
         (0..200).for_each(|_| known.hear());

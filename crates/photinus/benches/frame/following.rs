@@ -13,7 +13,6 @@ use photinus::spots::{Extent, Spot};
 
 use crate::contest::Contest;
 use crate::decoding;
-use crate::frames::{self, PAPER, Scene};
 
 /// Frames after which all begins again: a number of rounds of a word.
 const FRAMES: usize = 360;
@@ -103,12 +102,7 @@ fn sighting(camera: &Camera, centre: Pixel) -> Sighting {
 }
 
 pub(crate) fn run() {
-    let mut contest = Contest::new("Following and decoding the markers of a frame", "maximum of the frame");
-    let empty = frames::markers(&Scene { size: PAPER, markers: 0, sun: false });
-    contest.add("maximum of the frame", move |i| {
-        let frame = &empty[i % empty.len()];
-        black_box(frame.iter().fold(0, |high: u8, &pixel| high.max(pixel)));
-    });
+    let mut contest = Contest::beside_maximum("Following and decoding the markers of a frame");
     let gyro = Some(Turn { now_from_before: Rotation3::identity(), sigma_rad: 1e-4 });
     for count in [20, 120] {
         for (name, turn) in [("with a gyro", gyro), ("without", None)] {

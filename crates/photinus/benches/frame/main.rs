@@ -18,7 +18,7 @@ mod watching;
 use std::hint::black_box;
 
 use contest::Contest;
-use frames::{PAPER, Scene};
+use frames::PAPER;
 use nalgebra::Vector3;
 use photinus::airframe::{Airframe, Ring};
 use photinus::camera::{Camera, Ideal, IdealLaw, Model, Pixel};
@@ -56,12 +56,7 @@ fn hexarotor() -> Airframe {
 }
 
 fn locating() {
-    let mut contest = Contest::new("Locating, 752x480", "maximum of the frame");
-    let empty = frames::markers(&Scene { size: PAPER, markers: 0, sun: false });
-    contest.add("maximum of the frame", move |i| {
-        let frame = &empty[i % empty.len()];
-        black_box(frame.iter().fold(0, |high: u8, &pixel| high.max(pixel)));
-    });
+    let mut contest = Contest::beside_maximum("Locating, 752x480");
     let (camera, airframe) = (camera(), hexarotor());
     let gravity = Vector3::y_axis();
     for count in [1, 6, 12, 25, 50] {

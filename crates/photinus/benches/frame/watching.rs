@@ -14,7 +14,7 @@ use rand_pcg::Pcg64;
 
 use crate::contest::Contest;
 use crate::decoding;
-use crate::frames::{self, PAPER, Scene};
+use crate::frames::{self, PAPER};
 
 /// Frames after which words and frames are the same again: their bits.
 const PERIOD: usize = 18;
@@ -45,7 +45,7 @@ impl Watch {
             let known = tracks
                 .iter()
                 .filter(|track| lookout.name(track.id).is_some_and(|name| name.probability > 0.99));
-            println!("{count} of {}: {} tracks, {} known", airframe.name(), tracks.len(), known.count());
+            println!("{count} {}s: {} tracks, {} known", airframe.name(), tracks.len(), known.count());
         }
         watch
     }
@@ -104,25 +104,15 @@ fn blinking(
 /// Four arms with two LEDs each, each arm with a signal of its own.
 fn quadrotor() -> Airframe {
     let ring = Ring { arms: 4, radius_m: 0.245, leds_per_arm: 2, splay_rad: std::f64::consts::FRAC_PI_2 };
-    let ring = Airframe::from_ring("quadrotors with four words", ring).expect("a quadrotor");
+    let ring = Airframe::from_ring("quadrotor", ring).expect("a quadrotor");
     let leds = ring.leds().iter().enumerate();
     let leds = leds.map(|(led, seen)| Led { signal: Some(led as u32 / 2), ..seen.clone() }).collect();
     Airframe::new(ring.name(), leds).expect("a quadrotor")
 }
 
-fn hexarotor() -> Airframe {
-    let ring = Ring { arms: 6, radius_m: 0.4, leds_per_arm: 1, splay_rad: 0.0 };
-    Airframe::from_ring("hexarotors with one word", ring).expect("a hexarotor")
-}
-
 pub(crate) fn run() {
-    let mut contest = Contest::new("Locating with time, 752x480", "maximum of the frame");
-    let empty = frames::markers(&Scene { size: PAPER, markers: 0, sun: false });
-    contest.add("maximum of the frame", move |i| {
-        let frame = &empty[i % empty.len()];
-        black_box(frame.iter().fold(0, |high: u8, &pixel| high.max(pixel)));
-    });
-    for (airframe, signals) in [(hexarotor(), 1), (quadrotor(), 4)] {
+    let mut contest = Contest::beside_maximum("Locating with time, 752x480");
+    for (airframe, signals) in [(crate::hexarotor(), 1), (quadrotor(), 4)] {
         for count in [1, 6, 12] {
             for (time, with_time) in [("", false), (", time", true)] {
                 let mut watch = Watch::new(count, &airframe, signals, with_time);

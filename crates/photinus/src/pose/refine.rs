@@ -1,4 +1,5 @@
-//! Downhill from a start to the nearest mode: Levenberg-Marquardt, and Gauss-Newton with the yaw held.
+//! Downhill from a start to the nearest mode: Levenberg-Marquardt, and Gauss-Newton with the yaw held. Damping follows what a step gained of what it
+//! promised; K. Madsen, H. B. Nielsen, O. Tingleff, "Methods for Non-Linear Least Squares Problems" (2004), 3.2.
 
 use nalgebra::{Cholesky, U5, Vector5, Vector6};
 

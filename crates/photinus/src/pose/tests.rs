@@ -180,14 +180,43 @@ proptest! {
 
 /// Two markers of one light 0.1 m apart, side by side.
 fn pair() -> Airframe {
-    let leds = [-0.05, 0.05].map(|y| Led {
+    side_by_side([-0.05, 0.05])
+}
+
+/// Markers of one light at these places across the view, m.
+fn side_by_side(places_m: impl IntoIterator<Item = f64>) -> Airframe {
+    let led = |y| Led {
         position_m: Vector3::new(0.0, y, 0.0),
         axis: Vector3::x_axis(),
         lobe: Lobe::Omni,
         power: 1.0,
         signal: None,
-    });
-    Airframe::new("pair", leds.to_vec()).unwrap()
+    };
+    Airframe::new("side by side", places_m.into_iter().map(led).collect()).unwrap()
+}
+
+#[test]
+fn all_markers_of_a_strip_are_in_its_middle_and_shine() {
+    for count in [2_u32, 7, 8, 9, 20] {
+        let airframe = side_by_side((0..count).map(|place| 0.1 * f64::from(place)));
+        assert_eq!(airframe.markers().len(), count as usize);
+        let observations = [Observation { resolution_rad: 0.1, ..observation(Vector3::z(), 1e-3, 1.0) }];
+        let whitened = observations.map(|seen| Whitened::of(&seen, 0.0));
+        let problem = Problem {
+            airframe: &airframe,
+            settings: &Settings::default(),
+            observations: &observations,
+            whitened: &whitened,
+            markers: &[Some(0)],
+            known: &nothing(),
+            merging: true,
+            repeats: 1.0,
+        };
+        let shining = problem.shining(0, 0, &Vector3::new(100.0, 0.0, 0.0));
+        let middle_m = 0.05 * f64::from(count - 1);
+        assert!((shining.centre.at_m.y - middle_m).abs() < 1e-2, "{count}: {}", shining.centre.at_m.y);
+        assert!((shining.intensity - f64::from(count)).abs() < 0.05, "{count}: {}", shining.intensity);
+    }
 }
 
 /// The pair, side by side to a camera 5 m away that makes one spot of it.

@@ -226,7 +226,7 @@ impl Window {
                 let is_forth = round % 2 == 0;
                 let row = if is_forth { step } else { rows - 1 - step };
                 let near = gives[row - 1].with(gives[row]).with(gives[row + 1]).with(over[row]);
-                let Columns { first, end } = near.wider(stride);
+                let Some(Columns { first, end }) = near.wider(stride) else { continue };
                 for step in 0..end - first {
                     let at = row * stride + if is_forth { first + step } else { end - 1 - step };
                     let received =
@@ -348,13 +348,10 @@ impl Columns {
         Self { first: self.first.min(other.first), end: self.end.max(other.end) }
     }
 
-    /// One more on both sides, in a row of so many; none where there are none.
-    fn wider(self, columns: usize) -> Self {
-        if self.end == 0 {
-            Self { first: 0, end: 0 }
-        } else {
-            Self { first: self.first.saturating_sub(1), end: (self.end + 1).min(columns) }
-        }
+    /// One more on both sides, in a row of so many; `None` where there are none.
+    fn wider(self, columns: usize) -> Option<Self> {
+        let wider = || Self { first: self.first.saturating_sub(1), end: (self.end + 1).min(columns) };
+        (self.first < self.end).then(wider)
     }
 }
 

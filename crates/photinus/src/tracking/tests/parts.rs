@@ -12,7 +12,7 @@ use crate::tracking::joint::{Choice, Joint};
 use crate::tracking::motion::{Motion, Turn};
 use crate::tracking::reduction::reduce;
 use crate::tracking::settings::{Association, Settings};
-use crate::tracking::splitting::split;
+use crate::tracking::splitting::{split, straight_rad};
 
 fn any_component(rng: &mut Pcg64) -> Component {
     let root = Covariance::from_fn(|_, _| 0.1 * normal(rng));
@@ -114,6 +114,19 @@ fn joint_probabilities_are_those_of_all_ways_listed() {
         for (told, sum) in joint.probability.iter().zip(&sums) {
             assert!((told - sum / total).abs() < 1e-12, "{told} {}", sum / total);
         }
+    }
+}
+
+#[test]
+fn over_a_straight_yaw_a_marker_leaves_its_tangent_by_a_third_of_its_sigma() {
+    for (radius_m, sigma_m) in [(0.245, 0.01), (0.4, 0.02), (1.0, 0.05)] {
+        let yaw_rad = straight_rad(radius_m, sigma_m);
+        let off_m = radius_m * (1.0 - libm::cos(yaw_rad));
+        assert!((off_m - sigma_m / 3.0).abs() < 0.01 * sigma_m, "{yaw_rad}: {off_m} of {sigma_m}");
+    }
+    // Exact places, none at all, and LEDs that all sit on the axis.
+    for (radius_m, sigma_m, expected) in [(0.4, 0.0, 0.06), (0.4, 1.0, 0.25), (0.0, 0.01, 0.25)] {
+        assert!((straight_rad(radius_m, sigma_m) - expected).abs() < 1e-12);
     }
 }
 

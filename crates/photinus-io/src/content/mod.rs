@@ -1,9 +1,11 @@
 //! Why a well-formed file is not what it should be, as a type rather than as a library's sentence.
 //!
-//! The libraries of TOML and JSON say where a file is wrong; what is wrong they only say in words of Rust. So a file that was
-//! refused is read again as a plain tree of values ([`Tree`]), and the tree as what was wanted, with errors of our own.
+//! The libraries of TOML, JSON and YAML say what is wrong with a file in words of Rust. So a file is read as a plain tree of values ([`Tree`]),
+//! and the tree as what was wanted, with errors of our own: TOML at once, for its tree says where each value stands; JSON and YAML once they were
+//! refused, for they are read in bulk and by rules of their own.
 
 mod read;
+mod toml;
 mod tree;
 
 use std::fmt;
@@ -93,7 +95,8 @@ impl ContentError {
 
     /// Why the text of a tree is no `T`; `syntax` where it is not even a tree.
     pub(crate) fn of<T: DeserializeOwned>(tree: Option<Tree>, syntax: impl FnOnce() -> String) -> Self {
-        tree.and_then(|tree| T::deserialize(tree).err()).unwrap_or_else(|| Self::Syntax(syntax()))
+        let refusal = tree.and_then(|tree| T::deserialize(tree).err());
+        refusal.map_or_else(|| Self::Syntax(syntax()), |refusal| refusal.why)
     }
 
     /// Why a JSON text is no `T`.
@@ -185,13 +188,35 @@ impl From<Unexpected<'_>> for Found {
     }
 }
 
-impl serde::de::Error for ContentError {
+/// What is wrong with a tree, and where.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{why}")]
+pub(crate) struct Refusal {
+    pub(crate) why: ContentError,
+    /// The byte of the text at which it stands, where that is known.
+    pub(crate) at: Option<usize>,
+}
+
+impl Refusal {
+    /// The same, there unless something deeper has said where it stands.
+    fn or_at(self, at: Option<usize>) -> Self {
+        Self { at: self.at.or(at), ..self }
+    }
+}
+
+impl From<ContentError> for Refusal {
+    fn from(why: ContentError) -> Self {
+        Self { why, at: None }
+    }
+}
+
+impl serde::de::Error for Refusal {
     fn custom<T: fmt::Display>(reason: T) -> Self {
-        Self::Meaning(reason.to_string())
+        ContentError::Meaning(reason.to_string()).into()
     }
 
     fn invalid_type(unexpected: Unexpected<'_>, expected: &dyn Expected) -> Self {
-        Self::Kind { found: unexpected.into(), wanted: Wanted::Other(expected.to_string()) }
+        ContentError::Kind { found: unexpected.into(), wanted: Wanted::Other(expected.to_string()) }.into()
     }
 
     fn invalid_value(unexpected: Unexpected<'_>, expected: &dyn Expected) -> Self {
@@ -199,23 +224,23 @@ impl serde::de::Error for ContentError {
     }
 
     fn invalid_length(length: usize, expected: &dyn Expected) -> Self {
-        Self::Kind { found: Found::List(length), wanted: Wanted::Other(expected.to_string()) }
+        ContentError::Kind { found: Found::List(length), wanted: Wanted::Other(expected.to_string()) }.into()
     }
 
     fn unknown_variant(name: &str, known: &'static [&'static str]) -> Self {
-        Self::UnknownName { name: name.to_owned(), known: known.to_vec() }
+        ContentError::UnknownName { name: name.to_owned(), known: known.to_vec() }.into()
     }
 
     fn unknown_field(key: &str, known: &'static [&'static str]) -> Self {
-        Self::UnknownKey { key: key.to_owned(), known: known.to_vec() }
+        ContentError::UnknownKey { key: key.to_owned(), known: known.to_vec() }.into()
     }
 
     fn missing_field(key: &'static str) -> Self {
-        Self::MissingKey(key.to_owned())
+        ContentError::MissingKey(key.to_owned()).into()
     }
 
     fn duplicate_field(key: &'static str) -> Self {
-        Self::DuplicateKey(key.to_owned())
+        ContentError::DuplicateKey(key.to_owned()).into()
     }
 }
 

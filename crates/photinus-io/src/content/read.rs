@@ -1,29 +1,32 @@
 //! A tree as what is wanted of it: whatever is of another kind is told with what stands there and what is expected.
 
-use serde::de::value::{MapAccessDeserializer, MapDeserializer, SeqDeserializer};
+use serde::de::value::{MapAccessDeserializer, MapDeserializer, SeqDeserializer, StringDeserializer};
 use serde::de::{Deserializer, IntoDeserializer, Visitor};
 use serde::forward_to_deserialize_any;
+use toml_datetime::de::DatetimeDeserializer;
 
-use super::{ContentError, Found, Tree, Wanted};
+use super::tree::{Key, Tree, Value};
+use super::{ContentError, Found, Refusal, Wanted};
 
-type Result<T> = std::result::Result<T, ContentError>;
+type Result<T> = std::result::Result<T, Refusal>;
 
 impl Tree {
     fn is_no<T>(&self, wanted: Wanted) -> Result<T> {
-        let found = match self {
-            Self::Nothing => Found::Nothing,
-            Self::Flag(flag) => Found::Flag(*flag),
-            Self::Whole(number) => Found::Whole(*number),
-            Self::Number(number) => Found::Number(*number),
-            Self::Text(text) => Found::Text(text.clone()),
-            Self::List(values) => Found::List(values.len()),
-            Self::Table(_) => Found::Table,
+        let found = match &self.value {
+            Value::Nothing => Found::Nothing,
+            Value::Flag(flag) => Found::Flag(*flag),
+            Value::Whole(number) => Found::Whole(*number),
+            Value::Number(number) => Found::Number(*number),
+            Value::Text(text) => Found::Text(text.clone()),
+            Value::Time(time) => Found::Other(format!("the time `{time}`")),
+            Value::List(values) => Found::List(values.len()),
+            Value::Table(_) => Found::Table,
         };
-        Err(ContentError::Kind { found, wanted })
+        Err(Refusal { why: ContentError::Kind { found, wanted }, at: self.at })
     }
 }
 
-impl<'de> IntoDeserializer<'de, ContentError> for Tree {
+impl<'de> IntoDeserializer<'de, Refusal> for Tree {
     type Deserializer = Self;
 
     fn into_deserializer(self) -> Self {
@@ -31,35 +34,71 @@ impl<'de> IntoDeserializer<'de, ContentError> for Tree {
     }
 }
 
+impl<'de> IntoDeserializer<'de, Refusal> for Key {
+    type Deserializer = Self;
+
+    fn into_deserializer(self) -> Self {
+        self
+    }
+}
+
+/// A key is a text; where it means nothing, it says where it stands.
+impl<'de> Deserializer<'de> for Key {
+    type Error = Refusal;
+
+    fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value> {
+        visitor.visit_string(self.name).map_err(|refusal: Refusal| refusal.or_at(self.at))
+    }
+
+    fn deserialize_enum<V: Visitor<'de>>(
+        self,
+        _: &'static str,
+        _: &'static [&'static str],
+        visitor: V,
+    ) -> Result<V::Value> {
+        let name: StringDeserializer<Refusal> = self.name.into_deserializer();
+        visitor.visit_enum(name).map_err(|refusal: Refusal| refusal.or_at(self.at))
+    }
+
+    forward_to_deserialize_any! {
+        bool i8 i16 i32 i64 i128 u8 u16 u32 u64 u128 f32 f64 char str string bytes byte_buf option unit unit_struct newtype_struct seq tuple
+        tuple_struct map struct identifier ignored_any
+    }
+}
+
 /// A whole number within the limits of its type.
 macro_rules! whole {
     ($($deserialize:ident $visit:ident $number:ty),*) => {$(
         fn $deserialize<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value> {
-            match self {
-                Self::Whole(number) if <$number>::try_from(number).is_ok() => visitor.$visit(number as $number),
-                other => other.is_no(Wanted::Whole { least: <$number>::MIN.into(), most: <$number>::MAX.into() }),
+            match self.value {
+                Value::Whole(number) if <$number>::try_from(number).is_ok() => {
+                    visitor.$visit(number as $number).map_err(|refusal: Refusal| refusal.or_at(self.at))
+                }
+                _ => self.is_no(Wanted::Whole { least: <$number>::MIN.into(), most: <$number>::MAX.into() }),
             }
         }
     )*};
 }
 
 impl<'de> Deserializer<'de> for Tree {
-    type Error = ContentError;
+    type Error = Refusal;
 
     fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value> {
-        match self {
-            Self::Nothing => visitor.visit_unit(),
-            Self::Flag(flag) => visitor.visit_bool(flag),
-            Self::Whole(number) => match (i64::try_from(number), u64::try_from(number)) {
+        let read = match self.value {
+            Value::Nothing => visitor.visit_unit(),
+            Value::Flag(flag) => visitor.visit_bool(flag),
+            Value::Whole(number) => match (i64::try_from(number), u64::try_from(number)) {
                 (Ok(number), _) => visitor.visit_i64(number),
                 (_, Ok(number)) => visitor.visit_u64(number),
                 _ => visitor.visit_i128(number),
             },
-            Self::Number(number) => visitor.visit_f64(number),
-            Self::Text(text) => visitor.visit_string(text),
-            Self::List(values) => visitor.visit_seq(SeqDeserializer::new(values.into_iter())),
-            Self::Table(entries) => visitor.visit_map(MapDeserializer::new(entries.into_iter())),
-        }
+            Value::Number(number) => visitor.visit_f64(number),
+            Value::Text(text) => visitor.visit_string(text),
+            Value::Time(time) => visitor.visit_map(DatetimeDeserializer::new(time)),
+            Value::List(values) => visitor.visit_seq(SeqDeserializer::new(values.into_iter())),
+            Value::Table(entries) => visitor.visit_map(MapDeserializer::new(entries.into_iter())),
+        };
+        read.map_err(|refusal: Refusal| refusal.or_at(self.at))
     }
 
     whole! {
@@ -69,9 +108,9 @@ impl<'de> Deserializer<'de> for Tree {
     }
 
     fn deserialize_bool<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value> {
-        match self {
-            Self::Flag(flag) => visitor.visit_bool(flag),
-            other => other.is_no(Wanted::Flag),
+        match self.value {
+            Value::Flag(_) => self.deserialize_any(visitor),
+            _ => self.is_no(Wanted::Flag),
         }
     }
 
@@ -80,16 +119,16 @@ impl<'de> Deserializer<'de> for Tree {
     }
 
     fn deserialize_f64<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value> {
-        match self {
-            Self::Whole(_) | Self::Number(_) => self.deserialize_any(visitor),
-            other => other.is_no(Wanted::Number),
+        match self.value {
+            Value::Whole(_) | Value::Number(_) => self.deserialize_any(visitor),
+            _ => self.is_no(Wanted::Number),
         }
     }
 
     fn deserialize_str<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value> {
-        match self {
-            Self::Text(text) => visitor.visit_string(text),
-            other => other.is_no(Wanted::Text),
+        match self.value {
+            Value::Text(_) => self.deserialize_any(visitor),
+            _ => self.is_no(Wanted::Text),
         }
     }
 
@@ -98,16 +137,16 @@ impl<'de> Deserializer<'de> for Tree {
     }
 
     fn deserialize_seq<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value> {
-        match self {
-            Self::List(_) => self.deserialize_any(visitor),
-            other => other.is_no(Wanted::List { length: None }),
+        match self.value {
+            Value::List(_) => self.deserialize_any(visitor),
+            _ => self.is_no(Wanted::List { length: None }),
         }
     }
 
     fn deserialize_tuple<V: Visitor<'de>>(self, length: usize, visitor: V) -> Result<V::Value> {
-        match self {
-            Self::List(ref values) if values.len() == length => self.deserialize_any(visitor),
-            other => other.is_no(Wanted::List { length: Some(length) }),
+        match self.value {
+            Value::List(ref values) if values.len() == length => self.deserialize_any(visitor),
+            _ => self.is_no(Wanted::List { length: Some(length) }),
         }
     }
 
@@ -121,9 +160,9 @@ impl<'de> Deserializer<'de> for Tree {
     }
 
     fn deserialize_map<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value> {
-        match self {
-            Self::Table(_) => self.deserialize_any(visitor),
-            other => other.is_no(Wanted::Table),
+        match self.value {
+            Value::Table(_) => self.deserialize_any(visitor),
+            _ => self.is_no(Wanted::Table),
         }
     }
 
@@ -134,16 +173,16 @@ impl<'de> Deserializer<'de> for Tree {
         _: &'static [&'static str],
         visitor: V,
     ) -> Result<V::Value> {
-        match self {
-            Self::Table(_) | Self::List(_) => self.deserialize_any(visitor),
-            other => other.is_no(Wanted::Table),
+        match self.value {
+            Value::Table(_) | Value::Time(_) | Value::List(_) => self.deserialize_any(visitor),
+            _ => self.is_no(Wanted::Table),
         }
     }
 
     fn deserialize_option<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value> {
-        match self {
-            Self::Nothing => visitor.visit_none(),
-            some => visitor.visit_some(some),
+        match self.value {
+            Value::Nothing => visitor.visit_none(),
+            _ => visitor.visit_some(self),
         }
     }
 
@@ -157,12 +196,18 @@ impl<'de> Deserializer<'de> for Tree {
         _: &'static [&'static str],
         visitor: V,
     ) -> Result<V::Value> {
-        match self {
-            Self::Text(name) => visitor.visit_enum(name.into_deserializer()),
-            Self::Table(entries) => {
-                visitor.visit_enum(MapAccessDeserializer::new(MapDeserializer::new(entries.into_iter())))
+        match self.value {
+            Value::Text(name) => Key { at: self.at, name }.deserialize_enum("", &[], visitor),
+            Value::Table(entries) if entries.len() == 1 => {
+                let one = MapAccessDeserializer::new(MapDeserializer::new(entries.into_iter()));
+                visitor.visit_enum(one).map_err(|refusal: Refusal| refusal.or_at(self.at))
             }
-            other => other.is_no(Wanted::Text),
+            Value::Table(entries) => {
+                let found = Found::Other(format!("a table of {} keys", entries.len()));
+                let wanted = Wanted::Other("one name with its values".to_owned());
+                Err(Refusal { why: ContentError::Kind { found, wanted }, at: self.at })
+            }
+            _ => self.is_no(Wanted::Text),
         }
     }
 

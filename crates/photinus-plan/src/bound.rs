@@ -4,7 +4,7 @@
 //! their spots and of the markers' places, light with that of LEDs and lobes, tilt with its prior, every yaw as likely. Instead of what a
 //! detector measured enter the least variances that [`crate::spot`] allows. The scale of airframe and lens, which no picture tells, is added.
 
-use nalgebra::{Matrix2, Matrix3, Unit, Vector3};
+use nalgebra::{Matrix2, Unit, Vector3};
 use photinus::airframe::Airframe;
 use photinus::camera::Bearing;
 use photinus::pose::{
@@ -46,10 +46,9 @@ pub struct Bound<'a> {
 impl<'a> Bound<'a> {
     /// Bounds for an airframe in front of a set-up's camera.
     pub fn new(setup: &'a Setup, table: &SpotTable, airframe: &Airframe) -> Self {
-        // what the core believes of neighbours, but for two: the spread of LEDs is known of the part, and how far markers are off is
-        // counted with their spots, so that what merges with them is held against all of it
+        // what the core believes of neighbours, but that the spread of LEDs is known of the part
         let unit_sigma = setup.emitter.unit_spread.max(LEAST_SPREAD);
-        let settings = Settings { unit_sigma, marker_sigma_m: 0.0, ..Settings::default() };
+        let settings = Settings { unit_sigma, ..Settings::default() };
         let estimator = Estimator::new(airframe, settings).expect("settings within their ranges");
         let hypotheses = Hypotheses::with_room(airframe.markers().len());
         let faintest_light = table.half_found_e() / setup.electrons(1.0, 1.0, 0.0);
@@ -95,15 +94,12 @@ impl<'a> Bound<'a> {
     fn observe(&self, lit: &Lit) -> Option<Observation> {
         let camera = &self.setup.camera;
         let covariance_px2 = Matrix2::identity() * lit.spot.variance_px2;
-        let ahead = lit.centre_m.normalize();
-        let marker_rad = Settings::default().marker_sigma_m / lit.centre_m.norm();
-        let of_marker_rad2 = (Matrix3::identity() - ahead * ahead.transpose()) * (marker_rad * marker_rad);
         // in units of an LED of intensity 1 at 1 m, wherever in the image it is
         let off_axis_rad = Bearing::new(lit.centre_m)?.off_axis_rad();
         let value = libm::log(lit.electrons / self.setup.electrons(1.0, 1.0, off_axis_rad));
         Some(Observation {
             bearing: Bearing::new(lit.centre_m)?,
-            covariance_rad2: camera.tangent_covariance(lit.place, &covariance_px2)? + of_marker_rad2,
+            covariance_rad2: camera.tangent_covariance(lit.place, &covariance_px2)?,
             log_light: Some(LogLight { value, sigma: lit.spot.log_light_sigma }),
             resolution_rad: RESOLUTION_PX * camera.rad_per_px(lit.place)?,
             signal: None,

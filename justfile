@@ -31,6 +31,11 @@ python *arguments:
     cargo build -p photinus-cli --locked
     crates/photinus-py/try-wheel {{arguments}}
 
+# The wheel for 64-bit Arm, built here and tried under qemu-user; arguments go to pytest.
+python-aarch64 *arguments:
+    cargo build -p photinus-cli --locked
+    crates/photinus-py/try-wheel-aarch64 {{arguments}}
+
 # The notebook with its pictures, run anew by the wheel that `just python` has built.
 notebook:
     target/python/bin/jupyter-execute --inplace --NbClientApp.record_timing=False crates/photinus-py/examples/first_look.ipynb

@@ -20,7 +20,7 @@ def run(name: str, *arguments: object) -> str:
 
 
 def number(pattern: str, text: str) -> float:
-    found = re.search(pattern, text)
+    found = re.search(pattern, text, re.MULTILINE)
     assert found, text
     return float(found[1])
 
@@ -44,6 +44,15 @@ def test_design_a_set_up() -> None:
     rows = run("design_setup.py", "--frames", 60).splitlines()[1:]
     found = [int(row.split("%")[0].split()[-1]) for row in rows]
     assert len(rows) >= 6 and min(found[:3]) >= 90
+
+
+def test_a_day() -> None:
+    told = run("a_day.py", "--frames", 40)
+    assert all(
+        number(rf"^{row} +([\d.]+)$", told) > 0
+        for row in ("spots with covariances, by Photinus", "neighbours, by Photinus")
+    )
+    assert "a data frame of 480 neighbours" in told or "is not installed" in told
 
 
 def test_a_fleet_on_this_machine() -> None:

@@ -15,6 +15,10 @@ pub struct Recorded {
     exposure_s: f64,
     /// When its clock showed 0 by ours, where it flies at its own pace.
     began: Option<Instant>,
+    /// From frame to frame, s.
+    gap_s: f64,
+    /// When the last frame was due.
+    due: Option<Instant>,
     /// What is begun anew at its end, where that is wanted.
     again: Option<Again>,
 }
@@ -34,7 +38,13 @@ impl Recorded {
     /// cameras of a vehicle are given the same.
     pub fn new(dataset: &Dataset, camera: usize, began: Option<Instant>) -> Self {
         let exposure_s = dataset.cameras().get(camera).map_or(0.0, |camera| 1e-6 * camera.exposure_us);
-        Self { frames: FrameSource::dataset_camera(dataset.clone(), camera), exposure_s, began, again: None }
+        let rows = dataset.cameras().get(camera).map_or(&[][..], |camera| &camera.frames);
+        let gap_s = rows
+            .first()
+            .zip(rows.last())
+            .map_or(0.0, |(first, last)| (last.time_s - first.time_s) / (rows.len() - 1).max(1) as f64);
+        let frames = FrameSource::dataset_camera(dataset.clone(), camera);
+        Self { frames, exposure_s, began, gap_s, due: None, again: None }
     }
 
     /// Begins anew at its end, with times and numbers that go on. The seam is the mean of the gaps between frames.
@@ -42,8 +52,7 @@ impl Recorded {
     pub fn repeated(self, dataset: &Dataset, camera: usize) -> Self {
         let rows = dataset.cameras().get(camera).map_or(&[][..], |camera| &camera.frames);
         let (Some(first), Some(last)) = (rows.first(), rows.last()) else { return self };
-        let gaps = (rows.len() - 1).max(1) as f64;
-        let span_s = (last.time_s - first.time_s) * (1.0 + 1.0 / gaps);
+        let span_s = last.time_s - first.time_s + self.gap_s;
         let again = Again {
             dataset: dataset.clone(),
             camera,
@@ -52,6 +61,13 @@ impl Recorded {
             rounds: 0,
         };
         Self { again: Some(again), ..self }
+    }
+
+    /// Waits until half of the gap to the next frame is over: a camera does not decode files, and who is at the frame before is not to be kept from it.
+    fn wait_to_read(&self) {
+        let half = Duration::try_from_secs_f64(0.5 * self.gap_s).unwrap_or_default();
+        let from = self.due.map(|due| due + half);
+        std::thread::sleep(from.unwrap_or_else(Instant::now).saturating_duration_since(Instant::now()));
     }
 
     fn read(&mut self) -> Option<Result<Entry>> {
@@ -77,6 +93,7 @@ impl Recorded {
 
 impl Source for Recorded {
     fn next(&mut self) -> Next {
+        self.wait_to_read();
         let mut entry = match self.read() {
             None => return Next::End,
             Some(Err(error)) => return Next::Bad(error),
@@ -89,6 +106,7 @@ impl Source for Recorded {
             let now = Instant::now();
             std::thread::sleep(due.saturating_duration_since(now));
             entry.taken = Some(due.max(now));
+            self.due = Some(due);
         }
         Next::Frame(entry)
     }

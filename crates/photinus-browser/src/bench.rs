@@ -1,6 +1,6 @@
 //! A locator with a picture in front of it, and what follows from picture to picture.
 
-use nalgebra::{Rotation3, Unit, Vector3};
+use nalgebra::{Rotation3, Vector3};
 use photinus::airframe::{Airframe, Ring};
 use photinus::camera::{Camera, Ideal, IdealLaw, Model, Pixel};
 use photinus::frame::FrameView;
@@ -71,7 +71,6 @@ impl Bench {
         let located = self.locator.locate(Input::frame(&view).gravity(gravity.as_ref())).ok()?;
         let tracked = time_s.and_then(|time_s| {
             let turned = Some(Turned { now_from_before: Rotation3::identity(), sigma_rad: STILL_RAD });
-            let gravity: Option<Unit<Vector3<f64>>> = gravity;
             self.lookout.look(&Glance { time_s, exposure_s: 0.0, turned, gravity, located }).ok()
         });
         told::json(&told::Frame::of(located, tracked))

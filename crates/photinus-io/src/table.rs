@@ -138,4 +138,14 @@ mod tests {
             assert!(told.starts_with(&format!("s.toml, {expected}")), "{to}: {told}");
         }
     }
+
+    #[test]
+    fn tables_without_bottom_are_refused() {
+        let lists = format!("share = {}{}", "[".repeat(100_000), "]".repeat(100_000));
+        let keys = format!("{} = 1", vec!["a"; 100_000].join("."));
+        for text in [lists, keys] {
+            let told = parse::<Scene>(&text, "s.toml").unwrap_err().to_string();
+            assert!(told.contains("recur"), "{told}");
+        }
+    }
 }

@@ -153,7 +153,7 @@ async function plan(ask) {
   const tab = await Tab.open(ask, "plan");
   const said = await tab.said("planned", /^Worked out/);
   writeFileSync(beside("set-up.toml"), await tab.evaluate(`document.getElementById("file-of-plan").value`));
-  const { distance, layouts } = JSON.parse(execFileSync(program, ["plan", beside("set-up.toml"), "--json"], { encoding: "utf8" }));
+  const { distance, layouts, battery } = JSON.parse(execFileSync(program, ["plan", beside("set-up.toml"), "--json"], { encoding: "utf8" }));
   const reach = await tab.evaluate(`document.getElementById("reach").textContent`);
   const told = `A distance (two spots)in 95 of 100 frames to ${distance.nearly_all_m.toFixed(1)} m, in half of them to ${distance.half_m.toFixed(1)} m`;
   hold(reach.includes(told), `the program says "${told}", the page "${reach}"`);
@@ -161,6 +161,8 @@ async function plan(ask) {
   const same = ([name, two, error, half], layout) =>
     name === layout.name && two === (100 * layout.two).toFixed(0) && error === layout.distance_error_m.toFixed(3) && half === layout.half_m.toFixed(1);
   hold(rows.length === layouts.length && rows.every((row, index) => same(row, layouts[index])), "layouts are not the program's", rows);
+  const light = await tab.evaluate(`document.getElementById("battery").textContent`);
+  hold(light.startsWith(`Light takes ${battery.light_w.toFixed(1)} W`), `the program has ${battery.light_w} W of light, the page "${light}"`);
   await tab.picture("plan.png");
   const wrong = `Object.assign(document.getElementById("file-of-plan"), { value: "exposure_us = -1" }), document.getElementById("ask").click()`;
   await tab.evaluate(wrong);

@@ -1,15 +1,17 @@
 // Two robots that fly where they are dragged, and what the camera sees of them.
 
-const SIZE = { width: 752, height: 480 };
 const SCALE_M = 16;
 const NEAREST_M = 0.7;
 const goals = [{}, {}]; // { x, y, z, heading_rad }, camera frame
 let robots = [];
 let flying = null; // the request for the next frame
-let flown = 0; // when the last one was asked for, ms
+let last = 0; // when the last one was asked for, ms
 
 /// The camera's size by its kind in the form.
-const sizeOf = () => (form.elements.camera.value === "464" ? { width: 960, height: 600 } : SIZE);
+function sizeOf() {
+  const { width, height } = form.elements.camera.selectedOptions[0].dataset;
+  return { width: Number(width), height: Number(height) };
+}
 
 /// Begins anew with what the form says; false where there is no such set-up.
 function takeOff() {
@@ -18,7 +20,7 @@ function takeOff() {
     complain(NO_SET_UP);
     return false;
   }
-  robots = JSON.parse(text(core.photinus_step(0)));
+  ({ robots } = JSON.parse(text(core.photinus_step(0))));
   robots.forEach(({ position_m: [x, y, z], heading_rad }, index) => {
     if (goals[index].x === undefined) goals[index] = { x, y, z, heading_rad };
     steer(index, {});
@@ -33,12 +35,13 @@ function steer(index, goal) {
 }
 
 function step(now_ms) {
-  const step_s = Math.min(0.1, Math.max(0.001, (now_ms - flown) / 1000));
-  flown = now_ms;
+  const step_s = Math.min(0.1, Math.max(0.001, (now_ms - last) / 1000));
+  last = now_ms;
   const begun = performance.now();
-  robots = JSON.parse(text(core.photinus_step(step_s)));
+  const flight = JSON.parse(text(core.photinus_step(step_s)));
   const rendered_ms = performance.now() - begun;
-  const time_s = core.photinus_time();
+  const { time_s } = flight;
+  robots = flight.robots;
   const told = locate(time_s);
   const size = sizeOf();
   drawPicture({ ...size, grey: pixels(size.width * size.height) }, told);
@@ -53,12 +56,15 @@ function keepFlying(now_ms) {
   flying = requestAnimationFrame(keepFlying);
 }
 
+function flyOn() {
+  at("pause").textContent = "Pause";
+  last = performance.now();
+  flying = requestAnimationFrame(keepFlying);
+}
+
 function fly() {
   land();
-  if (!takeOff()) return;
-  at("pause").textContent = "Pause";
-  flown = performance.now();
-  flying = requestAnimationFrame(keepFlying);
+  if (takeOff()) flyOn();
 }
 
 function land() {
@@ -67,12 +73,7 @@ function land() {
   at("pause").textContent = "Fly on";
 }
 
-at("pause").onclick = () => {
-  if (flying !== null) return land();
-  at("pause").textContent = "Pause";
-  flown = performance.now();
-  flying = requestAnimationFrame(keepFlying);
-};
+at("pause").onclick = () => (flying === null ? flyOn() : land());
 
 const chosen = () => Number(at("robot").value);
 function chooseRobot(index) {

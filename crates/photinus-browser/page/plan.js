@@ -2,48 +2,35 @@
 
 const wanted = at("wanted");
 const partsText = text(core.photinus_parts());
+const example = text(core.photinus_example());
 
 for (const kind of ["led", "filter", "lens", "sensor"]) {
   const names = [...partsText.matchAll(new RegExp(`^\\[${kind}\\.(.+)\\]$`, "gm"))].map(([, name]) => name);
   wanted.elements[kind].append(...names.map((name) => new Option(name)));
 }
 
-/// The form as the file that `photinus plan` takes.
+/// The form as the file that `photinus plan` takes: its example, with what the form says.
 function asFile() {
   const of = (name) => wanted.elements[name].value;
-  const sky = of("sky") === "night" ? `[sky]\nkind = "night"` : `[sky]\nkind = "${of("sky")}"\nsun_deg = ${of("sun")}`;
   const splay = of("leds") === "1" ? "0.0" : of("splay");
-  return `exposure_us = ${of("exposure")}
-
-[led]
-part = "${of("led")}"
-current_ma = ${of("current")}
-driver_efficiency = 0.85
-
-[filter]
-part = "${of("filter")}"
-
-[lens]
-part = "${of("lens")}"
-
-[sensor]
-part = "${of("sensor")}"
-
-[airframe]
-ring = { arms = ${of("arms")}, radius_m = ${of("radius")}, leds_per_arm = ${of("leds")}, splay_deg = ${splay} }
-
-${sky}
-
-[detector]
-contrast = 20
-
-[view]
-azimuth_deg = 35.0
-elevation_deg = 6.0
-
-[wanted]
-range_m = ${of("range")}
-`;
+  const said = {
+    "": { exposure_us: of("exposure") },
+    led: { part: `"${of("led")}"`, current_ma: of("current") },
+    filter: { part: `"${of("filter")}"` },
+    lens: { part: `"${of("lens")}"` },
+    sensor: { part: `"${of("sensor")}"` },
+    airframe: { ring: `{ arms = ${of("arms")}, radius_m = ${of("radius")}, leds_per_arm = ${of("leds")}, splay_deg = ${splay} }` },
+    sky: { kind: `"${of("sky")}"`, sun_deg: of("sun") },
+    wanted: { range_m: of("range") },
+  };
+  let table = "";
+  const line = (written) => {
+    table = /^\[(.+)\]/.exec(written)?.[1] ?? table;
+    const key = /^(\w+) =/.exec(written)?.[1];
+    const value = said[table]?.[key];
+    return value === undefined ? written : `${key} = ${value}`;
+  };
+  return example.split("\n").map(line).join("\n");
 }
 
 /// Works out a plan where it stops nothing else: a worker's own core.
@@ -82,7 +69,7 @@ async function plan() {
 
 const DEG = 180 / Math.PI;
 
-function showPlan({ direction, distance, yaw_turn_rad, over_distance: over, layouts, eyes }) {
+function showPlan({ direction, distance, yaw_turn_rad, over_distance: over, layouts, battery, eyes }) {
   const reach = ({ nearly_all_m, half_m }) =>
     (nearly_all_m > 0 ? `in 95 of 100 frames to ${fixed(nearly_all_m, 1)} m, in half of them to ` : "in half of all frames to ") + `${fixed(half_m, 1)} m`;
   const turn = Math.round(DEG * yaw_turn_rad);
@@ -116,6 +103,10 @@ function showPlan({ direction, distance, yaw_turn_rad, over_distance: over, layo
       fixed(DEG * layout.yaw_turn_rad, 0),
     ]),
   );
+  at("battery").textContent = battery
+    ? `Light takes ${fixed(battery.light_w, 1)} W, ${fixed(100 * battery.share, 1)} % of hovering: ${fixed(battery.lost_min, 1)} of ` +
+      `${fixed(battery.dark_min, 0)} min are lost; half of it with words that are on half of the time.`
+    : "";
   at("eyes").textContent =
     `Eyes: ${fixed(eyes.at_assessment_w_m2, 1)} W/m^2 of near ultraviolet at 0.2 m, ${eyes.risk_group ? `risk group ${eyes.risk_group}` : "exempt"} ` +
     `(IEC 62471:2006). Keep ${fixed(eyes.long_m)} m away to look into it for more than 1000 s, ${fixed(eyes.day_m)} m to work beside it for 8 h.`;

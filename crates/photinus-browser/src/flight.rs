@@ -5,13 +5,14 @@
 
 use std::sync::Arc;
 
-use nalgebra::{Isometry3, Rotation3, Translation3, Unit, Vector3};
+use nalgebra::{Isometry3, Rotation3, Translation3, Unit, UnitQuaternion, Vector3};
 use photinus::airframe::Airframe;
 use photinus::camera::Camera;
 use photinus_sim::background::{Daylight, Sky};
 use photinus_sim::occlusion::Solid;
 use photinus_sim::preset::{BLUEFOX_FIT, Preset, bluefox};
-use photinus_sim::snapshot::{LedLight, Looks, Moving, Vehicle};
+use photinus_sim::scene::mounting;
+use photinus_sim::snapshot::{LedLight, Moving, Vehicle};
 use photinus_sim::{CameraView, Renderer, Snapshot};
 use photinus_swarm::vehicle::{Autopilot, Build, State, Wanted};
 use serde::Serialize;
@@ -52,8 +53,14 @@ pub struct Goal {
 #[derive(Clone, Debug)]
 struct Robot {
     state: State,
-    goal_m: Vector3<f64>,
-    heading_rad: f64,
+    goal: Goal,
+}
+
+/// A frame's time since the flight began, and where every robot truly is.
+#[derive(Debug, Serialize)]
+struct Flown {
+    time_s: f64,
+    robots: Vec<Truth>,
 }
 
 /// Where a robot truly is: camera frame, as [`Goal`].
@@ -68,10 +75,9 @@ struct Truth {
 #[derive(Debug)]
 pub struct Flight {
     build: Build,
-    airframe: Arc<Airframe>,
-    hub: Arc<[Solid]>,
     robots: Vec<Robot>,
     renderer: Renderer,
+    /// The robots are its vehicles, in their order.
     world: Snapshot,
     exposure_s: f64,
     time_s: f64,
@@ -88,49 +94,43 @@ impl Flight {
             Behind::Overcast => Some(Sky::Overcast),
             Behind::Clear => Some(Sky::Clear),
         };
-        let camera = Isometry3::from_parts(Translation3::identity(), world_from_camera().into());
+        let camera = Isometry3::from_parts(Translation3::identity(), world_from_camera());
+        let build = Build::default();
+        let hover = |goal: &Goal| {
+            let state = State::hover(&build, world_from_camera() * goal.position_m, goal.heading_rad);
+            Robot { state, goal: *goal }
+        };
+        let robots: Vec<Robot> = goals.iter().map(hover).collect();
+        let leds = vec![LedLight::steady(); airframe.leds().len()];
+        let (airframe, solids): (_, Arc<[Solid]>) = (Arc::new(airframe), Arc::new([HUB]));
+        let vehicle = |(id, robot): (u32, &Robot)| Vehicle {
+            id,
+            airframe: Arc::clone(&airframe),
+            solids: Arc::clone(&solids),
+            looks: Arc::default(),
+            motion: Moving::still(robot.state.pose()),
+            leds: leds.clone(),
+        };
         let world = Snapshot {
             exposure: renderer.view().exposure(0.0, exposure_s),
             camera: Moving::still(camera),
-            vehicles: Vec::new(),
+            vehicles: (1..).zip(&robots).map(vehicle).collect(),
             emitter,
             daylight: sky.map(|sky| Daylight::new(sky, Unit::new_normalize(SUN))),
             water: None,
             lamps: Vec::new(),
         };
-        let build = Build::default();
-        let hover = |goal: &Goal| {
-            let goal_m = world_from_camera() * goal.position_m;
-            let state = State::hover(&build, goal_m, goal.heading_rad);
-            Robot { state, goal_m, heading_rad: goal.heading_rad }
-        };
-        Self {
-            build,
-            airframe: Arc::new(airframe),
-            hub: Arc::new([HUB]),
-            robots: goals.iter().map(hover).collect(),
-            renderer,
-            world,
-            exposure_s,
-            time_s: 0.0,
-            frame: 0,
-        }
+        Self { build, robots, renderer, world, exposure_s, time_s: 0.0, frame: 0 }
     }
 
     /// Says where a robot is wanted from now on; nothing where there is no such robot.
     pub fn steer(&mut self, robot: usize, goal: &Goal) {
         if let Some(robot) = self.robots.get_mut(robot) {
-            robot.goal_m = world_from_camera() * goal.position_m;
-            robot.heading_rad = goal.heading_rad;
+            robot.goal = *goal;
         }
     }
 
-    /// Seconds since it began.
-    pub fn time_s(&self) -> f64 {
-        self.time_s
-    }
-
-    /// Flies on for `step_s` and renders what the camera sees then into the picture. Where the robots truly are is told as JSON.
+    /// Flies on for `step_s` and renders what the camera sees then into the picture. When that is and where the robots truly are is told as JSON.
     pub fn fly(&mut self, step_s: f64, picture: &mut [u8]) -> Option<String> {
         let steps = libm::ceil(step_s / STEP_S).max(1.0);
         for _ in 0..steps as usize {
@@ -139,18 +139,13 @@ impl Flight {
         self.time_s += step_s;
         self.frame += 1;
         self.world.exposure = self.renderer.view().exposure(self.time_s, self.exposure_s);
-        self.world.vehicles.clear();
-        self.world.vehicles.extend((1..).zip(&self.robots).map(|(id, robot)| Vehicle {
-            id,
-            airframe: Arc::clone(&self.airframe),
-            solids: Arc::clone(&self.hub),
-            looks: Arc::new(Looks::default()),
-            motion: robot.state.kinematics(&self.build, &Vector3::zeros()).during(0.0, self.exposure_s),
-            leds: vec![LedLight::steady(); self.airframe.leds().len()],
-        }));
+        for (vehicle, robot) in self.world.vehicles.iter_mut().zip(&self.robots) {
+            vehicle.motion =
+                robot.state.kinematics(&self.build, &Vector3::zeros()).during(0.0, self.exposure_s);
+        }
         let rendered = self.renderer.render(&self.world, self.frame);
         picture.copy_from_slice(rendered.image.pixels());
-        told::json(&self.robots.iter().map(Robot::truth).collect::<Vec<_>>())
+        told::json(&Flown { time_s: self.time_s, robots: self.robots.iter().map(Robot::truth).collect() })
     }
 }
 
@@ -158,12 +153,13 @@ impl Robot {
     fn step(&mut self, build: &Build, step_s: f64) {
         let State { position_m, velocity_m_s, attitude, .. } = self.state;
         let heading_rad = self.state.heading_rad();
-        let wanted = (self.goal_m - position_m) * (STIFFNESS_PER_S * STIFFNESS_PER_S)
+        let goal_m = world_from_camera() * self.goal.position_m;
+        let pull_m_s2 = (goal_m - position_m) * (STIFFNESS_PER_S * STIFFNESS_PER_S)
             - velocity_m_s * (2.0 * STIFFNESS_PER_S);
         let level = Rotation3::from_axis_angle(&Vector3::z_axis(), heading_rad);
-        let missing_rad = libm::remainder(self.heading_rad - heading_rad, core::f64::consts::TAU);
+        let missing_rad = libm::remainder(self.goal.heading_rad - heading_rad, core::f64::consts::TAU);
         let wanted = Wanted {
-            acceleration_m_s2: level.inverse() * wanted,
+            acceleration_m_s2: level.inverse() * pull_m_s2,
             heading_rate_rad_s: HEADING_PER_S * missing_rad,
         };
         let command = Autopilot::default().command(build, &attitude, &wanted);
@@ -181,8 +177,8 @@ impl Robot {
 }
 
 /// Of a camera that looks level along x of the world.
-fn world_from_camera() -> Rotation3<f64> {
-    Rotation3::from_basis_unchecked(&[-Vector3::y(), -Vector3::z(), Vector3::x()])
+fn world_from_camera() -> UnitQuaternion<f64> {
+    mounting(0.0, 0.0, 0.0)
 }
 
 #[cfg(test)]
@@ -207,7 +203,7 @@ mod tests {
             let up = flight.robots[0].state.attitude * Vector3::z();
             most_tilted_rad = most_tilted_rad.max(up.angle(&Vector3::z()));
         }
-        assert!((flight.time_s() - 6.0).abs() < 1e-9 && most_tilted_rad > 0.1, "{most_tilted_rad}");
+        assert!((flight.time_s - 6.0).abs() < 1e-9 && most_tilted_rad > 0.1, "{most_tilted_rad}");
         let truth = flight.robots[0].truth();
         assert!((Vector3::from(truth.position_m) - goal.position_m).norm() < 0.05, "{truth:?}");
         assert!((truth.heading_rad - 0.5).abs() < 0.01, "{truth:?}");

@@ -6,10 +6,11 @@
 //! photinus_locate    the picture                                -> JSON: spots, neighbours, tracks
 //! photinus_fly       an exposure and a sky                      -> two robots before that camera
 //! photinus_steer     where a robot is wanted
-//! photinus_step      how much later it is                       -> the picture; JSON: where the robots truly are
+//! photinus_step      how much later it is                       -> the picture; JSON: when, and where the robots truly are
 //! photinus_text      room for text                              -> where the page writes it
 //! photinus_plan      a set-up as text                           -> JSON: its plan
 //! photinus_parts     the parts that set-ups may name, as text
+//! photinus_example   a set-up to begin with, as text
 //! photinus_told      where the JSON or the text is
 //! ```
 //!
@@ -129,7 +130,8 @@ pub extern "C" fn photinus_steer(robot: u32, x_m: f64, y_m: f64, z_m: f64, headi
     }
 }
 
-/// Flies on for `step_s`, 1 s at most, and renders the picture. The length of what is told: where the robots truly are.
+/// Flies on for `step_s`, 1 s at most, and renders the picture. The length of what is told: the seconds since the start, and where
+/// the robots truly are.
 #[expect(unsafe_code, reason = "a name for the page")]
 #[unsafe(no_mangle)]
 pub extern "C" fn photinus_step(step_s: f64) -> usize {
@@ -140,13 +142,6 @@ pub extern "C" fn photinus_step(step_s: f64) -> usize {
         };
         page.tell(told)
     })
-}
-
-/// Seconds that the robots have flown; not a number where none fly.
-#[expect(unsafe_code, reason = "a name for the page")]
-#[unsafe(no_mangle)]
-pub extern "C" fn photinus_time() -> f64 {
-    PAGE.with_borrow(|page| page.flight.as_ref().map_or(f64::NAN, Flight::time_s))
 }
 
 /// Room for text of so many bytes.
@@ -175,6 +170,13 @@ pub extern "C" fn photinus_plan() -> usize {
 #[unsafe(no_mangle)]
 pub extern "C" fn photinus_parts() -> usize {
     PAGE.with_borrow_mut(|page| page.tell(Some(photinus_plan::PARTS.to_owned())))
+}
+
+/// A set-up to begin with. The length of what is told.
+#[expect(unsafe_code, reason = "a name for the page")]
+#[unsafe(no_mangle)]
+pub extern "C" fn photinus_example() -> usize {
+    PAGE.with_borrow_mut(|page| page.tell(Some(photinus_plan::EXAMPLE.to_owned())))
 }
 
 /// Where the text of what was told begins.

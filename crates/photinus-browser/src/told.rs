@@ -46,7 +46,6 @@ struct Distance {
 #[derive(Clone, Copy, Debug, Serialize)]
 struct Followed {
     id: u64,
-    position_m: [f64; 3],
     velocity_m_s: [f64; 3],
 }
 
@@ -92,9 +91,5 @@ fn followed(neighbour: &Neighbour, tracked: &Tracked) -> Option<Followed> {
         neighbour.sightings.iter().filter(|spot| members.contains(spot)).count()
     };
     let track = tracked.tracks.iter().max_by_key(|track| shared(track)).filter(|track| shared(track) > 0)?;
-    Some(Followed {
-        id: track.id,
-        position_m: track.position_m.into(),
-        velocity_m_s: track.velocity_m_s.into(),
-    })
+    Some(Followed { id: track.id, velocity_m_s: track.velocity_m_s.into() })
 }

@@ -42,6 +42,13 @@ impl<'de> IntoDeserializer<'de, Refusal> for Key {
     }
 }
 
+impl Key {
+    fn name_a_kind<'de, V: Visitor<'de>>(self, visitor: V) -> Result<V::Value> {
+        let name: StringDeserializer<Refusal> = self.name.into_deserializer();
+        visitor.visit_enum(name).map_err(|refusal: Refusal| refusal.or_at(self.at))
+    }
+}
+
 /// A key is a text; where it means nothing, it says where it stands.
 impl<'de> Deserializer<'de> for Key {
     type Error = Refusal;
@@ -56,8 +63,7 @@ impl<'de> Deserializer<'de> for Key {
         _: &'static [&'static str],
         visitor: V,
     ) -> Result<V::Value> {
-        let name: StringDeserializer<Refusal> = self.name.into_deserializer();
-        visitor.visit_enum(name).map_err(|refusal: Refusal| refusal.or_at(self.at))
+        self.name_a_kind(visitor)
     }
 
     forward_to_deserialize_any! {
@@ -197,7 +203,7 @@ impl<'de> Deserializer<'de> for Tree {
         visitor: V,
     ) -> Result<V::Value> {
         match self.value {
-            Value::Text(name) => Key { at: self.at, name }.deserialize_enum("", &[], visitor),
+            Value::Text(name) => Key { at: self.at, name }.name_a_kind(visitor),
             Value::Table(entries) if entries.len() == 1 => {
                 let one = MapAccessDeserializer::new(MapDeserializer::new(entries.into_iter()));
                 visitor.visit_enum(one).map_err(|refusal: Refusal| refusal.or_at(self.at))

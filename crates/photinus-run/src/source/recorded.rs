@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use photinus_io::Result;
-use photinus_io::dataset::Dataset;
+use photinus_io::dataset::{Dataset, FrameRow};
 use photinus_io::frames::FrameSource;
 
 use super::{Next, Source};
@@ -15,8 +15,8 @@ pub struct Recorded {
     exposure_s: f64,
     /// When its clock showed 0 by ours, where it flies at its own pace.
     began: Option<Instant>,
-    /// From frame to frame, s.
-    gap_s: f64,
+    /// The shortest time from a frame to the next one.
+    least_gap: Duration,
     /// When the last frame was due.
     due: Option<Instant>,
     /// What is begun anew at its end, where that is wanted.
@@ -38,21 +38,18 @@ impl Recorded {
     /// cameras of a vehicle are given the same.
     pub fn new(dataset: &Dataset, camera: usize, began: Option<Instant>) -> Self {
         let exposure_s = dataset.cameras().get(camera).map_or(0.0, |camera| 1e-6 * camera.exposure_us);
-        let rows = dataset.cameras().get(camera).map_or(&[][..], |camera| &camera.frames);
-        let gap_s = rows
-            .first()
-            .zip(rows.last())
-            .map_or(0.0, |(first, last)| (last.time_s - first.time_s) / (rows.len() - 1).max(1) as f64);
+        let least_gap = least_gap(rows(dataset, camera));
         let frames = FrameSource::dataset_camera(dataset.clone(), camera);
-        Self { frames, exposure_s, began, gap_s, due: None, again: None }
+        Self { frames, exposure_s, began, least_gap, due: None, again: None }
     }
 
     /// Begins anew at its end, with times and numbers that go on. The seam is the mean of the gaps between frames.
     #[must_use]
     pub fn repeated(self, dataset: &Dataset, camera: usize) -> Self {
-        let rows = dataset.cameras().get(camera).map_or(&[][..], |camera| &camera.frames);
+        let rows = rows(dataset, camera);
         let (Some(first), Some(last)) = (rows.first(), rows.last()) else { return self };
-        let span_s = last.time_s - first.time_s + self.gap_s;
+        let gaps = (rows.len() - 1).max(1) as f64;
+        let span_s = (last.time_s - first.time_s) * (1.0 + 1.0 / gaps);
         let again = Again {
             dataset: dataset.clone(),
             camera,
@@ -63,11 +60,12 @@ impl Recorded {
         Self { again: Some(again), ..self }
     }
 
-    /// Waits until half of the gap to the next frame is over: a camera does not decode files, and who is at the frame before is not to be kept from it.
+    /// Waits half of the shortest gap after a frame: a camera does not decode files, and who is at that frame is not to be kept from it. No frame
+    /// is late for that, however the recording pauses.
     fn wait_to_read(&self) {
-        let half = Duration::try_from_secs_f64(0.5 * self.gap_s).unwrap_or_default();
-        let from = self.due.map(|due| due + half);
-        std::thread::sleep(from.unwrap_or_else(Instant::now).saturating_duration_since(Instant::now()));
+        if let Some(due) = self.due {
+            std::thread::sleep((due + self.least_gap / 2).saturating_duration_since(Instant::now()));
+        }
     }
 
     fn read(&mut self) -> Option<Result<Entry>> {
@@ -109,5 +107,37 @@ impl Source for Recorded {
             self.due = Some(due);
         }
         Next::Frame(entry)
+    }
+}
+
+/// The frames of a camera; none where there is no such camera.
+fn rows(dataset: &Dataset, camera: usize) -> &[FrameRow] {
+    dataset.cameras().get(camera).map_or(&[], |camera| &camera.frames)
+}
+
+/// The shortest time from a frame to the next one; nothing where times run backwards.
+fn least_gap(rows: &[FrameRow]) -> Duration {
+    let gaps_s = rows.windows(2).map(|pair| pair[1].time_s - pair[0].time_s);
+    Duration::try_from_secs_f64(gaps_s.fold(f64::INFINITY, f64::min)).unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_pause_keeps_no_frame_of_a_recording_from_being_read_in_time() {
+        let least = |times_s: &[f64]| {
+            let row = |(frame, &time_s): (u64, &f64)| FrameRow {
+                frame,
+                time_s,
+                image: "image.png".into(),
+                gravity: None,
+                line: 0,
+            };
+            least_gap(&(0..).zip(times_s).map(row).collect::<Vec<_>>())
+        };
+        assert_eq!(least(&[1.0, 1.25, 1.5, 61.5, 62.0]), Duration::from_millis(250));
+        assert_eq!([least(&[]), least(&[3.0]), least(&[3.0, 2.0])], [Duration::ZERO; 3]);
     }
 }

@@ -66,8 +66,9 @@ impl Pairs {
 pub(super) struct Branch {
     pub(super) pairs: Pairs,
     /// How much likelier than clutter, nats.
-    gain: f64,
-    pose: Pose,
+    pub(super) gain: f64,
+    /// Where the vehicle is with these spots, to first order.
+    pub(super) pose: Pose,
     /// Covariance of position, m, and attitude.
     covariance: Matrix6<f64>,
 }
@@ -101,14 +102,14 @@ impl Branches {
         }
     }
 
-    /// The ways in which spots are markers, the likeliest first, that of no spot among them; `signal_nats` is what it costs that a spot is a marker for what
+    /// Grows the ways in which spots are markers, the likeliest first, that of no spot among them; `signal_nats` is what it costs that a spot is a marker for what
     /// it blinks.
     pub(super) fn grow(
         &mut self,
         around: &Around<'_>,
         component: &Component,
         signal_nats: impl Fn(usize, usize) -> f64,
-    ) -> &[Branch] {
+    ) {
         let airframe = around.airframe;
         let camera_m = component.pose.camera_in_body_m();
         self.markers.clear();
@@ -122,7 +123,7 @@ impl Branches {
             pairs: Pairs::default(),
             gain: 0.0,
             pose: component.pose,
-            covariance: pose_covariance(component),
+            covariance: component.pose_covariance(),
         });
         for place in 0..self.markers.len() {
             let (intensity, marker) = self.markers[place];
@@ -130,6 +131,10 @@ impl Branches {
             let found = lit * if intensity < BRIGHT { 0.5 } else { 1.0 - around.missed };
             self.look_for(around, marker, found, &signal_nats);
         }
+    }
+
+    /// The ways that grew.
+    pub(super) fn grown(&self) -> &[Branch] {
         &self.all
     }
 
@@ -175,11 +180,6 @@ fn keep(best: &mut Vec<Branch>, branch: Branch) {
     let place = best.partition_point(|other| other.gain >= branch.gain);
     best.insert(place, branch);
     best.truncate(MOST_BRANCHES);
-}
-
-fn pose_covariance(component: &Component) -> Matrix6<f64> {
-    let place = |axis: usize| if axis < 3 { axis } else { axis + 3 };
-    Matrix6::from_fn(|line, column| component.covariance[(place(line), place(column))])
 }
 
 /// The direction in which a marker is expected.

@@ -3,7 +3,7 @@
 //! An error is [position, m; velocity, m/s; rotation in the body frame, rad], position and velocity along the camera's axes at the stamp, relative to the
 //! camera, which do not rotate.
 
-use nalgebra::{Matrix3, Rotation3, SMatrix, SVector, Vector3};
+use nalgebra::{Matrix3, Matrix3x6, Matrix6, Rotation3, SMatrix, SVector, Vector3};
 
 use crate::pose::{Pose, turn_of};
 
@@ -11,6 +11,9 @@ use crate::pose::{Pose, turn_of};
 pub(super) type Step = SVector<f64, 9>;
 /// Its covariance.
 pub(super) type Covariance = SMatrix<f64, 9, 9>;
+
+/// Where an error of the state has that of the pose: position and rotation.
+pub(super) const POSE: [usize; 6] = [0, 1, 2, 6, 7, 8];
 
 /// A normal distribution of the state, with a weight.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,6 +51,16 @@ impl Component {
         axes.fixed_view_mut::<3, 3>(6, 6).copy_from(symmetric.matrix());
         let pose = Pose { camera_from_body: self.pose.camera_from_body * symmetric, ..self.pose };
         Self { pose, covariance: axes.transpose() * self.covariance * axes, ..*self }
+    }
+
+    /// The covariance of the pose: position, m, and rotation.
+    pub(super) fn pose_covariance(&self) -> Matrix6<f64> {
+        Matrix6::from_fn(|line, column| self.covariance[(POSE[line], POSE[column])])
+    }
+
+    /// The covariance of the velocity with the pose.
+    pub(super) fn velocity_with_pose(&self) -> Matrix3x6<f64> {
+        Matrix3x6::from_fn(|axis, column| self.covariance[(axis + 3, POSE[column])])
     }
 
     /// The covariance of a part of the state: 0 position, 1 velocity, 2 attitude.

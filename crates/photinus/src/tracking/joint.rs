@@ -22,6 +22,8 @@ pub(super) struct Choice {
     pub(super) spots: Spots,
     /// Logarithm of its weight; that of not being seen is beside.
     pub(super) log_weight: f64,
+    /// Which of all ways it is.
+    pub(super) way: usize,
 }
 
 /// Room to add up in.

@@ -130,11 +130,16 @@ impl Stepper {
         for (vehicle, range) in self.first_predicted.windows(2).enumerate() {
             self.ways.may_screen(vehicle, &self.predicted[range[0]..range[1]]);
         }
-        for (vehicle, target) in before.targets.iter().enumerate() {
-            let components =
-                &self.predicted[self.first_predicted[vehicle]..self.first_predicted[vehicle + 1]];
-            self.ways.add_vehicle(&scene, vehicle, target, components);
+        let Self { predicted, first_predicted, ways, .. } = self;
+        let vehicle_at = |vehicle: usize| {
+            let range = first_predicted[vehicle]..first_predicted[vehicle + 1];
+            (&before.targets[vehicle], &predicted[range])
+        };
+        for vehicle in 0..before.targets.len() {
+            let (target, components) = vehicle_at(vehicle);
+            ways.add_vehicle(&scene, vehicle, target, components);
         }
+        ways.try_vehicles(&scene, vehicle_at);
         self.joint.explain(&self.ways.choices, &self.ways.log_unseen, model.settings.association);
         after.clear(moment.time_s, before.next_id);
         after.up = moment.up;

@@ -2,15 +2,18 @@
 //!
 //! The update of an error-state Kalman filter, iterated: down the sum of the prior's squared error and the measurement's cost, by Gauss and Newton; B. M.
 //! Bell, F. W. Cathey, "The iterated Kalman filter update as a Gauss-Newton method", IEEE Trans. Autom. Control 38 (1993). The measurement brings its
-//! robustness (Huber), markers that merge, and light. How likely it was is Laplace's integral around the summit, as for poses.
+//! robustness (Huber), markers that merge, and light. How likely it was is Laplace's integral around the summit, as for poses. No spot tells the velocity:
+//! the search is over the pose alone, and the velocity follows from what the prediction says about both.
 
-use super::component::{Component, Covariance, Step};
-use crate::pose::{Measurement, Normal};
+use nalgebra::{Matrix3x6, Matrix6, Rotation3, Vector6};
+
+use super::component::{Component, Covariance, POSE};
+use crate::pose::{Measurement, Normal, Pose, turn_of};
 
 /// Most steps to a summit.
 const MOST_STEPS: usize = 12;
 /// A step that gains less than this, nats, is the last.
-const SMALL_GAIN: f64 = 1e-6;
+const SMALL_GAIN: f64 = 1e-4;
 /// A step that does not gain is halved so often.
 const HALVINGS: usize = 4;
 
@@ -18,9 +21,12 @@ const HALVINGS: usize = 4;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Prior {
     pub(super) component: Component,
-    information: Covariance,
+    /// Of the pose.
+    information: Matrix6<f64>,
     /// Logarithm of the determinant of the information.
     log_determinant: f64,
+    /// What an error of the pose says of that of the velocity.
+    velocity_by_pose: Matrix3x6<f64>,
 }
 
 /// A state with a frame's spots.
@@ -36,23 +42,30 @@ pub(super) struct Updated {
 impl Prior {
     /// `None` where the matrix is not a covariance.
     pub(super) fn of(component: &Component) -> Option<Self> {
-        let (information, log_determinant) = inverse(component.covariance)?;
-        Some(Self { component: *component, information, log_determinant })
+        let (information, log_determinant) = inverse(component.pose_covariance())?;
+        let velocity_by_pose = component.velocity_with_pose() * information;
+        Some(Self { component: *component, information, log_determinant, velocity_by_pose })
     }
 
-    /// The state with a measurement, the nearest to `start`.
-    pub(super) fn update(&self, measurement: &Measurement<'_>, start: &Component) -> Option<Updated> {
+    /// The state with a measurement, the nearest to `start`; `None` also where its evidence is certain to be less than `least`.
+    pub(super) fn update(&self, measurement: &Measurement<'_>, start: &Pose, least: f64) -> Option<Updated> {
         let mut here = self.at(measurement, *start);
         for _ in 0..MOST_STEPS {
-            let step = -here.information().cholesky()?.solve(&here.gradient());
+            let factor = here.information().cholesky()?;
+            let step = -factor.solve(&here.gradient());
             let gain = -here.gradient().dot(&step);
             if gain.is_nan() || gain < SMALL_GAIN {
                 break;
             }
+            // The summit is about half of `gain` away, or all of it along Huber's lines; markers that are not seen add no evidence.
+            let log_spread = 0.5 * self.log_determinant - log_root(factor.l_dirty());
+            if log_spread - (here.nats - gain) < least {
+                return None;
+            }
             let mut length = 1.0;
             let mut next = None;
             for _ in 0..HALVINGS {
-                let there = self.at(measurement, here.state.stepped(&(step * length)));
+                let there = self.at(measurement, stepped(&here.pose, &(step * length)));
                 if there.nats < here.nats {
                     next = Some(there);
                     break;
@@ -65,65 +78,106 @@ impl Prior {
             }
         }
         let (covariance, log_determinant) = inverse(here.information())?;
-        let unseen = measurement.visibility_nats(&here.state.pose, here.normal.log_power);
+        let unseen = measurement.visibility_nats(&here.pose, here.normal.log_power);
         let log_evidence = 0.5 * (self.log_determinant + log_determinant) - here.nats - unseen;
-        if !log_evidence.is_finite() {
+        if !log_evidence.is_finite() || log_evidence < least {
             return None;
         }
-        let component = Component { covariance, ..here.state };
+        let component = self.with(&here, &covariance);
         Some(Updated { component, log_evidence, log_power: here.normal.log_power })
     }
 
-    fn at(&self, measurement: &Measurement<'_>, state: Component) -> Here<'_> {
-        let off = self.component.step_to(&state);
+    fn at(&self, measurement: &Measurement<'_>, pose: Pose) -> Here<'_> {
+        let off = step_to(&self.component.pose, &pose);
         let pull = self.information * off;
-        let normal = measurement.at(&state.pose);
-        Here { prior: self, state, nats: 0.5 * off.dot(&pull) + normal.nats, pull, normal }
+        let normal = measurement.at(&pose);
+        Here { prior: self, pose, nats: 0.5 * off.dot(&pull) + normal.nats, pull, normal }
+    }
+
+    /// The state whose pose is told with this covariance.
+    fn with(&self, here: &Here<'_>, covariance: &Matrix6<f64>) -> Component {
+        let by_pose = &self.velocity_by_pose;
+        let off = step_to(&self.component.pose, &here.pose);
+        let crossed = by_pose * covariance;
+        let known = by_pose * self.component.velocity_with_pose().transpose();
+        let velocity = self.component.block(1) - known + crossed * by_pose.transpose();
+        let mut whole = Covariance::zeros();
+        for (line, to_line) in POSE.into_iter().enumerate() {
+            for (column, to_column) in POSE.into_iter().enumerate() {
+                whole[(to_line, to_column)] = covariance[(line, column)];
+            }
+            for axis in 0..3 {
+                whole[(axis + 3, to_line)] = crossed[(axis, line)];
+                whole[(to_line, axis + 3)] = crossed[(axis, line)];
+            }
+        }
+        whole.fixed_view_mut::<3, 3>(3, 3).copy_from(&((velocity + velocity.transpose()) * 0.5));
+        Component {
+            pose: here.pose,
+            velocity_m_s: self.component.velocity_m_s + by_pose * off,
+            covariance: whole,
+            ..self.component
+        }
     }
 }
 
-/// A state on the way to the summit.
+/// A pose on the way to the summit.
 #[derive(Clone, Copy)]
 struct Here<'a> {
     prior: &'a Prior,
-    state: Component,
+    pose: Pose,
     nats: f64,
     /// The gradient of the prior's part.
-    pull: Step,
+    pull: Vector6<f64>,
     normal: Normal,
 }
 
 impl Here<'_> {
     /// Of a step of a pose the first three are in distances.
-    fn gradient(&self) -> Step {
-        let per_m = 1.0 / self.state.pose.position_m.norm();
-        let mut gradient = self.pull;
+    fn gradient(&self) -> Vector6<f64> {
+        let per_m = 1.0 / self.pose.position_m.norm();
+        let mut gradient = self.pull + self.normal.gradient;
         for axis in 0..3 {
-            gradient[axis] += self.normal.gradient[axis] * per_m;
-            gradient[axis + 6] += self.normal.gradient[axis + 3];
+            gradient[axis] = self.pull[axis] + self.normal.gradient[axis] * per_m;
         }
         gradient
     }
 
-    fn information(&self) -> Covariance {
-        let per_m = 1.0 / self.state.pose.position_m.norm();
+    fn information(&self) -> Matrix6<f64> {
+        let per_m = 1.0 / self.pose.position_m.norm();
         let scale = |axis: usize| if axis < 3 { per_m } else { 1.0 };
-        let place = |axis: usize| if axis < 3 { axis } else { axis + 3 };
-        let mut information = self.prior.information;
-        for column in 0..6 {
-            for line in 0..6 {
-                information[(place(line), place(column))] +=
-                    self.normal.information[(line, column)] * scale(line) * scale(column);
-            }
-        }
-        information
+        Matrix6::from_fn(|line, column| {
+            let own = self.normal.information[(line, column)] * scale(line) * scale(column);
+            self.prior.information[(line, column)] + own
+        })
     }
 }
 
+/// The pose after an error of it.
+fn stepped(pose: &Pose, step: &Vector6<f64>) -> Pose {
+    Pose {
+        position_m: pose.position_m + step.fixed_rows::<3>(0),
+        camera_from_body: pose.camera_from_body * Rotation3::new(step.fixed_rows::<3>(3).into_owned()),
+    }
+}
+
+/// The error of a pose that leads to another.
+fn step_to(from: &Pose, to: &Pose) -> Vector6<f64> {
+    let mut step = Vector6::zeros();
+    step.fixed_rows_mut::<3>(0).copy_from(&(to.position_m - from.position_m));
+    let turn = turn_of(&(from.camera_from_body.inverse() * to.camera_from_body));
+    step.fixed_rows_mut::<3>(3).copy_from(&turn);
+    step
+}
+
 /// The inverse of a symmetric positive matrix, symmetric, and the logarithm of the determinant of the inverse.
-fn inverse(matrix: Covariance) -> Option<(Covariance, f64)> {
+fn inverse(matrix: Matrix6<f64>) -> Option<(Matrix6<f64>, f64)> {
     let factor = matrix.cholesky()?;
-    let log_root: f64 = (0..9).map(|axis| libm::log(factor.l_dirty()[(axis, axis)])).sum();
     let inverse = factor.inverse();
-    Some(((inverse + inverse.transpose()) * 0.5, -2.0 * log_root))
+    Some(((inverse + inverse.transpose()) * 0.5, -2.0 * log_root(factor.l_dirty())))
+}
+
+/// Half the logarithm of the determinant of a matrix, by its Cholesky factor.
+fn log_root(factor: &Matrix6<f64>) -> f64 {
+    (0..6).map(|axis| libm::log(factor[(axis, axis)])).sum()
 }

@@ -88,6 +88,7 @@ fn joint_probabilities_are_those_of_all_ways_listed() {
                 vehicle: index / 3,
                 spots: bits.sample(&mut rng) & bits.sample(&mut rng),
                 log_weight: 2.0 * normal(&mut rng),
+                way: index,
             })
             .filter(|choice| choice.spots != 0)
             .collect();

@@ -9,9 +9,11 @@ use super::super::appearing::turned_next_to;
 use super::super::branches::Pairs;
 use super::super::component::{Component, Covariance, Step};
 use super::super::look::Appearance;
+use super::super::state::Target;
 use super::super::step::Model;
 use super::super::update::Prior;
-use super::{Origin, Scene, Way, Ways};
+use super::candidates::Candidate;
+use super::{Scene, Ways};
 use crate::pose::{Mode, Pose};
 
 /// A prediction whose yaw is less sure than this, rad, cannot tell markers apart by itself.
@@ -27,20 +29,22 @@ const WRONG: f64 = 1e-3;
 const ANEW_SHARE: f64 = 0.5;
 const ANEW_YAW_RAD: f64 = 1.0;
 impl Ways {
-    /// The ways that a neighbour's poses offer, where the prediction does not tell by itself which of its spots are which markers.
-    pub(super) fn begin_at_neighbour(
+    /// Gathers the ways that a neighbour's poses offer a distribution, where it does not tell by itself which of the neighbour's spots are which markers;
+    /// `first` is its first candidate.
+    pub(super) fn gather_at_neighbour(
         &mut self,
         scene: &Scene<'_>,
-        origin: &Origin<'_>,
+        first: usize,
+        predicted: &Component,
         appearance: &Appearance,
     ) {
         let Scene { model, moment, .. } = *scene;
-        let (members, predicted) = (moment.members(appearance), &origin.prior.component);
+        let members = moment.members(appearance);
         let is_whole = |pairs: &Pairs| {
             pairs.as_slice().len() == members.len() && members.iter().all(|&spot| pairs.has_spot(spot))
         };
         let is_sure = predicted.covariance[(8, 8)] < UNSURE_YAW_RAD * UNSURE_YAW_RAD;
-        if is_sure && self.tried.iter().any(is_whole) {
+        if is_sure && self.candidates[first..].iter().any(|own| is_whole(&own.pairs)) {
             return;
         }
         let turns = if members.iter().all(|&spot| moment.signals[spot].is_none()) {
@@ -57,27 +61,36 @@ impl Ways {
             if off_m.dot(&factor.solve(&off_m)) > NEIGHBOUR_GATE {
                 continue;
             }
-            let start = turned_next_to(model, Component { pose: mode.pose, ..*predicted }, predicted, turns);
-            let Some(pairs) = self.pairs_of(model, members, &start.pose) else { continue };
-            if !(is_sure && self.tried.iter().any(|tried| tried.is_same(&pairs))) {
-                self.tried.push(pairs);
-                self.try_way(scene, origin, pairs, start);
+            let start =
+                turned_next_to(model, Component { pose: mode.pose, ..*predicted }, predicted, turns).pose;
+            let Some(pairs) = self.pairs_of(model, members, &start) else { continue };
+            if !(is_sure && self.candidates[first..].iter().any(|own| own.pairs.is_same(&pairs))) {
+                self.add_candidate(pairs, start, f64::NEG_INFINITY);
             }
         }
     }
 
-    /// The ways to begin a track anew at a neighbour that shares spots with it, where none of its own ways explains all of them.
-    pub(super) fn begin_anew(
-        &mut self,
-        scene: &Scene<'_>,
-        vehicle: usize,
-        log_shown: f64,
-        appearance: &Appearance,
-    ) {
+    /// Adds to the spots that a vehicle may be seen by those of the neighbours at which it may begin anew.
+    pub(super) fn reach_neighbours(&mut self, scene: &Scene<'_>, vehicle: usize, target: &Target) {
+        let Scene { moment, .. } = *scene;
+        let gathered = self.reach[vehicle];
+        for appearance in moment.appearances.iter().filter(|own| own.may_be(target.vehicle)) {
+            let mut spots = Some(0);
+            for &spot in moment.members(appearance) {
+                spots = spots.and_then(|spots| Some(spots | self.bit_of(spot)?));
+            }
+            if let Some(spots) = spots.filter(|spots| spots & gathered != 0) {
+                self.reach[vehicle] |= spots;
+            }
+        }
+    }
+
+    /// Tries to begin a track anew at a neighbour that shares spots with it, where none of its own ways explains all of them.
+    pub(super) fn begin_anew(&mut self, scene: &Scene<'_>, vehicle: usize, appearance: &Appearance) {
         let Scene { model, moment, .. } = *scene;
         let members = moment.members(appearance);
-        let shared = |way: &Way| members.iter().filter(|&&spot| way.pairs.has_spot(spot)).count();
-        let most = self.of(vehicle).map(|(_, way)| shared(way)).max().unwrap_or(0);
+        let shared = |own: &Candidate| members.iter().filter(|&&spot| own.pairs.has_spot(spot)).count();
+        let most = self.candidates[self.gathered(vehicle)].iter().map(shared).max().unwrap_or(0);
         if most == 0 || most == members.len() {
             return;
         }
@@ -85,10 +98,11 @@ impl Ways {
             moment.modes(appearance).iter().take_while(|mode| mode.weight > LEAST_START).take(MOST_STARTS)
         {
             let Some(pairs) = self.pairs_of(model, members, &mode.pose) else { continue };
+            let Some(spots) = self.spots_of(&pairs) else { continue };
             let Some(prior) = Prior::of(&anew(model, mode)) else { continue };
-            let log_weight = log_shown + libm::log(WRONG * mode.weight);
-            let origin = Origin { vehicle, from: usize::MAX, log_weight, prior: &prior };
-            self.try_way(scene, &origin, pairs, prior.component);
+            let log_weight = self.log_shown[vehicle] + libm::log(WRONG * mode.weight);
+            let anew = Candidate { from: None, pairs, spots, start: mode.pose, promise: 0.0 };
+            self.try_way(scene, vehicle, log_weight, &prior, &anew);
         }
     }
 

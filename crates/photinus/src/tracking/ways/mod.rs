@@ -5,12 +5,14 @@
 //! prediction, so that a neighbour located again is a way to look at the same spots and no second sight of them.
 
 mod blinking;
+mod candidates;
 mod located;
 mod screening;
+mod trying;
 
 use alloc::vec::Vec;
 
-use super::branches::{Around, Branches, Pairs};
+use super::branches::{Branches, Pairs};
 use super::component::Component;
 use super::existence::Existence;
 use super::joint::{Choice, Spots};
@@ -27,6 +29,7 @@ use crate::pose::{
 };
 use crate::ranging::Interval;
 use blinking::Blinking;
+use candidates::Candidate;
 use screening::Screens;
 
 /// Neighbours at half of the sphere.
@@ -52,6 +55,13 @@ pub(super) struct Scene<'a> {
     pub(super) interval_s: f64,
 }
 
+impl Scene<'_> {
+    /// Whether a vehicle exists, and is shown, before the frame is looked at.
+    fn existence(&self, target: &Target) -> Existence {
+        Existence::new(target.existence, target.hidden).after(self.interval_s, &self.model.settings)
+    }
+}
+
 /// One way in which a frame may show a vehicle.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Way {
@@ -59,8 +69,8 @@ pub(super) struct Way {
     pub(super) component: Component,
     pub(super) pairs: Pairs,
     pub(super) log_power: Option<f64>,
-    /// Which of the vehicle's distributions it comes from.
-    from: usize,
+    /// Which of the priors it comes from; `None` for none of them.
+    from: Option<usize>,
 }
 
 /// The ways of all vehicles.
@@ -69,8 +79,9 @@ pub(super) struct Ways {
     all: Vec<Way>,
     /// The same for the joint explanation.
     pub(super) choices: Vec<Choice>,
-    /// Logarithm of the weight that nothing of a vehicle is seen, by vehicle.
+    /// Logarithm of the weight that nothing of a vehicle is seen, and of that of being shown, by vehicle.
     pub(super) log_unseen: Vec<f64>,
+    log_shown: Vec<f64>,
     /// How likely none of its markers is seen if nothing hides it: by vehicle, and by its distributions.
     unseen_if_shown: Vec<f64>,
     unseen_of: Vec<f64>,
@@ -94,7 +105,17 @@ pub(super) struct Ways {
     blinking: Blinking,
     screens: Screens,
     branches: Branches,
-    tried: Vec<Pairs>,
+    /// What is tried, by vehicle, and from where.
+    priors: Vec<Prior>,
+    candidates: Vec<Candidate>,
+    first_candidate: Vec<usize>,
+    /// The spots that a vehicle may be seen by.
+    reach: Vec<Spots>,
+    /// The best promise of each vehicle that is still to be tried, and those that were.
+    promises: Vec<Option<f64>>,
+    tried: Vec<usize>,
+    /// The candidates of a vehicle, the most promising first.
+    order: Vec<usize>,
     markers: Vec<Option<u16>>,
     others: Vec<Bearing>,
     own: Vec<Observation>,
@@ -109,6 +130,7 @@ impl Ways {
             all: Vec::with_capacity(256),
             choices: Vec::with_capacity(256),
             log_unseen: Vec::new(),
+            log_shown: Vec::new(),
             unseen_if_shown: Vec::new(),
             unseen_of: Vec::new(),
             first_unseen: Vec::new(),
@@ -127,7 +149,13 @@ impl Ways {
             blinking: Blinking::default(),
             screens: Screens::default(),
             branches: Branches::with_room(markers),
-            tried: Vec::with_capacity(16),
+            priors: Vec::with_capacity(32),
+            candidates: Vec::with_capacity(128),
+            first_candidate: Vec::new(),
+            reach: Vec::new(),
+            promises: Vec::new(),
+            tried: Vec::new(),
+            order: Vec::with_capacity(128),
             markers: Vec::new(),
             others: Vec::new(),
             own: Vec::new(),
@@ -136,10 +164,10 @@ impl Ways {
         }
     }
 
-    /// The ways of a vehicle with their places.
+    /// The ways of a vehicle with their places among the choices.
     pub(super) fn of(&self, vehicle: usize) -> impl Iterator<Item = (usize, &Way)> + Clone {
-        let own = self.choices.iter().zip(&self.all).enumerate();
-        own.filter(move |(_, (choice, _))| choice.vehicle == vehicle).map(|(index, (_, way))| (index, way))
+        let own = self.choices.iter().enumerate().filter(move |(_, choice)| choice.vehicle == vehicle);
+        own.map(|(index, choice)| (index, &self.all[choice.way]))
     }
 
     /// How likely none of a vehicle's markers is seen if nothing hides it.
@@ -164,6 +192,13 @@ impl Ways {
         self.screens.clear();
         self.choices.clear();
         self.log_unseen.clear();
+        self.log_shown.clear();
+        self.priors.clear();
+        self.candidates.clear();
+        self.first_candidate.clear();
+        self.reach.clear();
+        self.promises.clear();
+        self.tried.clear();
         self.unseen_if_shown.clear();
         self.unseen_of.clear();
         self.first_unseen.clear();
@@ -190,7 +225,7 @@ impl Ways {
         };
     }
 
-    /// Adds the ways of the next vehicle, whose distributions are predicted.
+    /// Gathers what is worth a try for the next vehicle, whose distributions are predicted.
     pub(super) fn add_vehicle(
         &mut self,
         scene: &Scene<'_>,
@@ -198,29 +233,49 @@ impl Ways {
         target: &Target,
         components: &[Component],
     ) {
-        let Scene { model, moment, interval_s, .. } = *scene;
         self.prepare(scene, target, components);
         self.first_unseen.push(self.unseen_of.len());
-        let existence = Existence::new(target.existence, target.hidden).after(interval_s, &model.settings);
-        let log_shown = libm::log(existence.shown.max(f64::MIN_POSITIVE));
+        self.first_candidate.push(self.candidates.len());
+        self.reach.push(0);
         let mut unseen_if_shown = 0.0;
-        for (from, component) in components.iter().enumerate() {
+        for component in components {
             let unseen = self.unseen(scene, vehicle, target, component);
             self.unseen_of.push(unseen);
             unseen_if_shown += component.weight * unseen;
-            let Some(prior) = Prior::of(component) else { continue };
-            let log_weight = log_shown + libm::log(component.weight);
-            let way = Origin { vehicle, from, log_weight, prior: &prior };
-            self.grow(scene, &way);
-            for appearance in moment.appearances.iter().filter(|own| own.may_be(target.vehicle)) {
-                self.begin_at_neighbour(scene, &way, appearance);
-            }
+            self.gather(scene, vehicle, target, component);
         }
-        for appearance in moment.appearances.iter().filter(|own| own.may_be(target.vehicle)) {
-            self.begin_anew(scene, vehicle, log_shown, appearance);
-        }
+        let existence = scene.existence(target);
         self.unseen_if_shown.push(unseen_if_shown);
         self.log_unseen.push(libm::log(existence.unseen(unseen_if_shown)));
+        self.log_shown.push(libm::log(existence.shown.max(f64::MIN_POSITIVE)));
+        self.reach_neighbours(scene, vehicle, target);
+        let own = self.candidates[self.gathered(vehicle)].iter().map(|candidate| candidate.promise);
+        self.promises.push(own.reduce(f64::max));
+    }
+
+    /// Tries what was gathered for all vehicles, the most promising first: what that one is seen by spares the others most of it.
+    pub(super) fn try_vehicles<'a>(
+        &mut self,
+        scene: &Scene<'_>,
+        vehicles: impl Fn(usize) -> (&'a Target, &'a [Component]),
+    ) {
+        while let Some(vehicle) = self.most_promising() {
+            self.promises[vehicle] = None;
+            let (target, components) = vehicles(vehicle);
+            self.prepare(scene, target, components);
+            self.try_gathered(scene, vehicle);
+            for appearance in scene.moment.appearances.iter().filter(|own| own.may_be(target.vehicle)) {
+                self.begin_anew(scene, vehicle, appearance);
+            }
+            self.tried.push(vehicle);
+        }
+        self.choices.sort_unstable_by_key(|choice| (choice.vehicle, choice.way));
+    }
+
+    fn most_promising(&self) -> Option<usize> {
+        let promises = self.promises.iter().enumerate();
+        let left = promises.filter_map(|(vehicle, promise)| Some((vehicle, (*promise)?)));
+        left.max_by(|a, b| a.1.total_cmp(&b.1).then(b.0.cmp(&a.0))).map(|(vehicle, _)| vehicle)
     }
 
     /// What spots are against this vehicle, whose markers are where the airframe says but for the prior's sigma.
@@ -264,71 +319,11 @@ impl Ways {
         self.light(scene, vehicle, component, &component.pose);
         self.markers.clear();
         self.markers.resize(self.observations.len(), None);
-        self.gather_others(scene, component);
+        self.gather_others(scene, &component.pose);
         let nats = self.measured(scene, &component.pose, |measurement| {
             measurement.visibility_nats(&component.pose, target.log_power)
         });
         libm::exp(-nats)
-    }
-
-    /// The ways that the prediction offers.
-    fn grow(&mut self, scene: &Scene<'_>, origin: &Origin<'_>) {
-        let Scene { model, moment, .. } = *scene;
-        self.light(scene, origin.vehicle, &origin.prior.component, &origin.prior.component.pose);
-        let around = Around {
-            airframe: &model.airframe,
-            observations: &self.observations,
-            whitened: &self.whitened,
-            lit: &self.lit,
-            missed: model.pose.missed,
-        };
-        let who = self.who;
-        let signal_nats = |spot, marker| signal_nats(model, moment, who, spot, marker);
-        let grown = self.branches.grow(&around, &origin.prior.component, signal_nats);
-        self.tried.clear();
-        self.tried
-            .extend(grown.iter().map(|branch| branch.pairs).filter(|pairs| !pairs.as_slice().is_empty()));
-        for index in 0..self.tried.len() {
-            self.try_way(scene, origin, self.tried[index], origin.prior.component);
-        }
-    }
-
-    /// Updates a vehicle with a way, and keeps it.
-    fn try_way(&mut self, scene: &Scene<'_>, origin: &Origin<'_>, pairs: Pairs, start: Component) {
-        let Scene { model, moment, .. } = *scene;
-        self.markers.clear();
-        self.markers.resize(self.observations.len(), None);
-        let (mut spots, mut signals): (Spots, f64) = (0, 0.0);
-        for &(spot, marker) in pairs.as_slice() {
-            self.markers[usize::from(spot)] = Some(marker);
-            let Some(bit) = self.bit(usize::from(spot)) else { return };
-            spots |= 1 << bit;
-            signals += signal_nats(model, moment, self.who, usize::from(spot), usize::from(marker));
-        }
-        self.gather_others(scene, &start);
-        self.light(scene, origin.vehicle, &origin.prior.component, &start.pose);
-        let updated =
-            self.measured(scene, &start.pose, |measurement| origin.prior.update(measurement, &start));
-        let Some(updated) = updated else { return };
-        let Origin { vehicle, from, log_weight, .. } = *origin;
-        if self.all.iter().zip(&self.choices).any(|(way, choice)| {
-            (choice.vehicle, choice.spots, way.from) == (vehicle, spots, from)
-                && is_same(&way.component, &updated.component)
-        }) {
-            return;
-        }
-        let log_weight = log_weight + updated.log_evidence + self.clutter_nats - signals;
-        self.all.push(Way { component: updated.component, pairs, log_power: updated.log_power, from });
-        self.choices.push(Choice { vehicle, spots, log_weight });
-    }
-
-    /// The bit of a spot; `None` where there are none left.
-    fn bit(&mut self, spot: usize) -> Option<u32> {
-        if self.bits[spot].is_none() && self.used_bits < Spots::BITS {
-            self.bits[spot] = Some(self.used_bits);
-            self.used_bits += 1;
-        }
-        self.bits[spot]
     }
 
     /// Does something with what the spots say under the assignment in `markers`.
@@ -354,9 +349,9 @@ impl Ways {
     }
 
     /// The directions of spots near a vehicle that are not its own.
-    fn gather_others(&mut self, scene: &Scene<'_>, component: &Component) {
-        let distance_m = component.pose.position_m.norm();
-        let ahead = component.pose.position_m / distance_m;
+    fn gather_others(&mut self, scene: &Scene<'_>, near: &Pose) {
+        let distance_m = near.position_m.norm();
+        let ahead = near.position_m / distance_m;
         let reach_rad = NEAR_RADII * scene.model.airframe.max_radius_m() / distance_m;
         self.others.clear();
         for (spot, marker) in self.markers.iter().enumerate() {
@@ -366,15 +361,6 @@ impl Ways {
             }
         }
     }
-}
-
-/// Where a way comes from.
-struct Origin<'a> {
-    vehicle: usize,
-    from: usize,
-    /// Logarithm of how likely the vehicle is shown, as this distribution.
-    log_weight: f64,
-    prior: &'a Prior,
 }
 
 /// Whether a vehicle is known across the line of sight to less than its radius: else it may be beside what stands before it as well as behind, and a
@@ -403,11 +389,4 @@ fn signal_nats(model: &Model, moment: &Moment, who: Option<u32>, spot: usize, ma
     let Some(told) = told else { return 0.0 };
     let probability = if carries(told.signal) { told.probability } else { 1.0 - told.probability };
     (-libm::log(probability.max(1e-9))).clamp(0.0, WRONG_SIGNAL_NATS)
-}
-
-/// Whether two searches ended at one summit.
-fn is_same(a: &Component, b: &Component) -> bool {
-    let moved = (a.pose.position_m - b.pose.position_m).norm() / a.pose.position_m.norm();
-    let turn = (a.pose.camera_from_body.matrix() - b.pose.camera_from_body.matrix()).norm();
-    moved < 1e-2 && turn < 3e-2
 }

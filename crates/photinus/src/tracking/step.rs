@@ -73,7 +73,7 @@ pub(super) struct Stepper {
     /// By vehicle, one after the other.
     predicted: Vec<Component>,
     first_predicted: Vec<usize>,
-    ways: Ways,
+    pub(super) ways: Ways,
     joint: Joint,
     /// How likely each sighting is a vehicle's.
     claimed: Vec<f64>,

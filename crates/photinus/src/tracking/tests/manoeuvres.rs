@@ -182,3 +182,40 @@ fn joint_association_is_honest_where_the_nearest_is_not() {
     assert!(scores[0].switches <= scores[1].switches);
     assert!(scores[0].nees < 4.0 && scores[1].nees > 8.0);
 }
+
+/// Ways that are given up early against all of them tried to the end, where vehicles pass each other.
+#[test]
+fn ways_that_are_given_up_count_for_nothing() {
+    for airframe in [hexarotor(), quadrotor()] {
+        let mut few = Observer::new(airframe.clone(), Settings::default());
+        let mut all = Observer::new(airframe, Settings::default());
+        all.tracker.stepper.ways.nothing_nats = f64::INFINITY;
+        let mut worst: f64 = 0.0;
+        let mut tried = [0.0; 2];
+        for seed in 0..6_u32 {
+            [&mut few, &mut all].into_iter().for_each(Observer::forget);
+            for frame in 0..(2.4 * RATE_HZ) as u32 {
+                let time_s = f64::from(frame) / RATE_HZ;
+                let (vehicles, camera_from_world) = crossing(time_s);
+                let showing: Vec<Vehicle> = vehicles.iter().map(|(vehicle, _)| *vehicle).collect();
+                let mut rng = Pcg64::new(u128::from(seed), u128::from(frame));
+                let seen = look(&few.airframe, &showing, &camera_from_world, &mut rng);
+                let told = [&mut few, &mut all].map(|observer| {
+                    observer.see(time_s, &seen, &camera_from_world, &mut rng.clone()).unwrap()
+                });
+                assert_eq!(told[0].tracks.len(), told[1].tracks.len(), "seed {seed} frame {frame}");
+                for (own, other) in told[0].tracks.iter().zip(&told[1].tracks) {
+                    assert_eq!(own.id, other.id);
+                    let off_m = own.position_m - other.position_m;
+                    worst = worst.max(nees(&off_m, &other.position_covariance_m2).sqrt());
+                }
+                for (sum, observer) in tried.iter_mut().zip([&few, &all]) {
+                    *sum += observer.tracker.stepper.ways.choices.len() as f64;
+                }
+            }
+        }
+        println!("{worst:.1e} sigma, {tried:?}");
+        assert!(worst < 0.01, "{worst} sigma");
+        assert!(tried[0] < 0.7 * tried[1], "{tried:?}");
+    }
+}

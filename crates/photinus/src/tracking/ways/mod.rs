@@ -31,6 +31,7 @@ use crate::ranging::Interval;
 use blinking::Blinking;
 use candidates::Candidate;
 use screening::Screens;
+use trying::NOTHING_NATS;
 
 /// Neighbours at half of the sphere.
 const FIELD_SR: f64 = core::f64::consts::TAU;
@@ -114,6 +115,8 @@ pub(super) struct Ways {
     /// The best promise of each vehicle that is still to be tried, and those that were.
     promises: Vec<Option<f64>>,
     tried: Vec<usize>,
+    /// A way that is this much less likely than one in its place, nats, counts for nothing.
+    pub(in crate::tracking) nothing_nats: f64,
     /// The candidates of a vehicle, the most promising first.
     order: Vec<usize>,
     markers: Vec<Option<u16>>,
@@ -155,6 +158,7 @@ impl Ways {
             reach: Vec::new(),
             promises: Vec::new(),
             tried: Vec::new(),
+            nothing_nats: NOTHING_NATS,
             order: Vec::with_capacity(128),
             markers: Vec::new(),
             others: Vec::new(),

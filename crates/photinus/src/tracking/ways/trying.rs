@@ -10,8 +10,8 @@ use super::super::update::Prior;
 use super::candidates::Candidate;
 use super::{Scene, Way, Ways, signal_nats};
 
-/// A way that is this much less likely than such another, nats, counts for nothing: vehicles are concluded without it, too (`reduction`).
-const NOTHING_NATS: f64 = 9.3;
+/// What is this much less likely, nats, goes: vehicles are concluded without it, too (`reduction`).
+pub(super) const NOTHING_NATS: f64 = 9.3;
 
 impl Ways {
     /// Tries what was gathered for a vehicle, the most promising first.
@@ -52,7 +52,7 @@ impl Ways {
         self.light(scene, vehicle, &prior.component, start);
         let log_weight = log_weight + self.clutter_nats - signals;
         let instead = self.likeliest_instead(vehicle, spots).max(self.worth_to_others(vehicle, spots));
-        let least = instead - NOTHING_NATS - log_weight;
+        let least = instead - self.nothing_nats - log_weight;
         let updated = self.measured(scene, start, |measurement| prior.update(measurement, start, least));
         let Some(updated) = updated else { return };
         if self.own(vehicle).any(|(choice, way)| {

@@ -12,7 +12,7 @@ use super::look::Moment;
 use super::reduction::reduce;
 use super::state::{MOST_TARGETS, State, Target};
 use super::step::Model;
-use crate::pose::{Mode, turn_of};
+use crate::pose::{Mode, Pose};
 
 /// A neighbour less likely than this to be new and there is none.
 const LEAST: f64 = 0.1;
@@ -98,13 +98,14 @@ fn begin(model: &Model, mode: &Mode, first: Option<&Component>, turns: usize) ->
         velocity_m_s: nalgebra::Vector3::zeros(),
         covariance,
     };
-    first.map_or(begun, |first| turned_next_to(model, begun, first, turns))
+    let turn = first.and_then(|first| turn_next_to(model, &begun.pose, &first.pose, turns));
+    turn.map_or(begun, |turn| begun.turned(&model.symmetry.turn(turn)))
 }
 
-/// The same state with the yaw next to another's, of those that the airframe's symmetry makes equal.
-pub(super) fn turned_next_to(model: &Model, state: Component, to: &Component, turns: usize) -> Component {
-    let between = to.pose.camera_from_body.inverse() * state.pose.camera_from_body;
-    let off = |turn: usize| turn_of(&(between * model.symmetry.turn(turn))).norm_squared();
-    let nearest = (0..turns).min_by(|a, b| off(*a).total_cmp(&off(*b)));
-    nearest.map_or(state, |turn| state.turned(&model.symmetry.turn(turn)))
+/// The turn of the airframe's symmetry that brings an attitude next to another one, of the first so many.
+pub(super) fn turn_next_to(model: &Model, pose: &Pose, to: &Pose, turns: usize) -> Option<usize> {
+    let between = to.camera_from_body.inverse() * pose.camera_from_body;
+    // The smaller an angle, the larger the trace of its matrix.
+    let near = |turn: usize| (between * model.symmetry.turn(turn)).matrix().trace();
+    (0..turns).rev().max_by(|a, b| near(*a).total_cmp(&near(*b)))
 }

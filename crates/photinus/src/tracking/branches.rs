@@ -5,11 +5,9 @@
 
 use alloc::vec::Vec;
 
-use nalgebra::{
-    Matrix2, Matrix2x6, Matrix3, Matrix3x6, Matrix6, Matrix6x2, Rotation3, SVector, Vector2, Vector3,
-};
+use nalgebra::{Matrix2, Matrix2x6, Matrix3, Matrix3x6, Matrix6, Matrix6x2, Vector2, Vector3};
 
-use super::component::Component;
+use super::component::{Component, pose_after};
 use crate::airframe::Airframe;
 use crate::pose::{Observation, Pose, Whitened};
 
@@ -240,12 +238,7 @@ impl Predicted {
 impl Branch {
     /// The pose as a spot has it.
     fn followed(&self, innovation: &Innovation) -> Self {
-        let step: SVector<f64, 6> = -(innovation.gain * innovation.residual);
-        let turn = step.fixed_rows::<3>(3).into_owned();
-        let pose = Pose {
-            position_m: self.pose.position_m + step.fixed_rows::<3>(0),
-            camera_from_body: self.pose.camera_from_body * Rotation3::new(turn),
-        };
+        let pose = pose_after(&self.pose, &-(innovation.gain * innovation.residual));
         let covariance = self.covariance - innovation.gain * innovation.by_pose * self.covariance;
         Self { pose, covariance: (covariance + covariance.transpose()) * 0.5, ..*self }
     }

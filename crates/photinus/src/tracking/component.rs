@@ -3,13 +3,15 @@
 //! An error is [position, m; velocity, m/s; rotation in the body frame, rad], position and velocity along the camera's axes at the stamp, relative to the
 //! camera, which do not rotate.
 
-use nalgebra::{Matrix3, Matrix3x6, Matrix6, Rotation3, SMatrix, SVector, Vector3};
+use nalgebra::{Matrix3, Matrix3x6, Matrix6, Rotation3, SMatrix, SVector, Vector3, Vector6};
 
 use crate::pose::{Pose, turn_of};
 
 /// An error of the state.
 pub(super) type Step = SVector<f64, 9>;
-/// Its covariance.
+/// Its part that is the pose's: [position, m; rotation in the body frame, rad].
+pub(super) type PoseStep = Vector6<f64>;
+/// The covariance of an error of the state.
 pub(super) type Covariance = SMatrix<f64, 9, 9>;
 
 /// Where an error of the state has that of the pose: position and rotation.
@@ -27,21 +29,17 @@ pub(super) struct Component {
 impl Component {
     /// The same, elsewhere.
     pub(super) fn stepped(&self, step: &Step) -> Self {
-        let part = |first: usize| step.fixed_rows::<3>(first).into_owned();
-        let pose = Pose {
-            position_m: self.pose.position_m + part(0),
-            camera_from_body: self.pose.camera_from_body * Rotation3::new(part(6)),
-        };
-        Self { pose, velocity_m_s: self.velocity_m_s + part(3), ..*self }
+        let of_pose = PoseStep::from_fn(|axis, _| step[POSE[axis]]);
+        let velocity_m_s = self.velocity_m_s + step.fixed_rows::<3>(3);
+        Self { pose: pose_after(&self.pose, &of_pose), velocity_m_s, ..*self }
     }
 
     /// The step that leads to another.
     pub(super) fn step_to(&self, other: &Self) -> Step {
+        let of_pose = pose_step(&self.pose, &other.pose);
         let mut step = Step::zeros();
-        step.fixed_rows_mut::<3>(0).copy_from(&(other.pose.position_m - self.pose.position_m));
+        POSE.into_iter().zip(of_pose.iter()).for_each(|(place, own)| step[place] = *own);
         step.fixed_rows_mut::<3>(3).copy_from(&(other.velocity_m_s - self.velocity_m_s));
-        let turn = turn_of(&(self.pose.camera_from_body.inverse() * other.pose.camera_from_body));
-        step.fixed_rows_mut::<3>(6).copy_from(&turn);
         step
     }
 
@@ -67,6 +65,24 @@ impl Component {
     pub(super) fn block(&self, part: usize) -> Matrix3<f64> {
         self.covariance.fixed_view::<3, 3>(3 * part, 3 * part).into_owned()
     }
+}
+
+/// The pose after an error of it.
+pub(super) fn pose_after(pose: &Pose, step: &PoseStep) -> Pose {
+    let turn = Rotation3::new(step.fixed_rows::<3>(3).into_owned());
+    Pose {
+        position_m: pose.position_m + step.fixed_rows::<3>(0),
+        camera_from_body: pose.camera_from_body * turn,
+    }
+}
+
+/// The error of a pose that leads to another.
+pub(super) fn pose_step(from: &Pose, to: &Pose) -> PoseStep {
+    let mut step = PoseStep::zeros();
+    step.fixed_rows_mut::<3>(0).copy_from(&(to.position_m - from.position_m));
+    let turn = turn_of(&(from.camera_from_body.inverse() * to.camera_from_body));
+    step.fixed_rows_mut::<3>(3).copy_from(&turn);
+    step
 }
 
 /// The one normal distribution with the mean and covariance of several, at their weight; `None` of none.

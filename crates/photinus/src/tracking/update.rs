@@ -5,10 +5,10 @@
 //! robustness (Huber), markers that merge, and light. How likely it was is Laplace's integral around the summit, as for poses. No spot tells the velocity:
 //! the search is over the pose alone, and the velocity follows from what the prediction says about both.
 
-use nalgebra::{Matrix3x6, Matrix6, Rotation3, Vector6};
+use nalgebra::{Matrix3x6, Matrix6};
 
-use super::component::{Component, Covariance, POSE};
-use crate::pose::{Measurement, Normal, Pose, turn_of};
+use super::component::{Component, Covariance, POSE, PoseStep, pose_after, pose_step};
+use crate::pose::{Measurement, Normal, Pose};
 
 /// Most steps to a summit.
 const MOST_STEPS: usize = 12;
@@ -65,7 +65,7 @@ impl Prior {
             let mut length = 1.0;
             let mut next = None;
             for _ in 0..HALVINGS {
-                let there = self.at(measurement, stepped(&here.pose, &(step * length)));
+                let there = self.at(measurement, pose_after(&here.pose, &(step * length)));
                 if there.nats < here.nats {
                     next = Some(there);
                     break;
@@ -88,7 +88,7 @@ impl Prior {
     }
 
     fn at(&self, measurement: &Measurement<'_>, pose: Pose) -> Here<'_> {
-        let off = step_to(&self.component.pose, &pose);
+        let off = pose_step(&self.component.pose, &pose);
         let pull = self.information * off;
         let normal = measurement.at(&pose);
         Here { prior: self, pose, nats: 0.5 * off.dot(&pull) + normal.nats, pull, normal }
@@ -97,7 +97,7 @@ impl Prior {
     /// The state whose pose is told with this covariance.
     fn with(&self, here: &Here<'_>, covariance: &Matrix6<f64>) -> Component {
         let by_pose = &self.velocity_by_pose;
-        let off = step_to(&self.component.pose, &here.pose);
+        let off = pose_step(&self.component.pose, &here.pose);
         let crossed = by_pose * covariance;
         let known = by_pose * self.component.velocity_with_pose().transpose();
         let velocity = self.component.block(1) - known + crossed * by_pose.transpose();
@@ -128,13 +128,13 @@ struct Here<'a> {
     pose: Pose,
     nats: f64,
     /// The gradient of the prior's part.
-    pull: Vector6<f64>,
+    pull: PoseStep,
     normal: Normal,
 }
 
 impl Here<'_> {
     /// Of a step of a pose the first three are in distances.
-    fn gradient(&self) -> Vector6<f64> {
+    fn gradient(&self) -> PoseStep {
         let per_m = 1.0 / self.pose.position_m.norm();
         let mut gradient = self.pull + self.normal.gradient;
         for axis in 0..3 {
@@ -151,23 +151,6 @@ impl Here<'_> {
             self.prior.information[(line, column)] + own
         })
     }
-}
-
-/// The pose after an error of it.
-fn stepped(pose: &Pose, step: &Vector6<f64>) -> Pose {
-    Pose {
-        position_m: pose.position_m + step.fixed_rows::<3>(0),
-        camera_from_body: pose.camera_from_body * Rotation3::new(step.fixed_rows::<3>(3).into_owned()),
-    }
-}
-
-/// The error of a pose that leads to another.
-fn step_to(from: &Pose, to: &Pose) -> Vector6<f64> {
-    let mut step = Vector6::zeros();
-    step.fixed_rows_mut::<3>(0).copy_from(&(to.position_m - from.position_m));
-    let turn = turn_of(&(from.camera_from_body.inverse() * to.camera_from_body));
-    step.fixed_rows_mut::<3>(3).copy_from(&turn);
-    step
 }
 
 /// The inverse of a symmetric positive matrix, symmetric, and the logarithm of the determinant of the inverse.

@@ -3,11 +3,11 @@
 //! A prediction may be wrong for good: two spots fit two poses, and a track may have settled for the other one. Where a neighbour's spots cannot all be the
 //! predicted markers, there is a way to begin the track anew from them, as one about which nothing is known, at a price.
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Rotation3, Vector3};
 
-use super::super::appearing::turned_next_to;
+use super::super::appearing::turn_next_to;
 use super::super::branches::Pairs;
-use super::super::component::{Component, Covariance, Step};
+use super::super::component::{Component, Covariance, Step, pose_step};
 use super::super::look::Appearance;
 use super::super::state::Target;
 use super::super::step::Model;
@@ -16,8 +16,6 @@ use super::candidates::Candidate;
 use super::{Scene, Ways};
 use crate::pose::{Mode, Pose};
 
-/// A prediction whose yaw is less sure than this, rad, cannot tell markers apart by itself.
-const UNSURE_YAW_RAD: f64 = 0.15;
 /// A neighbour farther off than this, squared and in variances, is another.
 const NEIGHBOUR_GATE: f64 = 36.0;
 /// Most of a neighbour's poses that are begun from; those with less weight are not.
@@ -43,8 +41,7 @@ impl Ways {
         let is_whole = |pairs: &Pairs| {
             pairs.as_slice().len() == members.len() && members.iter().all(|&spot| pairs.has_spot(spot))
         };
-        let is_sure = predicted.covariance[(8, 8)] < UNSURE_YAW_RAD * UNSURE_YAW_RAD;
-        if is_sure && self.candidates[first..].iter().any(|own| is_whole(&own.pairs)) {
+        if self.candidates[first..].iter().any(|own| is_whole(&own.pairs)) {
             return;
         }
         let turns = if members.iter().all(|&spot| moment.signals[spot].is_none()) {
@@ -55,16 +52,23 @@ impl Ways {
         for mode in
             moment.modes(appearance).iter().take_while(|mode| mode.weight > LEAST_START).take(MOST_STARTS)
         {
-            let off_m = mode.pose.position_m - predicted.pose.position_m;
-            let covariance_m2 = predicted.block(0) + mode.position_covariance_m2;
-            let Some(factor) = covariance_m2.cholesky() else { continue };
-            if off_m.dot(&factor.solve(&off_m)) > NEIGHBOUR_GATE {
+            let turn = turn_next_to(model, &mode.pose, &predicted.pose, turns);
+            let turn = turn.map_or(Rotation3::identity(), |turn| model.symmetry.turn(turn));
+            let start = Pose { camera_from_body: mode.pose.camera_from_body * turn, ..mode.pose };
+            let off = pose_step(&predicted.pose, &start);
+            let mut covariance = predicted.pose_covariance();
+            let mut add = |first: usize, own: &Matrix3<f64>| {
+                let mut block = covariance.fixed_view_mut::<3, 3>(first, first);
+                block += own;
+            };
+            add(0, &mode.position_covariance_m2);
+            add(3, &(turn.inverse() * mode.orientation_covariance_rad2 * turn));
+            let Some(factor) = covariance.cholesky() else { continue };
+            if off.dot(&factor.solve(&off)) > NEIGHBOUR_GATE {
                 continue;
             }
-            let start =
-                turned_next_to(model, Component { pose: mode.pose, ..*predicted }, predicted, turns).pose;
             let Some(pairs) = self.pairs_of(model, members, &start) else { continue };
-            if !(is_sure && self.candidates[first..].iter().any(|own| own.pairs.is_same(&pairs))) {
+            if !self.candidates[first..].iter().any(|own| own.pairs.is_same(&pairs)) {
                 self.add_candidate(pairs, start, f64::NEG_INFINITY);
             }
         }

@@ -71,7 +71,9 @@ impl Bench {
         let located = self.locator.locate(Input::frame(&view).gravity(gravity.as_ref())).ok()?;
         let tracked = time_s.and_then(|time_s| {
             let turned = Some(Turned { now_from_before: Rotation3::identity(), sigma_rad: STILL_RAD });
-            self.lookout.look(&Glance { time_s, exposure_s: 0.0, turned, gravity, located }).ok()
+            self.lookout
+                .look(&Glance { time_s, exposure_s: 0.0, turned, moving: None, gravity, located })
+                .ok()
         });
         told::json(&told::Frame::of(located, tracked))
     }

@@ -61,7 +61,7 @@ impl State {
             .map_err(|error| Refusal::new(Status::Image, error))?;
         if let Some(lookout) = lookout {
             // How long an exposure lasts matters to what blinks alone.
-            let glance = Glance { time_s, exposure_s: 0.0, turned: None, gravity, located };
+            let glance = Glance { time_s, exposure_s: 0.0, turned: None, moving: None, gravity, located };
             lookout.look(&glance).map_err(|error| Refusal::new(Status::Time, error))?;
         }
         Ok(Frame::new(located, lookout.as_ref().map(Lookout::tracked), time_s))

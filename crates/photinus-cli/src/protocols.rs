@@ -99,8 +99,8 @@ pub(crate) fn source(
     #[cfg(not(any(feature = "ros2", feature = "zenoh")))]
     let _ = (tables, spots);
     Ok(match origin {
-        Origin::Scene { path, camera, exposure_us, began, repeat } => {
-            Some(Simulated::opener(&path, camera, exposure_us, began, repeat)?)
+        Origin::Scene { path, camera, exposure_us, takeoff, repeat } => {
+            Some(Simulated::opener(&path, camera, exposure_us, takeoff, repeat)?)
         }
         #[cfg(feature = "ros2")]
         Origin::Ros2(topic) => Some(tables.ros2.unwrap_or_default().source(topic, spots)),

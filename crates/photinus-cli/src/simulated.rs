@@ -5,10 +5,10 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use photinus_io::frames::Frame;
+use photinus_io::frames::{Frame, Moved};
 use photinus_io::{Error, Result};
 use photinus_run::Entry;
-use photinus_run::source::{Next, Opener, Source};
+use photinus_run::source::{Next, Opener, Source, Takeoff};
 use photinus_sim::scene::Scene;
 use photinus_sim::snapshot::Exposure;
 use photinus_sim::{Rendered, Simulator};
@@ -35,7 +35,7 @@ impl Simulated {
         path: &Path,
         name: Option<&str>,
         exposure_us: Option<f64>,
-        began: Option<Instant>,
+        takeoff: Option<Takeoff>,
         repeat: bool,
     ) -> Result<Opener> {
         let scene = Arc::new(Scene::read(path)?);
@@ -57,7 +57,7 @@ impl Simulated {
             camera,
             simulator: simulator.clone(),
             number: 0,
-            began,
+            began: takeoff.as_ref().map(Takeoff::at),
             repeat,
         };
         Ok(Box::new(move || Ok(Box::new(opened()) as Box<dyn Source>)))
@@ -87,6 +87,7 @@ impl Simulated {
             time_s: Some(taken.truth.time_s - 0.5 * exposure.length_s),
             source: self.scene.name.clone(),
             gravity: Some(taken.gravity),
+            moved: Moved::default(),
             conversions: Vec::new(),
         };
         Some(Entry { exposure_s: Some(exposure.length_s), ..Entry::from_frame(frame) })

@@ -8,6 +8,8 @@ use std::path::{Path, PathBuf};
 
 use nalgebra::{Unit, Vector3};
 
+use photinus::tracking::{Moving, Turned};
+
 use crate::dataset::Dataset;
 use crate::image::{Conversion, GreyImage, read_image};
 use crate::video::{RawFormat, RawFrames, VideoFrame, Y4mFrames};
@@ -26,8 +28,19 @@ pub struct Frame {
     pub source: String,
     /// Direction of gravity (down) in the camera frame, where the source knows.
     pub gravity: Option<Unit<Vector3<f64>>>,
+    /// How the camera moved, where the source knows.
+    pub moved: Moved,
     /// What was done to the stored samples.
     pub conversions: Vec<Conversion>,
+}
+
+/// How a camera moved.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Moved {
+    /// How it turned since the frame before.
+    pub turned: Option<Turned>,
+    /// How fast it moves over the ground.
+    pub moving: Option<Moving>,
 }
 
 /// Frames of one source, in order.
@@ -137,7 +150,15 @@ impl Iterator for FrameSource {
 fn from_image(path: &Path, index: u64) -> Result<Frame> {
     let file = read_image(path)?;
     let source = path.display().to_string();
-    Ok(Frame { image: file.image, index, time_s: None, source, gravity: None, conversions: file.conversions })
+    Ok(Frame {
+        image: file.image,
+        index,
+        time_s: None,
+        source,
+        gravity: None,
+        moved: Moved::default(),
+        conversions: file.conversions,
+    })
 }
 
 fn from_dataset(dataset: &Dataset, camera: usize, number: usize) -> Option<Result<Frame>> {
@@ -154,13 +175,22 @@ fn from_dataset(dataset: &Dataset, camera: usize, number: usize) -> Option<Resul
         time_s: Some(row.time_s),
         source: row.image.display().to_string(),
         gravity: row.gravity,
+        moved: Moved::default(),
         conversions: file.conversions,
     }))
 }
 
 fn from_video(frame: VideoFrame, name: &str, conversions: Vec<Conversion>) -> Frame {
     let VideoFrame { index, time_s, image } = frame;
-    Frame { image, index, time_s, source: name.to_owned(), gravity: None, conversions }
+    Frame {
+        image,
+        index,
+        time_s,
+        source: name.to_owned(),
+        gravity: None,
+        moved: Moved::default(),
+        conversions,
+    }
 }
 
 #[cfg(test)]

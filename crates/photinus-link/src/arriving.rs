@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use photinus_io::Error;
-use photinus_io::frames::Frame;
+use photinus_io::frames::{Frame, Moved};
 use photinus_io::image::GreyImage;
 use photinus_run::Entry;
 use photinus_run::source::Next;
@@ -66,6 +66,7 @@ pub(crate) fn of_image((header, image): (Header, GreyImage), index: u64, source:
         time_s: Some(header.stamp.seconds()),
         source: source.to_owned(),
         gravity: None,
+        moved: Moved::default(),
         conversions: Vec::new(),
     })
 }

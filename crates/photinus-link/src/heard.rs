@@ -85,6 +85,9 @@ impl Heard {
         if let Some(attitude) = turning.attitude {
             self.motion.attitude(time_s, attitude);
         }
+        if let Some(velocity_m_s) = turning.velocity_m_s {
+            self.motion.velocity(time_s, velocity_m_s);
+        }
     }
 
     /// How it goes: how much later the clock of the frames is than that of the stamps, and what was heard.

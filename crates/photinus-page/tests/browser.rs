@@ -9,7 +9,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use photinus_io::frames::Frame;
+use photinus_io::frames::{Frame, Moved};
 use photinus_io::image::GreyImage;
 use photinus_io::results::{FrameRecord, ResultsReader};
 use photinus_page::Page;
@@ -135,6 +135,7 @@ fn entry(camera: usize, index: u64) -> Entry {
         time_s: record.time_s,
         source: "t".to_owned(),
         gravity: None,
+        moved: Moved::default(),
         conversions: Vec::new(),
     };
     Entry { record, camera, exposure_s: Some(1e-3), ..Entry::from_frame(frame) }

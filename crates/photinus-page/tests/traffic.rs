@@ -7,7 +7,7 @@ use std::net::{SocketAddr, TcpStream};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use photinus_io::frames::Frame;
+use photinus_io::frames::{Frame, Moved};
 use photinus_io::image::GreyImage;
 use photinus_page::Page;
 use photinus_run::Entry;
@@ -30,6 +30,7 @@ fn frame(index: u64) -> Entry {
         time_s: Some(0.01),
         source: "t".to_owned(),
         gravity: None,
+        moved: Moved::default(),
         conversions: Vec::new(),
     })
 }

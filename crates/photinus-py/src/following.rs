@@ -9,7 +9,8 @@ use photinus::spots::Spot;
 use photinus_io::calibration::MountingFile;
 use photinus_io::results::FrameRecord;
 use photinus_run::Entry;
-use photinus_run::watch::{self, Turns, Watch};
+use photinus_run::course::Course;
+use photinus_run::watch::{self, Watch};
 use pyo3::prelude::*;
 
 use crate::error::{self, ImageError};
@@ -18,7 +19,7 @@ use crate::recording::Dataset;
 /// What a recording tells beside its frames: who blinks what, how its camera turned, how long it exposed.
 pub(crate) struct Beside {
     fleets: Vec<Option<Fleet>>,
-    turns: Turns,
+    course: Course,
     exposure_us: Option<f64>,
 }
 
@@ -35,12 +36,13 @@ impl Beside {
     ) -> PyResult<Self> {
         let dataset = recording.map(|recording| &recording.dataset);
         let fleets = watch::fleets(dataset, kinds, |text| remarks.push(text)).map_err(error::file)?;
-        let turns = |recording: &Dataset| {
-            Turns::of(&recording.dataset, recording.of_camera().name.is_some(), mounting).map_err(error::file)
+        let course = |recording: &Dataset| {
+            Course::of(&recording.dataset, recording.of_camera().name.is_some(), mounting)
+                .map_err(error::file)
         };
         Ok(Self {
             fleets,
-            turns: recording.map_or(Ok(Turns::Unknown), turns)?,
+            course: recording.map_or_else(|| Ok(Course::default()), course)?,
             exposure_us: recording.map(|recording| recording.of_camera().exposure_us),
         })
     }
@@ -56,7 +58,7 @@ impl Beside {
         settings: &Settings,
         mask: Option<&Mask>,
     ) -> PyResult<Watch> {
-        let beside = (self.fleets.as_slice(), self.turns, self.exposure_us);
+        let beside = (self.fleets.as_slice(), self.course, self.exposure_us);
         Watch::new(camera, kinds, settings, mask, beside).map_err(error::setting)
     }
 }

@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use nalgebra::{Unit, Vector3};
 use photinus::locator::Sun;
-use photinus_io::frames::Frame;
+use photinus_io::frames::{Frame, Moved};
 use photinus_io::image::{Conversion, GreyImage};
 use photinus_io::results::{FrameRecord, SpotRecord};
 
@@ -19,6 +19,8 @@ pub struct Entry {
     pub camera: usize,
     /// Direction of gravity (down) in the camera frame, where the source knows.
     pub gravity: Option<Unit<Vector3<f64>>>,
+    /// How the camera moved, where the source knows, or what was told of it meanwhile.
+    pub moved: Moved,
     /// Where the sun is in the camera frame, where place, time and gravity tell.
     pub sun: Option<Sun>,
     /// What was done to the stored samples.
@@ -38,6 +40,7 @@ impl Entry {
         let record = record(frame.index, frame.time_s, frame.source, Vec::new());
         Self {
             gravity: frame.gravity,
+            moved: frame.moved,
             conversions: frame.conversions,
             ..Self::new(record, Some(frame.image))
         }
@@ -59,6 +62,7 @@ impl Entry {
             image,
             camera: 0,
             gravity: None,
+            moved: Moved::default(),
             sun: None,
             conversions: Vec::new(),
             taken: None,

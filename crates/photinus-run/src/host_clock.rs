@@ -16,11 +16,6 @@ impl HostClock {
         Self { began: Instant::now(), began_unix_s: unix.as_secs_f64() }
     }
 
-    /// When it was set.
-    pub fn began(&self) -> Instant {
-        self.began
-    }
-
     /// A moment as seconds since 1970.
     pub fn unix_s(&self, at: Instant) -> f64 {
         match at.checked_duration_since(self.began) {

@@ -5,7 +5,7 @@
 //!   slot   the newest one wins, older ones are counted as dropped      live/
 //! entry    a frame on its way to a record of results                   entry
 //! run      the loop: fill, hand on                                     run, work
-//! view     locate, follow, into the body frame                         view, watch, motion
+//! view     locate, follow, into the body frame                         view, watch, course, motion
 //! fan      every sink its thread and its bounded queue                 sink/
 //! health   what was counted and measured on the way                    health/
 //! config   the file that says all this                                 config/
@@ -13,6 +13,7 @@
 
 mod clock;
 pub mod config;
+pub mod course;
 mod disputes;
 mod entry;
 pub mod exposure;

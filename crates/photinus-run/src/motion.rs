@@ -1,5 +1,5 @@
-//! How the vehicle moves, by what others measure while frames come in: enter rates and attitudes as they arrive, from any thread; leaves how a camera
-//! turned between two times, and where down is.
+//! How the vehicle moves, by what others measure while frames come in: enter rates, attitudes and velocities as they arrive, from any thread; leaves how a camera
+//! turned between two times, how fast it moves, and where down is.
 //!
 //! Times are on the clock of the frames' `time_s`. Only the last seconds are kept.
 
@@ -21,6 +21,7 @@ pub struct Motion(Arc<Mutex<Known>>);
 struct Known {
     rates: VecDeque<(f64, Vector3<f64>)>,
     attitudes: VecDeque<(f64, UnitQuaternion<f64>)>,
+    velocities: VecDeque<(f64, Vector3<f64>)>,
 }
 
 impl Motion {
@@ -38,6 +39,13 @@ impl Motion {
         }
     }
 
+    /// A velocity over the ground, m/s in the body frame. What is not later than the last one is left out.
+    pub fn velocity(&self, time_s: f64, velocity_m_s: Vector3<f64>) {
+        if velocity_m_s.iter().all(|part| part.is_finite()) {
+            put(&mut self.known().velocities, time_s, velocity_m_s);
+        }
+    }
+
     /// The rates that are known, in the order of time.
     pub fn rates(&self) -> Vec<(f64, Vector3<f64>)> {
         self.known().rates.iter().copied().collect()
@@ -46,6 +54,11 @@ impl Motion {
     /// The attitudes that are known, in the order of time.
     pub fn attitudes(&self) -> Vec<(f64, UnitQuaternion<f64>)> {
         self.known().attitudes.iter().copied().collect()
+    }
+
+    /// The velocities that are known, in the order of time.
+    pub fn velocities(&self) -> Vec<(f64, Vector3<f64>)> {
+        self.known().velocities.iter().copied().collect()
     }
 
     fn known(&self) -> MutexGuard<'_, Known> {

@@ -1,32 +1,28 @@
 //! What frames with times allow: vehicles are followed from one to the next, and named where they blink.
 //!
-//! In: the dataset's book of words, its vehicles, its gyro or odometry. Out: [`Watch`], which completes the record of each frame.
+//! In: the dataset's book of words, its vehicles, and how the camera moved. Out: [`Watch`], which completes the record of each frame.
 
 use std::path::{Path, PathBuf};
 
-use nalgebra::{Rotation3, Unit, UnitQuaternion, Vector3};
+use nalgebra::{Unit, Vector3};
 use photinus::airframe::Airframe;
 use photinus::camera::Camera;
 use photinus::frame::Mask;
 use photinus::identity::CodeBook;
 use photinus::locator::{Kind, Located, Settings};
 use photinus::lookout::{Fleet, FleetError, Glance, Lookout, LookoutError, Name, Vehicle};
-use photinus::tracking::{self, Placed, Turned};
+use photinus::tracking::{self, Placed};
 use photinus_io::airframe::AirframeFile;
-use photinus_io::calibration::MountingFile;
-use photinus_io::dataset::{self, Dataset, OdometryRow};
+use photinus_io::dataset::{self, Dataset};
+use photinus_io::frames::Moved;
 use photinus_io::{Error, Result};
 
 use crate::Entry;
+use crate::course::Course;
 use crate::disputes::Disputes;
-use crate::motion::Motion;
 
 /// The exposure of frames of which nobody says it, s.
 const EXPOSURE_S: f64 = 1e-3;
-/// What an odometry's attitude is off by from frame to frame, rad per axis.
-const ODOMETRY_SIGMA_RAD: f64 = 3e-3;
-/// Attitudes of an odometry that are this far apart, s, say nothing of what is between.
-const LONGEST_GAP_S: f64 = 0.25;
 
 /// The vehicles of a dataset that blink, by kind; `None` where nobody of a kind does.
 ///
@@ -117,115 +113,12 @@ pub struct Watch {
     airframes: Vec<String>,
     disputes: Disputes,
     exposure_s: f64,
-    turns: Turns,
+    course: Course,
     last_s: Option<f64>,
     /// Said once of each kind.
     told: Vec<&'static str>,
     contested: Vec<u32>,
     remarks: Vec<String>,
-}
-
-/// What tells how a camera turned.
-pub enum Turns {
-    /// Nothing does.
-    Unknown,
-    /// Rates in the camera's own frame.
-    Gyro(Vec<(f64, Vector3<f64>)>),
-    /// Attitudes odometry_from_camera.
-    Attitudes(Vec<(f64, UnitQuaternion<f64>)>),
-    /// Rates in the camera's own frame and attitudes world_from_camera, world with z up, of a recording.
-    Recorded {
-        /// Goes before attitudes.
-        rates: Vec<(f64, Vector3<f64>)>,
-        /// Says where down is, too.
-        attitudes: Vec<(f64, UnitQuaternion<f64>)>,
-    },
-    /// What arrives while frames do, of the body that the camera sits on.
-    Live {
-        /// What the vehicle says of its motion.
-        motion: Motion,
-        /// How the camera sits on it.
-        body_from_camera: UnitQuaternion<f64>,
-    },
-}
-
-impl Turns {
-    /// What a dataset says of a camera that is mounted so: its gyro, or else its odometry. A dataset without mountings has its gyro in the camera's frame.
-    ///
-    /// # Errors
-    /// As [`Dataset::imu`] and [`Dataset::odometry`].
-    pub fn of(dataset: &Dataset, is_rig: bool, mounting: Option<&MountingFile>) -> Result<Self> {
-        let body_from_camera = mounting.map(|mounting| mounting.body_from_camera);
-        if let Some(rows) = dataset.imu()? {
-            let camera_from_part = match (is_rig, body_from_camera) {
-                (true, Some(body_from_camera)) => body_from_camera.inverse(),
-                (true, None) => return Ok(Self::Unknown),
-                (false, _) => UnitQuaternion::identity(),
-            };
-            let rate = |row: &photinus_io::dataset::ImuRow| (row.time_s, camera_from_part * row.turn_rad_s);
-            return Ok(Self::Gyro(rows.iter().map(rate).collect()));
-        }
-        let (Some(rows), Some(body_from_camera)) = (dataset.odometry()?, body_from_camera) else {
-            return Ok(Self::Unknown);
-        };
-        let attitude = |row: &OdometryRow| (row.time_s, row.pose.rotation * body_from_camera);
-        Ok(Self::Attitudes(rows.iter().map(attitude).collect()))
-    }
-
-    /// How the camera turned between two times.
-    fn between(&self, from_s: f64, to_s: f64) -> Option<Turned> {
-        match self {
-            Self::Unknown => None,
-            Self::Gyro(rates) => tracking::turned(rates, from_s, to_s),
-            Self::Attitudes(attitudes) => turned_by(attitudes, from_s, to_s),
-            Self::Recorded { rates, attitudes } => {
-                tracking::turned(rates, from_s, to_s).or_else(|| turned_by(attitudes, from_s, to_s))
-            }
-            Self::Live { motion, body_from_camera } => {
-                let camera_from_body = body_from_camera.inverse();
-                let rate = |(time_s, rate): (f64, Vector3<f64>)| (time_s, camera_from_body * rate);
-                let rates: Vec<_> = motion.rates().into_iter().map(rate).collect();
-                let turned = tracking::turned(&rates, from_s, to_s);
-                turned.or_else(|| turned_by(&attitudes_of(motion, body_from_camera), from_s, to_s))
-            }
-        }
-    }
-
-    /// Down in the camera frame at a time, where attitudes are known against the world.
-    fn down(&self, time_s: f64) -> Option<Unit<Vector3<f64>>> {
-        let world_from_camera = match self {
-            Self::Live { motion, body_from_camera } => {
-                attitude_at(&attitudes_of(motion, body_from_camera), time_s)
-            }
-            Self::Recorded { attitudes, .. } => attitude_at(attitudes, time_s),
-            Self::Unknown | Self::Gyro(_) | Self::Attitudes(_) => None,
-        }?;
-        Some(world_from_camera.inverse() * -Vector3::z_axis())
-    }
-}
-
-fn attitudes_of(motion: &Motion, body_from_camera: &UnitQuaternion<f64>) -> Vec<(f64, UnitQuaternion<f64>)> {
-    motion.attitudes().into_iter().map(|(time_s, attitude)| (time_s, attitude * body_from_camera)).collect()
-}
-
-/// How a camera with these attitudes turned between two times.
-fn turned_by(attitudes: &[(f64, UnitQuaternion<f64>)], from_s: f64, to_s: f64) -> Option<Turned> {
-    let [before, now] = [attitude_at(attitudes, from_s)?, attitude_at(attitudes, to_s)?];
-    let now_from_before: Rotation3<f64> = (now.inverse() * before).to_rotation_matrix();
-    Some(Turned { now_from_before, sigma_rad: ODOMETRY_SIGMA_RAD })
-}
-
-/// The attitude at a time, turned evenly between those before and after it.
-fn attitude_at(attitudes: &[(f64, UnitQuaternion<f64>)], time_s: f64) -> Option<UnitQuaternion<f64>> {
-    let after = attitudes.partition_point(|attitude| attitude.0 < time_s);
-    let (end_s, end) = *attitudes.get(after)?;
-    if end_s <= time_s {
-        return Some(end);
-    }
-    let (begin_s, begin) = *attitudes.get(after.checked_sub(1)?)?;
-    let share = (time_s - begin_s) / (end_s - begin_s);
-    let turn = (begin.inverse() * end).scaled_axis() * share;
-    (end_s - begin_s <= LONGEST_GAP_S).then(|| begin * UnitQuaternion::from_scaled_axis(turn))
 }
 
 impl Watch {
@@ -238,7 +131,7 @@ impl Watch {
         kinds: &[Kind],
         settings: &Settings,
         mask: Option<&Mask>,
-        (fleets, turns, exposure_us): (&[Option<Fleet>], Turns, Option<f64>),
+        (fleets, course, exposure_us): (&[Option<Fleet>], Course, Option<f64>),
     ) -> std::result::Result<Self, LookoutError> {
         let lookout = |(number, (kind, fleet)): (usize, (&Kind, &Option<Fleet>))| {
             let followed = tracking::Settings { kind: number, ..Default::default() };
@@ -258,7 +151,7 @@ impl Watch {
             disputes: Disputes::default(),
             airframes: kinds.iter().map(|kind| kind.airframe.name().to_owned()).collect(),
             exposure_s: exposure_us.map_or(EXPOSURE_S, |us| us * 1e-6),
-            turns,
+            course,
             last_s: None,
             told: Vec::new(),
             contested: Vec::new(),
@@ -269,15 +162,19 @@ impl Watch {
     /// Down in the camera frame in the middle of a frame's exposure, where the vehicle says so.
     pub fn down(&self, entry: &Entry) -> Option<Unit<Vector3<f64>>> {
         let exposure_s = entry.exposure_s.unwrap_or(self.exposure_s);
-        self.turns.down(entry.record.time_s? + 0.5 * exposure_s)
+        self.course.down(entry.record.time_s? + 0.5 * exposure_s)
     }
 
     /// Completes the record of a frame that was located, if it has a time that comes after the one before.
     pub fn follow(&mut self, entry: &mut Entry, located: &Located) {
         let Some(time_s) = entry.record.time_s else { return };
-        let turned = self.last_s.and_then(|last_s| self.turns.between(last_s, time_s));
+        // What a recording of a run says goes before: it was told then.
+        let Moved { turned, moving } = &mut entry.moved;
+        *turned = turned.or_else(|| self.course.turned(self.last_s?, time_s));
+        *moving = moving.or_else(|| self.course.moving(time_s));
+        let (turned, moving) = (*turned, *moving);
         let exposure_s = entry.exposure_s.unwrap_or(self.exposure_s);
-        let glance = Glance { time_s, exposure_s, turned, gravity: entry.gravity, located };
+        let glance = Glance { time_s, exposure_s, turned, moving, gravity: entry.gravity, located };
         let frame = entry.record.frame.unwrap_or_default();
         let mut placed = Placed::Newest;
         for kind in 0..self.lookouts.len() {
@@ -323,28 +220,5 @@ impl Watch {
         let id = name.id;
         self.contested.push(id);
         self.remarks.push(format!("frame {frame}: two tracks blink the words of vehicle {id}; none of them has its id meanwhile (said once)"));
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_recording_says_where_down_is_and_how_the_camera_turned_by_rates_or_else_by_attitudes() {
-        // It turns at 1 rad/s about its x axis, from level (z up) on.
-        let at = |time_s: f64| (time_s, UnitQuaternion::from_euler_angles(time_s, 0.0, 0.0));
-        let attitudes: Vec<_> = (0..=10).map(|step| at(0.1 * f64::from(step))).collect();
-        let of = |rates| Turns::Recorded { rates, attitudes: attitudes.clone() };
-        // Between two attitudes it turns evenly.
-        let down = of(Vec::new()).down(0.55).unwrap();
-        assert!((down.into_inner() - Vector3::new(0.0, -libm::sin(0.55), -libm::cos(0.55))).norm() < 1e-9);
-        assert!(of(Vec::new()).down(1.5).is_none() && of(Vec::new()).down(-0.1).is_none());
-        let turned = of(Vec::new()).between(0.2, 0.25).unwrap().now_from_before;
-        assert!((turned.scaled_axis() + Vector3::x() * 0.05).norm() < 1e-9, "{turned}");
-        let rates: Vec<_> =
-            (0..=100).map(|step| (0.01 * f64::from(step), Vector3::new(2.0, 0.0, 0.0))).collect();
-        let turned = of(rates).between(0.2, 0.25).unwrap().now_from_before;
-        assert!((turned.scaled_axis() + Vector3::x() * 0.1).norm() < 1e-9, "rates go before: {turned}");
     }
 }

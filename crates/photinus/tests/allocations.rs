@@ -225,6 +225,7 @@ fn a_warm_tracker_allocates_nothing() {
         let look = Look {
             time_s,
             turned: None,
+            moving: None,
             gravity: Some(gravity),
             located,
             signals: &[],
@@ -276,7 +277,14 @@ fn a_warm_lookout_allocates_nothing() {
             }
             let located = locator.locate(Input::spots(&spots).gravity(&gravity)).expect("spots have no size");
             let time_s = f64::from(number) / 60.0;
-            let glance = Glance { time_s, exposure_s: 1e-3, turned: None, gravity: Some(gravity), located };
+            let glance = Glance {
+                time_s,
+                exposure_s: 1e-3,
+                turned: None,
+                moving: None,
+                gravity: Some(gravity),
+                located,
+            };
             let own = requests_during(|| {
                 lookout.look(&glance).unwrap();
             });

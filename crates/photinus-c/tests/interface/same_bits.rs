@@ -43,7 +43,14 @@ fn record(shown: &Shown, camera: &Camera, file: &AirframeFile) -> FrameRecord {
         let located = locator.locate(Input::frame(&view).gravity(&down)).unwrap();
         let time_s = f64::from(number) / 30.0;
         lookout
-            .look(&Glance { time_s, exposure_s: 0.0, turned: None, gravity: Some(down), located })
+            .look(&Glance {
+                time_s,
+                exposure_s: 0.0,
+                turned: None,
+                moving: None,
+                gravity: Some(down),
+                located,
+            })
             .unwrap();
     }
     let mut record: FrameRecord = FrameRecord {

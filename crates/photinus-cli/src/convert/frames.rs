@@ -155,7 +155,8 @@ impl Sink {
             Self::Dataset(dataset) => dataset.write(entry),
             Self::Recording { recorder, view, .. } => {
                 let image = entry.image.as_ref().map(|image| image.view());
-                let frame = Located { record: &entry.record, image, gravity: entry.gravity };
+                let frame =
+                    Located { record: &entry.record, image, gravity: entry.gravity, moved: entry.moved };
                 recorder.frame(&frame, view, view.header(entry.record.time_s).stamp.nanoseconds())
             }
             Self::Video { target, writer, rate } => {

@@ -19,7 +19,7 @@ use std::time::Instant;
 use photinus::locator::{Locator, Settings};
 use photinus_evaluate::evaluate;
 use photinus_io::dataset::TruthFrame;
-use photinus_io::frames::Frame;
+use photinus_io::frames::{Frame, Moved};
 use photinus_io::results::{FrameRecord, NeighbourRecord, ResultsWriter};
 use photinus_io::whole::WholeFolder;
 use photinus_io::{Error, Result};
@@ -196,6 +196,7 @@ pub(crate) fn apart(rendered: Rendered) -> (TruthFrame, Entry) {
         source: "simulated".to_owned(),
         image,
         gravity: Some(gravity),
+        moved: Moved::default(),
         conversions: Vec::new(),
     };
     (truth, Entry::from_frame(frame))

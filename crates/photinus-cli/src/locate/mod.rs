@@ -18,7 +18,8 @@ use photinus_io::mask::MaskFile;
 use photinus_io::sky::Sky;
 use photinus_link::recording::Motions;
 use photinus_run::View;
-use photinus_run::watch::{self, Turns, Watch};
+use photinus_run::course::{Course, Told};
+use photinus_run::watch::{self, Watch};
 
 use crate::beforehand::{self, Conditions};
 use crate::failure::Failure;
@@ -201,11 +202,11 @@ impl Args {
                 return Ok(view);
             }
             let is_rig = of_dataset.is_some_and(|camera| camera.name.is_some());
-            let turns = match dataset {
-                Some(dataset) => Turns::of(dataset, is_rig, mounting.as_ref()).map_err(Failure::input)?,
-                None => recorded_turns(input, mounting.as_ref(), terminal).map_err(Failure::input)?,
+            let course = match dataset {
+                Some(dataset) => Course::of(dataset, is_rig, mounting.as_ref()).map_err(Failure::input)?,
+                None => recorded(input, mounting.as_ref(), terminal).map_err(Failure::input)?,
             };
-            let beside = (fleets.as_slice(), turns, of_dataset.map(|camera| camera.exposure_us));
+            let beside = (fleets.as_slice(), course, of_dataset.map(|camera| camera.exposure_us));
             let watch = Watch::new(&camera, kinds, &self.settings(), mask, beside)
                 .map_err(|error| Failure::Input(error.to_string()))?;
             Ok(view.following(watch))
@@ -253,33 +254,36 @@ fn probability(text: &str) -> std::result::Result<f64, String> {
 }
 
 /// What a recording says of the vehicle's own motion.
-fn recorded_turns(
+fn recorded(
     input: &Input,
     mounting: Option<&MountingFile>,
     terminal: &Terminal,
-) -> photinus_io::Result<Turns> {
-    let Some(path) = &input.recording else { return Ok(Turns::Unknown) };
+) -> photinus_io::Result<Course> {
+    let Some(path) = &input.recording else { return Ok(Course::default()) };
     let motions = Motions::read(path)?;
     let body_from_camera = match mounting {
-        _ if motions.is_empty() => return Ok(Turns::Unknown),
+        _ if motions.is_empty() => return Ok(Course::default()),
         Some(mounting) => mounting.body_from_camera,
         None => {
             let path = path.display();
             terminal.warning(format_args!(
                 "{path}: its imu or odometry is not used: how the camera sits on the vehicle is not known; give --mounting"
             ));
-            return Ok(Turns::Unknown);
+            return Ok(Course::default());
         }
     };
     let camera_from_body = body_from_camera.inverse();
-    Ok(Turns::Recorded {
-        rates: motions.rates.into_iter().map(|(time_s, rate)| (time_s, camera_from_body * rate)).collect(),
+    let turn = |(time_s, of_body)| (time_s, camera_from_body * of_body);
+    Ok(Course::Told(Told {
+        rates: motions.rates.into_iter().map(turn).collect(),
+        velocities: motions.velocities.into_iter().map(turn).collect(),
+        has_down: true,
         attitudes: motions
             .attitudes
             .into_iter()
             .map(|(time_s, world_from_body)| (time_s, world_from_body * body_from_camera))
             .collect(),
-    })
+    }))
 }
 
 /// The file that was named, or that of the dataset.

@@ -50,9 +50,27 @@ fn a_recording_that_was_cut_is_mended() {
 fn a_recording_made_by_a_run_replays_to_what_the_run_found() {
     let stage = Stage::new("run-record");
     stage.dataset("rec", 30);
+    // What the vehicle says of its motion is in no image.
+    let rate = |step: u32| format!("{},0.{},-0.2,0.1\n", f64::from(step) * 0.01, step % 7);
+    let odometry = |step: u32| {
+        let [time_s, along] = [0.02, 0.03].map(|by| f64::from(step) * by);
+        format!("{time_s},{},0,5,0,0,0,1\n", along * along)
+    };
+    let (rates, odometry): (String, String) =
+        ((0..300).map(rate).collect(), (0..120).map(odometry).collect());
+    stage.file("rec/imu.csv", format!("time_s,wx_rad_s,wy_rad_s,wz_rad_s\n{rates}"));
+    stage.file("rec/odometry.csv", format!("time_s,x_m,y_m,z_m,qx,qy,qz,qw\n{odometry}"));
+    stage.file("mounting.toml", crate::rig::FORWARD);
+    let located = |options: &str| stage.run(&format!("locate rec -q --out - {options}")).out;
+    let known = located("--mounting mounting.toml");
+    stage.file("rec/odometry.txt", stage.read("rec/odometry.csv"));
+    std::fs::remove_file(stage.path("rec/odometry.csv")).unwrap();
+    let without_odometry = located("--mounting mounting.toml");
+    stage.file("rec/odometry.csv", stage.read("rec/odometry.txt"));
+    assert!(known.lines().count() == 30 && known != without_odometry, "it says how fast the camera moves");
     stage.file(
         "run.toml",
-        "pace = \"fast\"\n[[camera]]\nname = \"front\"\nsource = { dataset = \"rec\" }\n[json]\nfile = \"run.jsonl\"\n\
+        "pace = \"fast\"\n[[camera]]\nname = \"front\"\nsource = { dataset = \"rec\" }\nmounting = \"mounting.toml\"\n[json]\nfile = \"run.jsonl\"\n\
          [record]\nfile = \"run.mcap\"\n",
     );
     let check = stage.run("run --check run.toml");
@@ -61,9 +79,11 @@ fn a_recording_made_by_a_run_replays_to_what_the_run_found() {
     let told = stage.run("run run.toml");
     assert_eq!(told.code, 0, "{}", told.err);
     let found = stage.read("run.jsonl").replace("\"camera\":\"front\",", "");
-    assert_eq!(found.lines().count(), 30);
+    assert_eq!(found, known, "a run finds what is found in files");
     for _ in 0..2 {
-        let replayed = stage.run("locate run.mcap -q --out - --camera camera.toml --airframe hexa.toml");
+        let replayed = stage.run(
+            "locate run.mcap -q --out - --mounting mounting.toml --camera camera.toml --airframe hexa.toml",
+        );
         assert_eq!((replayed.code, replayed.out.as_str()), (0, found.as_str()), "{}", replayed.err);
     }
     stage.file("wrong.toml", stage.read("run.toml").replace("run.mcap\"", "other.mcap\"\nspeed = 3"));

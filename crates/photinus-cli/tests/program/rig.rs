@@ -5,7 +5,7 @@ use serde_json::Value;
 use crate::stage::Stage;
 
 /// The camera looks along the body's x axis.
-const FORWARD: &str = "body_from_camera_xyzw = [-0.5, 0.5, -0.5, 0.5]\nposition_m = [0.1, 0.0, 0.05]\n\
+pub(crate) const FORWARD: &str = "body_from_camera_xyzw = [-0.5, 0.5, -0.5, 0.5]\nposition_m = [0.1, 0.0, 0.05]\n\
                        rotation_covariance_rad2 = [[1e-4, 0, 0], [0, 1e-4, 0], [0, 0, 1e-4]]\n\
                        position_covariance_m2 = [[1e-6, 0, 0], [0, 1e-6, 0], [0, 0, 1e-6]]\n";
 /// It looks along the negative x axis.

@@ -40,7 +40,14 @@ pub(crate) fn fly(seed: u64, built: Built) -> Vec<Flight> {
         let view = rendered.image.view();
         let located =
             locator.locate(Input::frame(&view).gravity(gravity.as_ref())).expect("the camera's size");
-        let glance = Glance { time_s, exposure_s: scene.exposure_us * 1e-6, turned: None, gravity, located };
+        let glance = Glance {
+            time_s,
+            exposure_s: scene.exposure_us * 1e-6,
+            turned: None,
+            moving: None,
+            gravity,
+            located,
+        };
         let began = Instant::now();
         lookout.look(&glance).expect("times that ascend");
         let took_s = began.elapsed().as_secs_f64();

@@ -8,7 +8,7 @@ use photinus::optics::Optics;
 use photinus_calibrate::optics::{Collection, learn};
 use photinus_evaluate::{Scores, evaluate};
 use photinus_io::dataset::TruthFrame;
-use photinus_io::frames::Frame;
+use photinus_io::frames::{Frame, Moved};
 use photinus_io::results::FrameRecord;
 use photinus_sim::faults::{Fault, Faults, Shot};
 use photinus_sim::preset::Preset;
@@ -200,6 +200,7 @@ impl<'a> Studio<'a> {
             time_s: Some(time_s),
             source: row.name.clone(),
             gravity: Some(gravity),
+            moved: Moved::default(),
             conversions: Vec::new(),
         };
         (Shot { frame, truth: Some(rendered.truth) }, fallen)

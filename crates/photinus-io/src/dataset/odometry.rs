@@ -33,7 +33,7 @@ pub struct OdometryRow {
     pub velocity_m_s: Vector3<f64>,
 }
 
-/// Reads an odometry.csv.
+/// Reads an odometry.csv. Where it has no velocities, they are the slope of its places.
 ///
 /// # Errors
 /// As [`parse_odometry`], and when the file cannot be read.
@@ -48,6 +48,9 @@ pub fn read_odometry(path: impl AsRef<Path>) -> Result<Vec<OdometryRow>> {
 /// is more than 1 % from 1, and times that do not grow.
 pub fn parse_odometry(text: &str, path: impl AsRef<Path>) -> Result<Vec<OdometryRow>> {
     let path = path.as_ref();
+    if !has_velocities(text) {
+        return Ok(with_slopes(&parse_poses(text, path)?));
+    }
     let row = |(line, row): (usize, [f64; 11])| {
         let [time_s, x, y, z, qx, qy, qz, qw, vx, vy, vz] = row;
         let TimedPose { pose, .. } = pose_of([time_s, x, y, z, qx, qy, qz, qw], path, line)?;
@@ -123,13 +126,29 @@ pub fn read_poses(path: impl AsRef<Path>) -> Result<Vec<TimedPose>> {
 /// As [`parse_odometry`].
 pub fn parse_poses(text: &str, path: impl AsRef<Path>) -> Result<Vec<TimedPose>> {
     let path = path.as_ref();
-    let header = text.lines().find(|line| !line.trim().is_empty());
-    if header.is_some_and(|names| names.contains(COLUMNS[8].0)) {
+    if has_velocities(text) {
         let rows = parse_odometry(text, path)?;
         return Ok(rows.into_iter().map(|row| TimedPose { time_s: row.time_s, pose: row.pose }).collect());
     }
     let columns: &[Column; 8] = COLUMNS.first_chunk().expect("a pose has 8 of the 11 columns");
     timed::rows(text, path, columns)?.into_iter().map(|(line, row)| pose_of(row, path, line)).collect()
+}
+
+fn has_velocities(text: &str) -> bool {
+    let header = text.lines().find(|line| !line.trim().is_empty());
+    header.is_some_and(|names| names.contains(COLUMNS[8].0))
+}
+
+/// With the velocities that the places before and after each row tell; none where there is but one.
+fn with_slopes(poses: &[TimedPose]) -> Vec<OdometryRow> {
+    let row = |(place, pose): (usize, &TimedPose)| {
+        let (before, after) = (&poses[place.saturating_sub(1)], &poses[(place + 1).min(poses.len() - 1)]);
+        let moved_m = after.pose.translation.vector - before.pose.translation.vector;
+        let span_s = after.time_s - before.time_s;
+        let velocity_m_s = if span_s > 0.0 { moved_m / span_s } else { Vector3::zeros() };
+        OdometryRow { time_s: pose.time_s, pose: pose.pose, velocity_m_s }
+    };
+    poses.iter().enumerate().map(row).collect()
 }
 
 /// The pose of a line.

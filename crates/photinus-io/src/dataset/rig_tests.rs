@@ -215,6 +215,13 @@ fn what_is_wrong_with_measurements_is_named_by_its_line() {
         let error = parse_odometry(&format!("{head}{row}\n"), "d/odometry.csv").unwrap_err().to_string();
         assert!(error.starts_with(&format!("d/odometry.csv, {message}")), "{error}");
     }
+    // Without velocities they are the slope of the places.
+    let slopes = |rows: &str| {
+        let rows = parse_odometry(&format!("time_s,x_m,y_m,z_m,qx,qy,qz,qw\n{rows}"), "d/o.csv").unwrap();
+        rows.iter().map(|row| row.velocity_m_s.x).collect::<Vec<_>>()
+    };
+    assert_eq!(slopes("0,0,0,0,0,0,0,1\n1,1,0,0,0,0,0,1\n3,7,0,0,0,0,0,1\n"), [1.0, 7.0 / 3.0, 3.0]);
+    assert_eq!(slopes("2,5,0,0,0,0,0,1\n"), [0.0]);
     assert!(parse_odometry(head, "d/o.csv").unwrap_err().to_string().contains("it holds no measurement"));
 }
 

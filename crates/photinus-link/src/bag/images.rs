@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use photinus_io::frames::Frame;
+use photinus_io::frames::{Frame, Moved};
 use photinus_io::image::{GreyImage, decode_image};
 use photinus_io::{Error, Place, Result};
 
@@ -102,6 +102,7 @@ impl Iterator for BagFrames {
             time_s: Some(header.stamp.seconds()),
             source: format!("{}:{}", self.bag.path().display(), self.topic.name),
             gravity: None,
+            moved: Moved::default(),
             conversions: Vec::new(),
         }))
     }

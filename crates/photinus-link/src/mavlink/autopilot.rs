@@ -9,7 +9,7 @@ use mavlink::dialects::common::{
 use mavlink::{MAVLinkV2MessageRaw, MavHeader};
 use photinus_io::results::FrameRecord;
 
-use super::heard::{self, Attitude, Turn};
+use super::heard::{self, Attitude, Speed, Turn};
 use super::{Obstacles, Outlook, Own, Ring, follow_target};
 use crate::clock_offset::ClockOffset;
 
@@ -42,6 +42,8 @@ pub enum Heard {
     Attitude(Attitude),
     /// How fast it turns.
     Turn(Turn),
+    /// How fast it moves.
+    Speed(Speed),
     /// Where it is.
     Own(Own),
 }
@@ -226,6 +228,10 @@ impl Autopilot {
                 Some(Heard::Attitude(attitude))
             }
             MavMessage::HIGHRES_IMU(data) => heard::turn(data, &mut self.clock, now_s).map(Heard::Turn),
+            MavMessage::LOCAL_POSITION_NED(data) => {
+                heard::speed(data, &self.attitude?, &mut self.clock, now_s).map(Heard::Speed)
+            }
+            MavMessage::ODOMETRY(data) => heard::odometry(data, &mut self.clock, now_s).map(Heard::Speed),
             MavMessage::GLOBAL_POSITION_INT(data) => {
                 self.own = Some(heard::own(data, &self.attitude?));
                 self.own.map(Heard::Own)

@@ -1,9 +1,12 @@
-//! What an autopilot says of its own motion -> gravity and rates in the body frame of Photinus, on the clock of the frames.
+//! What an autopilot says of its own motion -> gravity, rates and velocities in the body frame of Photinus, on the clock of the frames.
 
-use mavlink::dialects::common::{ATTITUDE_QUATERNION_DATA, GLOBAL_POSITION_INT_DATA, HIGHRES_IMU_DATA};
+use mavlink::dialects::common::{
+    ATTITUDE_QUATERNION_DATA, GLOBAL_POSITION_INT_DATA, HIGHRES_IMU_DATA, LOCAL_POSITION_NED_DATA, MavFrame,
+    ODOMETRY_DATA,
+};
 use nalgebra::{Quaternion, Unit, UnitQuaternion, Vector3};
 
-use super::{Own, frd, ned_from_frd};
+use super::{Own, frd, ned, ned_from_frd};
 use crate::clock_offset::ClockOffset;
 
 /// An attitude as it was at a time.
@@ -32,6 +35,15 @@ pub struct Turn {
     pub time_s: f64,
     /// In the body frame FLU, rad/s.
     pub turn_rad_s: Vector3<f64>,
+}
+
+/// A velocity over the ground as it was at a time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Speed {
+    /// On the clock of the frames, s.
+    pub time_s: f64,
+    /// In the body frame FLU, m/s.
+    pub velocity_m_s: Vector3<f64>,
 }
 
 /// What a message of an attitude says; `None` where its numbers are no attitude.
@@ -65,6 +77,26 @@ pub(super) fn turn(data: &HIGHRES_IMU_DATA, clock: &mut ClockOffset, arrived_s: 
         time_s: clock.hear(data.time_usec as f64 * 1e-6, arrived_s),
         turn_rad_s: frd(&rates),
     })
+}
+
+/// What a message of a place says of the velocity, with the attitude that was heard last; `None` where its numbers are not finite.
+pub(super) fn speed(
+    data: &LOCAL_POSITION_NED_DATA,
+    attitude: &Attitude,
+    clock: &mut ClockOffset,
+    arrived_s: f64,
+) -> Option<Speed> {
+    let of_world = ned(&Vector3::new(data.vx, data.vy, data.vz).cast::<f64>());
+    let time_s = clock.hear(f64::from(data.time_boot_ms) * 1e-3, arrived_s);
+    let velocity_m_s = attitude.enu_from_body.inverse() * of_world;
+    of_world.norm().is_finite().then_some(Speed { time_s, velocity_m_s })
+}
+
+/// What a message of an odometry says of the velocity; `None` where that is not told in the body's axes, or not finite.
+pub(super) fn odometry(data: &ODOMETRY_DATA, clock: &mut ClockOffset, arrived_s: f64) -> Option<Speed> {
+    let velocity_m_s = frd(&Vector3::new(data.vx, data.vy, data.vz).cast::<f64>());
+    let is_told = data.child_frame_id == MavFrame::MAV_FRAME_BODY_FRD && velocity_m_s.norm().is_finite();
+    is_told.then(|| Speed { time_s: clock.hear(data.time_usec as f64 * 1e-6, arrived_s), velocity_m_s })
 }
 
 /// Where the own vehicle is, with the attitude that was heard last.

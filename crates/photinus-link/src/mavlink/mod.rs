@@ -18,7 +18,7 @@ mod target;
 
 pub use autopilot::{Autopilot, Heard, Settings};
 pub use axes::{frd, frd_covariance, ned, ned_from_frd};
-pub use heard::{Attitude, Turn};
+pub use heard::{Attitude, Speed, Turn};
 pub use obstacles::{Obstacles, Outlook, Ring, SECTORS, UNKNOWN_CM};
 pub use sink::AutopilotSink;
 pub use target::{Own, follow_target};

@@ -13,6 +13,8 @@ pub struct Turning {
     pub attitude: Option<UnitQuaternion<f64>>,
     /// Rate against the world in the body frame, rad/s.
     pub rate_rad_s: Option<Vector3<f64>>,
+    /// Velocity over the ground in the body frame, m/s.
+    pub velocity_m_s: Option<Vector3<f64>>,
 }
 
 /// What an IMU says. By the definition of the message, a covariance whose first number is -1 means that there is no such value. Its frame is
@@ -22,7 +24,8 @@ pub fn of_imu(imu: &Imu) -> Turning {
     Turning {
         time_s: imu.header.stamp.seconds(),
         attitude: attitude(&imu.orientation).filter(|_| imu.orientation_covariance[0][0] >= 0.0),
-        rate_rad_s: rate(&imu.angular_velocity).filter(|_| imu.angular_velocity_covariance[0][0] >= 0.0),
+        rate_rad_s: vector(&imu.angular_velocity).filter(|_| imu.angular_velocity_covariance[0][0] >= 0.0),
+        velocity_m_s: None,
     }
 }
 
@@ -32,7 +35,8 @@ pub fn of_odometry(odometry: &Odometry) -> Turning {
     Turning {
         time_s: odometry.header.stamp.seconds(),
         attitude: attitude(&odometry.pose.pose.orientation),
-        rate_rad_s: rate(&odometry.twist.twist.angular),
+        rate_rad_s: vector(&odometry.twist.twist.angular),
+        velocity_m_s: vector(&odometry.twist.twist.linear),
     }
 }
 
@@ -43,9 +47,9 @@ pub(super) fn attitude(told: &ros::Quaternion) -> Option<UnitQuaternion<f64>> {
     ((turn.norm() - 1.0).abs() < 0.01).then(|| UnitQuaternion::from_quaternion(turn))
 }
 
-fn rate(told: &ros::Vector3) -> Option<Vector3<f64>> {
-    let rate = Vector3::new(told.x, told.y, told.z);
-    rate.iter().all(|part| part.is_finite()).then_some(rate)
+fn vector(told: &ros::Vector3) -> Option<Vector3<f64>> {
+    let vector = Vector3::new(told.x, told.y, told.z);
+    vector.iter().all(|part| part.is_finite()).then_some(vector)
 }
 
 #[cfg(test)]

@@ -2,15 +2,17 @@
 
 use std::path::Path;
 
-use nalgebra::{Unit, Vector3};
-use photinus_io::frames::Frame;
+use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
+use photinus::tracking::{Moving, Turned};
+use photinus_io::frames::{Frame, Moved};
 use photinus_io::image::{GreyImage, decode_image};
 use photinus_io::{Error, Place, Result};
 
 use super::Topic;
 use super::read::{Messages, Recording};
+use crate::cdr::{self, CdrError};
 use crate::ros::{self, CompressedImage, Image};
-use crate::{cdr, topics};
+use crate::topics;
 
 pub(crate) const RAW: &str = "sensor_msgs/Image";
 pub(crate) const COMPRESSED: &str = "sensor_msgs/CompressedImage";
@@ -91,6 +93,7 @@ impl Frames {
             },
             source: known.as_ref().map_or_else(source, |known| known.source.clone()),
             gravity: known.as_ref().and_then(|known| down(&known.gravity)),
+            moved: known.as_ref().map(moved).unwrap_or_default(),
             conversions: Vec::new(),
         };
         self.next = frame.index + 1;
@@ -105,9 +108,9 @@ impl Iterator for Frames {
         loop {
             let (path, known) = (self.messages.path().to_owned(), self.topic.known.clone());
             let heard = self.messages.next(|topic, bytes| match known.as_deref() == Some(topic) {
-                true => cdr::decode(bytes)
-                    .map(Heard::Known)
-                    .map_err(|error| Error::format(&path, error.to_string())),
+                true => {
+                    known_of(bytes).map(Heard::Known).map_err(|error| Error::format(&path, error.to_string()))
+                }
                 false => image(bytes, &path).map(|(header, image)| Heard::Image(header, image)),
             })?;
             match heard.and_then(|heard| heard) {
@@ -157,6 +160,37 @@ fn image(bytes: &[u8], path: &Path) -> Result<(ros::Header, GreyImage)> {
         cdr::decode(bytes).map_err(|error| refuse(format!("a message is no image: {error}")))?;
     let file = decode_image(&message.data, path)?;
     Ok((message.header, file.image))
+}
+
+/// What is known of a frame; recordings of versions before 0.2 end with gravity.
+fn known_of(bytes: &[u8]) -> std::result::Result<ros::Frame, CdrError> {
+    cdr::decode::<ros::Frame>(bytes).or_else(|error| {
+        let longer = [bytes, &[0; 16]].concat();
+        let is_before = |frame: &ros::Frame| frame.turned.is_empty() && frame.moving.is_empty();
+        cdr::decode(&longer).ok().filter(is_before).ok_or(error)
+    })
+}
+
+/// How the camera moved, to the bit.
+fn moved(known: &ros::Frame) -> Moved {
+    let turned = match *known.turned {
+        [a, b, c, d, e, f, g, h, i, sigma_rad] => {
+            let matrix = Matrix3::new(a, b, c, d, e, f, g, h, i);
+            let is_rotation = (matrix * matrix.transpose() - Matrix3::identity()).norm() < 1e-6;
+            let now_from_before = Rotation3::from_matrix_unchecked(matrix);
+            is_rotation.then_some(Turned { now_from_before, sigma_rad })
+        }
+        _ => None,
+    };
+    let moving = match *known.moving {
+        [x, y, z, sigma_m_s] => Some(Moving { velocity_m_s: Vector3::new(x, y, z), sigma_m_s }),
+        _ => None,
+    };
+    let is_sigma = |sigma: f64| sigma.is_finite() && sigma >= 0.0;
+    Moved {
+        turned: turned.filter(|turned| is_sigma(turned.sigma_rad)),
+        moving: moving.filter(|own| is_sigma(own.sigma_m_s) && own.velocity_m_s.norm().is_finite()),
+    }
 }
 
 fn down(gravity: &[f64]) -> Option<Unit<Vector3<f64>>> {

@@ -1,4 +1,4 @@
-//! What others' recordings, MCAP or bags of ROS 1, say of the vehicle's own motion: sensor_msgs/Imu and nav_msgs/Odometry come in, attitudes and rates come out.
+//! What others' recordings, MCAP or bags of ROS 1, say of the vehicle's own motion: sensor_msgs/Imu and nav_msgs/Odometry come in, attitudes, rates and velocities come out.
 
 use std::path::Path;
 
@@ -12,13 +12,15 @@ use crate::cdr;
 use crate::messages::{Turning, of_imu, of_odometry};
 use crate::ros::{Imu, Message, Odometry};
 
-/// How the vehicle's body turned, by the stamps of the messages.
+/// How the vehicle's body turned and moved, by the stamps of the messages.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Motions {
     /// Rates against the world in the body frame, rad/s, in the order of time.
     pub rates: Vec<(f64, Vector3<f64>)>,
     /// Attitudes world_from_body, world with z up, in the order of time.
     pub attitudes: Vec<(f64, UnitQuaternion<f64>)>,
+    /// Velocities over the ground in the body frame, m/s, in the order of time.
+    pub velocities: Vec<(f64, Vector3<f64>)>,
 }
 
 impl Motions {
@@ -45,6 +47,7 @@ impl Motions {
         Ok(Self {
             rates: or(!imu.rates.is_empty()).rates.clone(),
             attitudes: or(!imu.attitudes.is_empty()).attitudes.clone(),
+            velocities: odometry.velocities.clone(),
         })
     }
 
@@ -78,21 +81,22 @@ impl Motions {
 
     /// What is not later than the one before says nothing new.
     fn put(&mut self, said: Turning) {
-        let Turning { time_s, attitude, rate_rad_s } = said;
-        if let Some(rate) = rate_rad_s.filter(|_| self.rates.last().is_none_or(|last| last.0 < time_s)) {
-            self.rates.push((time_s, rate));
-        }
-        if let Some(attitude) = attitude.filter(|_| self.attitudes.last().is_none_or(|last| last.0 < time_s))
-        {
-            self.attitudes.push((time_s, attitude));
-        }
+        let Turning { time_s, attitude, rate_rad_s, velocity_m_s } = said;
+        put(&mut self.rates, time_s, rate_rad_s);
+        put(&mut self.attitudes, time_s, attitude);
+        put(&mut self.velocities, time_s, velocity_m_s);
     }
 
     /// Whether nothing is said.
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        self.rates.is_empty() && self.attitudes.is_empty()
+        self.rates.is_empty() && self.attitudes.is_empty() && self.velocities.is_empty()
     }
+}
+
+fn put<T>(told: &mut Vec<(f64, T)>, time_s: f64, value: Option<T>) {
+    let is_later = told.last().is_none_or(|last| last.0 < time_s);
+    told.extend(value.filter(|_| is_later).map(|value| (time_s, value)));
 }
 
 /// The only topic with messages of this kind.

@@ -37,7 +37,8 @@ impl Sink for RecordSink {
             return Ok(());
         };
         let image = entry.image.as_ref().map(|image| image.view());
-        let located = Located { record: &entry.record, image, gravity: entry.gravity };
+        let (gravity, moved) = (entry.gravity, entry.moved);
+        let located = Located { record: &entry.record, image, gravity, moved };
         recorder.located(&located, &view.exposed(entry.exposure_s), self.clock.now_ns())
     }
 

@@ -4,6 +4,8 @@ use std::path::{Path, PathBuf};
 
 use nalgebra::{Unit, Vector3};
 use photinus::frame::FrameView;
+use photinus::tracking::{Moving, Turned};
+use photinus_io::frames::Moved;
 use photinus_io::results::{FrameRecord, ResultsWriter};
 use photinus_io::{Error, Result};
 
@@ -60,6 +62,8 @@ pub struct Located<'a> {
     pub image: Option<FrameView<'a>>,
     /// The direction of gravity that was known, in the camera frame.
     pub gravity: Option<Unit<Vector3<f64>>>,
+    /// How the camera moved, as far as it was known.
+    pub moved: Moved,
 }
 
 impl Recorder {
@@ -111,6 +115,8 @@ impl Recorder {
             exposure: view.exposure_s.unwrap_or(f64::NAN),
             source: record.source.clone(),
             gravity: frame.gravity.map(|down| down.as_slice().to_vec()).unwrap_or_default(),
+            turned: frame.moved.turned.as_ref().map(turned).unwrap_or_default(),
+            moving: frame.moved.moving.as_ref().map(moving).unwrap_or_default(),
         };
         self.put(&topics::of_camera(&view.camera, "frame"), &known, at)?;
         match &frame.image {
@@ -249,4 +255,15 @@ fn line(record: &FrameRecord) -> Result<String> {
     ResultsWriter::new(&mut bytes, "results").write(record)?;
     let text = String::from_utf8(bytes).map_err(|error| Error::format("results", error.to_string()))?;
     Ok(text.trim_end().to_owned())
+}
+
+/// Rows of the rotation, then its sigma.
+fn turned(turned: &Turned) -> Vec<f64> {
+    let rows = turned.now_from_before.matrix().transpose();
+    rows.iter().copied().chain([turned.sigma_rad]).collect()
+}
+
+/// The velocity, then its sigma.
+fn moving(moving: &Moving) -> Vec<f64> {
+    moving.velocity_m_s.iter().copied().chain([moving.sigma_m_s]).collect()
 }

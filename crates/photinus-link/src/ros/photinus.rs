@@ -60,4 +60,6 @@ pub struct Frame {
     pub exposure: f64,
     pub source: String,
     pub gravity: Vec<f64>,
+    pub turned: Vec<f64>,
+    pub moving: Vec<f64>,
 }

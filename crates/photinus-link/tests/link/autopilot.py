@@ -39,4 +39,8 @@ while time.monotonic() - begun < seconds:
          math.sin(yaw / 2) * math.sin(roll / 2), math.sin(yaw / 2) * math.cos(roll / 2)]
     link.mav.attitude_quaternion_send(boot_ms, *q, 0.1, 0.2, 0.3)
     link.mav.highres_imu_send(1000 * boot_ms, 0, 0, -9.81, 0.4, 0.5, 0.6, 0, 0, 0, 0, 0, 0, 0, 0b111000)
+    # Once 3 m/s east, 2 south, 1 down, and once 1 m/s ahead, 2 to the right, 3 down.
+    link.mav.local_position_ned_send(boot_ms, 0, 0, 0, -2.0, 3.0, 1.0)
+    nothing = [float("nan")] * 21
+    link.mav.odometry_send(1000 * boot_ms + 1, 1, 12, 0, 0, 0, [1, 0, 0, 0], 1.0, 2.0, 3.0, 0, 0, 0, nothing, nothing)
     link.mav.global_position_int_send(boot_ms, 501000000, 144000000, 300000, 10000, 100, 200, -300, 9000)

@@ -52,6 +52,7 @@ fn pymavlink_hears_obstacles_targets_and_silence_and_is_heard() {
     // Where its bearing is sure, it is in few directions.
     record.neighbours[0].position_covariance_m2 = None;
     let (mut attitude, mut rates, mut own, mut silent_s) = (None, None, None, None);
+    let mut speeds = Vec::new();
     while now_s() < 3.0 {
         // The camera falls silent after 2 s.
         if now_s() < 2.0 {
@@ -63,6 +64,7 @@ fn pymavlink_hears_obstacles_targets_and_silence_and_is_heard() {
             match heard {
                 Heard::Attitude(heard) => attitude = Some((heard, now_s())),
                 Heard::Turn(heard) => rates = Some(heard),
+                Heard::Speed(heard) => speeds.push(heard.velocity_m_s),
                 Heard::Own(heard) => own = Some(heard),
             }
         }
@@ -116,6 +118,11 @@ fn pymavlink_hears_obstacles_targets_and_silence_and_is_heard() {
     assert!((attitude.turn_rad_s - Vector3::new(0.1, -0.2, -0.3)).norm() < 1e-6);
     assert!((attitude.time_s - at_s).abs() < 0.2, "{} {at_s}", attitude.time_s);
     assert!((rates.expect("heard").turn_rad_s - Vector3::new(0.4, -0.5, -0.6)).norm() < 1e-6);
+    // Of the place by the attitude, of the odometry as it is.
+    let of_place = attitude.enu_from_body.inverse() * Vector3::new(3.0, -2.0, -1.0);
+    for told in [of_place, Vector3::new(1.0, -2.0, -3.0)] {
+        assert!(speeds.iter().any(|speed: &Vector3<f64>| (speed - told).norm() < 1e-5), "{told} {speeds:?}");
+    }
     assert!((own.expect("heard").altitude_m - 300.0).abs() < 1e-9);
 }
 

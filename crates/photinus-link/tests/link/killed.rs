@@ -4,6 +4,7 @@ use std::io::{BufRead, BufReader, Write};
 use std::process::{Command, Stdio};
 use std::time::Duration;
 
+use photinus_io::frames::Moved;
 use photinus_io::image::GreyImage;
 use photinus_link::messages::Viewpoint;
 use photinus_link::recording::{Frames, Located, Recorder, Settings, recover};
@@ -30,7 +31,8 @@ fn the_program_that_is_killed() {
     for frame in 0_u64.. {
         let record = sample::record(frame, frame as f64 / FRAMES_PER_SECOND as f64);
         let image = pixels(frame);
-        let located = Located { record: &record, image: Some(image.view()), gravity: None };
+        let located =
+            Located { record: &record, image: Some(image.view()), gravity: None, moved: Moved::default() };
         let view = Viewpoint::new(Some("left"), None);
         recorder.located(&located, &view, frame * 1_000_000_000 / FRAMES_PER_SECOND).expect("it is written");
         writeln!(said, "frame {frame}").and_then(|()| said.flush()).expect("somebody listens");

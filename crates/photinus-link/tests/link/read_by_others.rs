@@ -1,5 +1,6 @@
 //! The recording is read by mcap-ros2-support and by rosbags, which decode by the schemas in the file: every field of every message is compared.
 
+use photinus_io::frames::Moved;
 use photinus_io::image::GreyImage;
 use photinus_link::messages::{Health, Messages, Viewpoint, diagnostics};
 use photinus_link::recording::{Located, Pixels, Recorder, Settings};
@@ -98,7 +99,8 @@ fn every_field_of_every_message_is_read_by_others() {
     let mut recorder = Recorder::create(&path, settings, Some(fixed.clone())).expect("a file");
     let record = sample::record(17, 1_700_000_000.25);
     let image = GreyImage::new((0..=255).collect(), 16, 16).expect("a size");
-    let located = Located { record: &record, image: Some(image.view()), gravity: None };
+    let located =
+        Located { record: &record, image: Some(image.view()), gravity: None, moved: Moved::default() };
     recorder.located(&located, &view(), 1_000).expect("it is written");
     recorder.message(topics::DIAGNOSTICS, &health(), 1, 2_000).expect("it is written");
     recorder.message("/imu", &imu(), 1, 3_000).expect("it is written");
@@ -115,6 +117,8 @@ fn every_field_of_every_message_is_read_by_others() {
         exposure: 1e-3,
         source: record.source.clone(),
         gravity: vec![],
+        turned: vec![],
+        moving: vec![],
     };
     let mut line = Vec::new();
     photinus_io::results::ResultsWriter::new(&mut line, "t").write(&record).expect("it is written");

@@ -1,7 +1,8 @@
 //! What goes into a recording comes out, bit for bit.
 
-use nalgebra::{Unit, Vector3};
-use photinus_io::frames::Frame;
+use nalgebra::{Rotation3, Unit, Vector3};
+use photinus::tracking::{Moving, Turned};
+use photinus_io::frames::{Frame, Moved};
 use photinus_io::image::GreyImage;
 use photinus_io::results::FrameRecord;
 use photinus_link::messages::Viewpoint;
@@ -25,7 +26,12 @@ fn image(seed: usize, width: usize, height: usize) -> GreyImage {
 fn write(recorder: &mut Recorder, frame: &Frame, arrived_ns: u64) {
     let record = FrameRecord { source: frame.source.clone(), ..sample::record(frame.index, 0.0) };
     let record = FrameRecord { time_s: frame.time_s, ..record };
-    let located = Located { record: &record, image: Some(frame.image.view()), gravity: frame.gravity };
+    let located = Located {
+        record: &record,
+        image: Some(frame.image.view()),
+        gravity: frame.gravity,
+        moved: frame.moved,
+    };
     recorder.located(&located, &view(), arrived_ns).expect("it is written");
 }
 
@@ -48,6 +54,7 @@ proptest! {
             time_s: (index != 2).then_some(time_s),
             source: format!("images/{index}.png"),
             gravity: (index != 1).then(|| Unit::new_normalize(Vector3::from(down))),
+            moved: moved(index, &down),
             conversions: Vec::new(),
         }).collect();
         for (frame, arrived) in written.iter().zip(1..) {
@@ -61,6 +68,14 @@ proptest! {
     }
 }
 
+/// Of some frames one thing is known, of some another, of some both.
+fn moved(index: usize, by: &[f64; 3]) -> Moved {
+    let vector = Vector3::from(*by);
+    let turned = Turned { now_from_before: Rotation3::new(vector), sigma_rad: 1e-3 * by[0].abs() };
+    let moving = Moving { velocity_m_s: vector / 3.0, sigma_m_s: 0.1 };
+    Moved { turned: (index != 1).then_some(turned), moving: (!index.is_multiple_of(3)).then_some(moving) }
+}
+
 fn frame(index: u64) -> Frame {
     let time_s = Some(index as f64 / 60.0);
     let source = "s".to_owned();
@@ -70,6 +85,7 @@ fn frame(index: u64) -> Frame {
         time_s,
         source,
         gravity: None,
+        moved: Moved::default(),
         conversions: Vec::new(),
     }
 }

@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use photinus::camera::{Camera as Lens, Model, Pinhole, Pixel};
 use photinus_io::calibration::MountingFile;
-use photinus_io::frames::Frame;
+use photinus_io::frames::{Frame, Moved};
 use photinus_io::image::GreyImage;
 use photinus_link::config::{Camera, Record};
 use photinus_link::messages::Viewpoint;
@@ -45,6 +45,7 @@ fn a_run_is_in_its_recording() {
         time_s: Some(index as f64 / 60.0),
         source: format!("frame {index}"),
         gravity: None,
+        moved: Moved::default(),
         conversions: Vec::new(),
     };
     for index in 0..5 {

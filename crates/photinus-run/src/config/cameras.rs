@@ -17,11 +17,12 @@ use photinus_io::{Error, Place, Result, read_camera};
 
 use super::Config;
 use super::keys::{CameraKeys, LocateKeys, SourceKeys, TimesKey};
+use crate::course::Course;
 use crate::exposure::Exposure;
 use crate::live::{Camera, Pace};
 use crate::motion::Motion;
-use crate::source::{Carrier, Opener, Recorded, Source, Stream, StreamFormat, Times};
-use crate::watch::{self, Turns, Watch};
+use crate::source::{Carrier, Opener, Recorded, Source, Stream, StreamFormat, Takeoff, Times};
+use crate::watch::{self, Watch};
 use crate::{HostClock, View};
 
 /// The exposure of frames of which nobody says it, us.
@@ -45,8 +46,8 @@ pub enum Origin<'a> {
         camera: Option<&'a str>,
         /// How long it is exposed, us, where that is not as the scene says.
         exposure_us: Option<f64>,
-        /// When its clock showed 0 by ours; without, frames come as fast as they are taken.
-        began: Option<Instant>,
+        /// When its clock shows 0; without, frames come as fast as they are taken.
+        takeoff: Option<Takeoff>,
         /// It goes on past its duration.
         repeat: bool,
     },
@@ -106,7 +107,7 @@ impl Config {
         let first = named.iter().find_map(|camera| camera.recording.as_ref());
         let kinds = self.kinds(first.map(|(dataset, _)| dataset), note)?;
         let fleets = self.fleets(first.map(|(dataset, _)| dataset), &kinds, note)?;
-        let clock = HostClock::start();
+        let begun = (HostClock::start(), Takeoff::default());
         let start_s = named
             .iter()
             .filter_map(Named::of_dataset)
@@ -114,10 +115,9 @@ impl Config {
             .map(|row| row.time_s);
         // All recordings begin together, in the order of their own times.
         let start_s = start_s.reduce(f64::min).unwrap_or(0.0);
-        named
-            .iter()
-            .map(|camera| self.camera(camera, (&kinds, &fleets), (motion, linked), (clock, start_s), note))
-            .collect()
+        let camera =
+            |camera| self.camera(camera, (&kinds, &fleets), (motion, linked), (&begun, start_s), note);
+        named.iter().map(camera).collect()
     }
 
     fn named<'a>(&self, number: usize, keys: &'a CameraKeys) -> Result<Named<'a>> {
@@ -188,7 +188,7 @@ impl Config {
         named: &Named<'_>,
         (kinds, fleets): (&[Kind], &[Option<Fleet>]),
         (motion, linked): (&Motion, Linked<'_>),
-        (clock, start_s): (HostClock, f64),
+        ((clock, takeoff), start_s): (&(HostClock, Takeoff), f64),
         note: &mut dyn FnMut(String),
     ) -> Result<Camera> {
         let keys = named.keys;
@@ -235,41 +235,41 @@ impl Config {
         let exposure_us =
             keys.exposure_us.or_else(|| named.of_dataset().map(|(_, camera)| camera.exposure_us));
         if self.keys.locate.time.unwrap_or(true) {
-            let turns = match named.of_dataset() {
-                Some((dataset, camera)) => Turns::of(dataset, camera.name.is_some(), mounting.as_ref())?,
-                None => mounting.map_or(Turns::Unknown, |mounting| Turns::Live {
+            let course = match named.of_dataset() {
+                Some((dataset, camera)) => Course::of(dataset, camera.name.is_some(), mounting.as_ref())?,
+                None => mounting.map_or_else(Course::default, |mounting| Course::Live {
                     motion: motion.clone(),
                     body_from_camera: mounting.body_from_camera,
                 }),
             };
-            let beside = (fleets, turns, exposure_us);
+            let beside = (fleets, course, exposure_us);
             let watch = Watch::new(&camera, kinds, &settings, mask.as_ref(), beside)
                 .map_err(|error| refuse(error.to_string()))?;
             view = view.following(watch);
         }
-        let source = match (&keys.source.v4l2, self.origin(keys, &clock)) {
-            (Some(path), _) => self.v4l2(named, path, [camera.width(), camera.height()], clock)?,
+        let source = match (&keys.source.v4l2, self.origin(keys, takeoff)) {
+            (Some(path), _) => self.v4l2(named, path, [camera.width(), camera.height()], *clock)?,
             (_, Some(origin)) => linked(origin.clone(), keys.source.spots)
                 .map_err(|error| of_key("source.scene", keys.source.scene.is_some(), error))?
                 .ok_or_else(|| {
                     let (what, advice) = origin.wants();
                     self.refuse(&format!("camera {}", keys.name), &format!("nothing opens {what}"), advice)
                 })?,
-            _ => self.opener(named, exposure_us, (clock, start_s)),
+            _ => self.opener(named, exposure_us, (*clock, takeoff.clone(), start_s)),
         };
         let exposure = self.wanted_exposure().map(Exposure::new);
         Ok(Camera { name: keys.name.clone(), source, view, exposure })
     }
 
     /// Where its frames come from, where others open it.
-    fn origin<'a>(&self, keys: &'a CameraKeys, clock: &HostClock) -> Option<Origin<'a>> {
+    fn origin<'a>(&self, keys: &'a CameraKeys, takeoff: &Takeoff) -> Option<Origin<'a>> {
         let SourceKeys { scene, camera, repeat, ros2, zenoh, .. } = &keys.source;
         let topic = || ros2.as_deref().map(Origin::Ros2).or_else(|| zenoh.as_deref().map(Origin::Zenoh));
         let scene = scene.as_ref().map(|path| Origin::Scene {
             path: self.located(path),
             camera: camera.as_deref(),
             exposure_us: keys.exposure_us,
-            began: (self.pace() == Pace::Live).then(|| began(clock, 0.0)),
+            takeoff: (self.pace() == Pace::Live).then(|| takeoff.clone()),
             repeat: *repeat,
         });
         scene.or_else(topic)
@@ -289,12 +289,12 @@ impl Config {
         &self,
         named: &Named<'_>,
         exposure_us: Option<f64>,
-        (clock, start_s): (HostClock, f64),
+        (clock, takeoff, start_s): (HostClock, Takeoff, f64),
     ) -> Opener {
         if let Some((dataset, camera)) = named.recording.clone() {
             let (is_live, repeat) = (self.pace() == Pace::Live, named.keys.source.repeat);
             return Box::new(move || {
-                let began = is_live.then(|| began(&clock, start_s));
+                let began = is_live.then(|| before(takeoff.at(), start_s));
                 let recorded = Recorded::new(&dataset, camera, began);
                 let recorded = if repeat { recorded.repeated(&dataset, camera) } else { recorded };
                 Ok(Box::new(recorded) as Box<dyn Source>)
@@ -352,10 +352,10 @@ impl Config {
     }
 }
 
-/// When the clock of the recordings showed 0: their first frame is due now.
-fn began(clock: &HostClock, start_s: f64) -> Instant {
+/// When the clock of the recordings showed 0, whose first frame is due at a moment.
+fn before(first: Instant, start_s: f64) -> Instant {
     let start = std::time::Duration::try_from_secs_f64(start_s.max(0.0)).unwrap_or_default();
-    clock.began().checked_sub(start).unwrap_or(clock.began())
+    first.checked_sub(start).unwrap_or(first)
 }
 
 impl LocateKeys {

@@ -7,7 +7,7 @@ use photinus::airframe::{Airframe, Ring};
 use photinus::camera::{Ideal, IdealLaw, Model, Pixel};
 use photinus::locator::{Kind, Settings};
 use photinus_io::Error;
-use photinus_io::frames::Frame;
+use photinus_io::frames::{Frame, Moved};
 use photinus_io::image::GreyImage;
 
 use super::slot::Slot;
@@ -32,6 +32,7 @@ fn frame(index: u64, time_s: f64) -> Entry {
         time_s: Some(time_s),
         source: "fake".to_owned(),
         gravity: None,
+        moved: Moved::default(),
         conversions: Vec::new(),
     };
     Entry { taken: Some(Instant::now()), ..Entry::from_frame(frame) }

@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! recorded      a dataset folder, at its own pace or as fast as it is asked
+//! takeoff       when recordings and scenes begin to fly
 //! stream        Y4M or raw frames: standard input, a socket, the output of a command
 //! v4l2          a camera of this machine, feature `v4l2`
 //! pixel_format  how its pixels are laid out
@@ -10,6 +11,7 @@
 mod pixel_format;
 mod recorded;
 mod stream;
+mod takeoff;
 #[cfg(all(feature = "v4l2", target_os = "linux"))]
 mod v4l2;
 
@@ -20,6 +22,7 @@ use crate::Entry;
 pub use pixel_format::PixelFormat;
 pub use recorded::Recorded;
 pub use stream::{Carrier, Stream, StreamFormat, Times};
+pub use takeoff::Takeoff;
 #[cfg(all(feature = "v4l2", target_os = "linux"))]
 pub use v4l2::{V4l2, Wanted as V4l2Wanted};
 

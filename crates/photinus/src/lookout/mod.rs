@@ -18,7 +18,7 @@
 //! let mut lookout = Lookout::new(camera, &airframe, &settings, tracking::Settings::default(), None)?;
 //! // and for every frame
 //! let located = locator.locate(Input::frame(&frame))?;
-//! let seen = lookout.look(&Glance { time_s: 0.0, exposure_s: 1e-3, turned: None, gravity: None, located })?;
+//! let seen = lookout.look(&Glance { time_s: 0.0, exposure_s: 1e-3, turned: None, moving: None, gravity: None, located })?;
 //! for track in &seen.tracks {
 //!     println!("{} at {}", track.id, track.position_m);
 //! }
@@ -47,7 +47,8 @@ use crate::identity::decoder::{self, Decoder, DecoderError};
 use crate::locator::{self, Located};
 use crate::pose::{LogLight, SettingsError};
 use crate::tracking::{
-    self, Appearing, Followed, Look, Placed, Signalled, TrackError, Tracked, Tracker, TrackerError, Turned,
+    self, Appearing, Followed, Look, Moving, Placed, Signalled, TrackError, Tracked, Tracker, TrackerError,
+    Turned,
 };
 use belonging::Belongings;
 use calling::Calling;
@@ -70,6 +71,8 @@ pub struct Glance<'a> {
     pub exposure_s: f64,
     /// How the camera turned since the frame before, where that is known.
     pub turned: Option<Turned>,
+    /// How it moves over the ground, where that is known.
+    pub moving: Option<Moving>,
     /// Down in the camera frame, where it is known.
     pub gravity: Option<Unit<Vector3<f64>>>,
     /// What the locator makes of it.
@@ -172,8 +175,9 @@ impl Lookout {
     /// # Errors
     /// As [`Tracker::track`]; nothing is changed then.
     pub fn look(&mut self, glance: &Glance<'_>) -> Result<&Tracked, TrackError> {
-        let Glance { time_s, turned, gravity, located, .. } = *glance;
-        let mut look = Look { time_s, turned, gravity, located, signals: &[], lit: &[], blinking: None };
+        let Glance { time_s, turned, moving, gravity, located, .. } = *glance;
+        let (signals, lit) = (&[], &[]);
+        let mut look = Look { time_s, turned, moving, gravity, located, signals, lit, blinking: None };
         look.check()?;
         if let Some(blinking) = &mut self.blinking {
             let watched = Watched::new(&self.camera, self.mask.as_ref());

@@ -104,7 +104,7 @@ impl World {
         let located =
             self.locator.locate(Input::spots(&spots).gravity(gravity.as_ref())).expect("spots have no size");
         let turned = Some(Turned { now_from_before: level, sigma_rad: 1e-5 });
-        let glance = Glance { time_s, exposure_s: EXPOSURE_S, turned, gravity, located };
+        let glance = Glance { time_s, exposure_s: EXPOSURE_S, turned, moving: None, gravity, located };
         self.lookout.look(&glance).unwrap().clone()
     }
 
@@ -257,8 +257,14 @@ fn times_are_the_trackers() {
         world.see(&mut blinkers);
     }
     let nothing = world.locator.locate(Input::spots(&[])).expect("spots have no size");
-    let glance =
-        Glance { time_s: 1.0, exposure_s: EXPOSURE_S, turned: None, gravity: None, located: nothing };
+    let glance = Glance {
+        time_s: 1.0,
+        exposure_s: EXPOSURE_S,
+        turned: None,
+        moving: None,
+        gravity: None,
+        located: nothing,
+    };
     let before = world.lookout.names().to_vec();
     assert!(matches!(world.lookout.look(&glance), Err(TrackError::Repeated { .. })));
     assert_eq!(world.lookout.names(), before);

@@ -42,4 +42,9 @@ pub enum TrackError {
     /// The camera's turn is known to no sigma.
     #[error("a turn of the camera with a sigma of {0} rad: it must be 0 or more")]
     Turn(f64),
+    /// The camera's velocity, or its sigma, is no number.
+    #[error(
+        "a camera that moves at {0} m/s with a sigma of {1} m/s: both must be finite, and the sigma 0 or more"
+    )]
+    Moving(f64, f64),
 }

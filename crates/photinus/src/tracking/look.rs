@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 
 use super::error::TrackError;
-use super::motion::Turn;
+use super::motion::{Faster, Turn};
 use crate::camera::Bearing;
 use crate::locator::{Located, Neighbour, Sighting};
 use crate::pose::{Mode, Observation, POWER_RANGE};
@@ -25,6 +25,8 @@ pub struct Look<'a> {
     pub time_s: f64,
     /// How the camera turned since the frame before it in time, where that is known.
     pub turned: Option<Turned>,
+    /// How it moves over the ground, where that is known.
+    pub moving: Option<Moving>,
     /// Down in the camera frame, where it is known.
     pub gravity: Option<Unit<Vector3<f64>>>,
     /// What the locator makes of it.
@@ -91,6 +93,15 @@ pub struct Turned {
     pub sigma_rad: f64,
 }
 
+/// How the camera moves: what it gains in speed would else be taken for its neighbours'.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Moving {
+    /// Its velocity over the ground at the stamp, m/s, in its own axes.
+    pub velocity_m_s: Vector3<f64>,
+    /// Standard deviation of how it changes from frame to frame, per axis, m/s. An error that lasts is none of it.
+    pub sigma_m_s: f64,
+}
+
 /// Whose light a sighting is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Signalled {
@@ -126,11 +137,14 @@ impl Look<'_> {
         if !self.time_s.is_finite() {
             return Err(TrackError::Time(self.time_s));
         }
-        match self.turned {
-            Some(Turned { sigma_rad, .. }) if !(sigma_rad.is_finite() && sigma_rad >= 0.0) => {
-                Err(TrackError::Turn(sigma_rad))
-            }
-            _ => Ok(()),
+        let is_sigma = |sigma: f64| sigma.is_finite() && sigma >= 0.0;
+        if let Some(Turned { sigma_rad, .. }) = self.turned.filter(|turned| !is_sigma(turned.sigma_rad)) {
+            return Err(TrackError::Turn(sigma_rad));
+        }
+        let is_known = |own: &Moving| is_sigma(own.sigma_m_s) && own.velocity_m_s.norm().is_finite();
+        match self.moving.filter(|own| !is_known(own)) {
+            Some(own) => Err(TrackError::Moving(own.velocity_m_s.norm(), own.sigma_m_s)),
+            None => Ok(()),
         }
     }
 }
@@ -159,6 +173,7 @@ impl Appearance {
 pub(super) struct Moment {
     pub(super) time_s: f64,
     pub(super) turned: Option<Turned>,
+    pub(super) moving: Option<Moving>,
     pub(super) up: Option<Unit<Vector3<f64>>>,
     /// With the density of clutter per unit of the logarithm of its light, for one point of clutter per sr.
     pub(super) observations: Vec<Observation>,
@@ -186,8 +201,9 @@ impl Moment {
 
     /// Takes over a frame.
     pub(super) fn keep(&mut self, look: &Look<'_>, kind: usize) {
-        let Look { time_s, turned, gravity, located, signals, lit, blinking } = *look;
-        (self.time_s, self.turned, self.up) = (time_s, turned, gravity.map(|down| -down));
+        let Look { time_s, turned, moving, gravity, located, signals, lit, blinking } = *look;
+        (self.time_s, self.turned, self.moving) = (time_s, turned, moving);
+        self.up = gravity.map(|down| -down);
         self.observations.clear();
         self.calibrations.clear();
         self.signals.clear();
@@ -259,6 +275,13 @@ impl Moment {
             Some(Turned { now_from_before, sigma_rad }) => Turn { now_from_before, sigma_rad },
             None => Turn { now_from_before: Rotation3::identity(), sigma_rad: rate_sigma_rad_s * interval_s },
         }
+    }
+
+    /// How much faster the camera became since it moved so, where both are known, and how it turned meanwhile: its velocities are in its own axes.
+    pub(super) fn faster(&self, turn: &Turn, before: Option<&Moving>) -> Option<Faster> {
+        let (before, now, _) = (before?, self.moving?, self.turned?);
+        let by_m_s = now.velocity_m_s - turn.now_from_before * before.velocity_m_s;
+        Some(Faster { by_m_s, sigma_m_s: now.sigma_m_s })
     }
 
     /// Puts a late frame before this one: this one's turn is since the late one from now on. Where the late one's own turn is not told, the camera is taken

@@ -46,7 +46,7 @@ use crate::pose::{LogLight, Symmetry};
 pub use error::{TrackError, TrackerError};
 pub use gyro::turned;
 use history::History;
-pub use look::{Appearing, Blinking, Called, Followed, Lit, Look, Signalled, Turned};
+pub use look::{Appearing, Blinking, Called, Followed, Lit, Look, Moving, Signalled, Turned};
 use motion::{Motion, Turn};
 pub use settings::{Association, Settings};
 use step::{Model, Stepper};
@@ -154,6 +154,7 @@ impl Tracker {
         let motion = Motion {
             interval_s: time_s - state.time_s,
             turn: Turn { now_from_before: Rotation3::identity(), sigma_rad: 0.0 },
+            faster: None,
             up: state.up,
             tilt_sigma_rad: self.model.pose.tilt_sigma_rad,
         };

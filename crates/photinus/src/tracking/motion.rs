@@ -1,4 +1,4 @@
-//! A state -> the same a while later: velocity carries on, tilts fade, yaw wanders, and the camera turned.
+//! A state -> the same a while later: velocity carries on, tilts fade, yaw wanders, and the camera turned and became faster or slower.
 //!
 //! Acceleration and yaw rate are white; a tilt is an Ornstein-Uhlenbeck process about the vertical, whose sigma is the prior of the pose. Where gravity is
 //! not known the tilt changes as fast, about the image's up, and is hardly pulled to it. Y. Bar-Shalom, X. R. Li, T. Kirubarajan, "Estimation with
@@ -23,11 +23,22 @@ pub(super) struct Turn {
     pub(super) sigma_rad: f64,
 }
 
+/// How the camera's velocity changed over an interval, evenly.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Faster {
+    /// In the axes afterwards, m/s.
+    pub(super) by_m_s: Vector3<f64>,
+    /// Standard deviation per axis, m/s.
+    pub(super) sigma_m_s: f64,
+}
+
 /// What moves a vehicle over an interval.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Motion {
     pub(super) interval_s: f64,
     pub(super) turn: Turn,
+    /// Where it is known.
+    pub(super) faster: Option<Faster>,
     /// Away from the ground, in the camera's axes afterwards.
     pub(super) up: Option<Unit<Vector3<f64>>>,
     pub(super) tilt_sigma_rad: f64,
@@ -38,8 +49,10 @@ impl Motion {
     pub(super) fn predict(&self, before: &Component, settings: &Settings) -> Component {
         let interval_s = self.interval_s;
         let turn = &self.turn.now_from_before;
-        let position_m = turn * (before.pose.position_m + before.velocity_m_s * interval_s);
-        let velocity_m_s = turn * before.velocity_m_s;
+        let faster = self.faster.unwrap_or(Faster { by_m_s: Vector3::zeros(), sigma_m_s: 0.0 });
+        let carried_m = turn * (before.pose.position_m + before.velocity_m_s * interval_s);
+        let position_m = carried_m - faster.by_m_s * (0.5 * interval_s);
+        let velocity_m_s = turn * before.velocity_m_s - faster.by_m_s;
         let camera_from_body = turn * before.pose.camera_from_body;
         let (keeps, tilt_rad2) = self.tilt(settings);
         let upright = self.upright(&camera_from_body);
@@ -52,11 +65,14 @@ impl Motion {
         transition[(7, 7)] = keeps;
         let mut covariance = transition * before.covariance * transition.transpose();
         let density = settings.acceleration * settings.acceleration;
+        let speed_m2_s2 = faster.sigma_m_s * faster.sigma_m_s;
+        let of_both = density * interval_s * interval_s / 2.0 + speed_m2_s2 * interval_s / 2.0;
         for axis in 0..3 {
-            covariance[(axis, axis)] += density * interval_s * interval_s * interval_s / 3.0;
-            covariance[(axis, axis + 3)] += density * interval_s * interval_s / 2.0;
-            covariance[(axis + 3, axis)] += density * interval_s * interval_s / 2.0;
-            covariance[(axis + 3, axis + 3)] += density * interval_s;
+            covariance[(axis, axis)] +=
+                (density * interval_s / 3.0 + speed_m2_s2 / 4.0) * interval_s * interval_s;
+            covariance[(axis, axis + 3)] += of_both;
+            covariance[(axis + 3, axis)] += of_both;
+            covariance[(axis + 3, axis + 3)] += density * interval_s + speed_m2_s2;
         }
         covariance[(6, 6)] += tilt_rad2;
         covariance[(7, 7)] += tilt_rad2;

@@ -6,6 +6,7 @@ use nalgebra::{Matrix3, Unit, Vector3};
 
 use super::appearing::LOST_S;
 use super::component::Component;
+use super::look::Moving;
 
 /// Most vehicles that are followed at once.
 pub(super) const MOST_TARGETS: usize = 64;
@@ -47,6 +48,8 @@ pub(super) struct State {
     pub(super) next_id: u64,
     /// Away from the ground, camera frame, where it is known.
     pub(super) up: Option<Unit<Vector3<f64>>>,
+    /// How the camera moves, where it is known.
+    pub(super) moving: Option<Moving>,
     /// Points of clutter in a frame, on average.
     pub(super) clutter: f64,
     pub(super) targets: Vec<Target>,
@@ -64,6 +67,7 @@ impl State {
             time_s,
             next_id,
             up: None,
+            moving: None,
             clutter: CLUTTER_BEFOREHAND,
             targets: Vec::with_capacity(MOST_TARGETS),
             components: Vec::with_capacity(2 * MOST_TARGETS),
@@ -74,7 +78,8 @@ impl State {
 
     /// Forgets everybody.
     pub(super) fn clear(&mut self, time_s: f64, next_id: u64) {
-        (self.time_s, self.next_id, self.up) = (time_s, next_id, None);
+        (self.time_s, self.next_id) = (time_s, next_id);
+        (self.up, self.moving) = (None, None);
         self.clutter = CLUTTER_BEFOREHAND;
         self.targets.clear();
         self.components.clear();

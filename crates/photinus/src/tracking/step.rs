@@ -109,9 +109,11 @@ impl Stepper {
         after: &mut State,
     ) {
         let interval_s = moment.time_s - before.time_s;
+        let turn = moment.turn(interval_s, model.settings.turn_sigma_rad_s);
         let motion = Motion {
             interval_s,
-            turn: moment.turn(interval_s, model.settings.turn_sigma_rad_s),
+            turn,
+            faster: moment.faster(&turn, before.moving.as_ref()),
             up: moment.up,
             tilt_sigma_rad: model.pose.tilt_sigma_rad,
         };
@@ -142,7 +144,7 @@ impl Stepper {
         ways.try_vehicles(&scene, vehicle_at);
         self.joint.explain(&self.ways.choices, &self.ways.log_unseen, model.settings.association);
         after.clear(moment.time_s, before.next_id);
-        after.up = moment.up;
+        (after.up, after.moving) = (moment.up, moment.moving);
         self.claimed.clear();
         self.claimed.resize(moment.observations.len(), 0.0);
         for (vehicle, target) in before.targets.iter().enumerate() {

@@ -117,6 +117,7 @@ impl Eye {
             exposure_s: moment.exposure_us * 1e-6,
             turned: (moment.number > 0)
                 .then(|| Turned { now_from_before: Rotation3::from(turn), sigma_rad: self.turn_sigma_rad }),
+            moving: None,
             gravity: Some(gravity),
             located,
         };

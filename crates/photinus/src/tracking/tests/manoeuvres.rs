@@ -5,7 +5,7 @@ use rand_pcg::Pcg64;
 
 use super::simulator::*;
 use crate::airframe::Airframe;
-use crate::tracking::{Association, Settings, Tracked};
+use crate::tracking::{Association, Moving, Settings, Tracked};
 
 /// What became of the vehicles of a manoeuvre over all its seeds.
 #[derive(Debug, Default)]
@@ -218,4 +218,62 @@ fn ways_that_are_given_up_count_for_nothing() {
         assert!(worst < 0.01, "{worst} sigma");
         assert!(tried[0] < 0.7 * tried[1], "{tried:?}");
     }
+}
+
+/// A camera that sways with 6 m/s^2 before a vehicle that hovers, hidden for the last half of each second: where the camera tells how it moves, that is
+/// not taken for the vehicle's.
+#[test]
+fn a_camera_that_tells_how_it_moves_does_not_see_others_sway() {
+    let (rate_rad_s, most_m_s2, sigma_m_s) = (4.4, 6.0, 0.05);
+    let still = Rotation3::identity();
+    let errors = [false, true].map(|tells| {
+        let mut observer = Observer::new(hexarotor(), Settings::default());
+        // While it is hidden: squared errors of place, m^2, and velocity, m^2/s^2, and in units of their covariances.
+        let mut sums = [0.0; 4];
+        let mut frames = 0.0;
+        for seed in 0..24 {
+            let mut rng = Pcg64::new(7_000 + seed, 5);
+            observer.forget();
+            for frame in 0..(3.0 * RATE_HZ) as u32 {
+                let time_s = f64::from(frame) / RATE_HZ;
+                let (sin, cos) = libm::sincos(rate_rad_s * time_s);
+                let along = Vector3::new(0.8, 0.0, 0.6) * (most_m_s2 / rate_rad_s);
+                let own_m_s = along * cos;
+                let hovering = Vehicle::at([-0.5, 0.2, 7.0], [0.0; 3], 0.4);
+                let vehicle = Vehicle {
+                    position_m: hovering.position_m - along * (sin / rate_rad_s),
+                    velocity_m_s: -own_m_s,
+                    ..hovering
+                };
+                let is_hidden = time_s.fract() > 0.5;
+                let shown = if is_hidden { &[][..] } else { &[vehicle] };
+                let seen = look(&observer.airframe, shown, &still, &mut rng);
+                let moving = Moving {
+                    velocity_m_s: own_m_s + normal3(&mut rng) * sigma_m_s,
+                    sigma_m_s: sigma_m_s * core::f64::consts::SQRT_2,
+                };
+                observer.moving = tells.then_some(moving);
+                let tracked = observer.see(time_s, &seen, &still, &mut rng).unwrap();
+                if is_hidden {
+                    let (track, nees_m) = nearest(&tracked, &vehicle, &still).unwrap();
+                    let [off_m, off_m_s] =
+                        [track.position_m - vehicle.position_m, track.velocity_m_s - vehicle.velocity_m_s];
+                    let nees_m_s = nees(&off_m_s, &track.velocity_covariance_m2_s2);
+                    let all = [off_m.norm_squared(), off_m_s.norm_squared(), nees_m, nees_m_s];
+                    sums.iter_mut().zip(all).for_each(|(sum, own)| *sum += own);
+                    frames += 1.0;
+                }
+            }
+        }
+        let [place, speed, nees_m, nees_m_s] = sums.map(|sum| sum / frames);
+        let told = [libm::sqrt(place), libm::sqrt(speed), nees_m / 3.0, nees_m_s / 3.0];
+        println!(
+            "tells {tells}: rms {:.3} m, {:.3} m/s, NEES/3 {:.2}, {:.2}",
+            told[0], told[1], told[2], told[3]
+        );
+        told
+    });
+    let [silent, told] = errors;
+    assert!(told[0] < 0.6 * silent[0] && told[1] < 0.5 * silent[1], "{errors:?}");
+    assert!(told[2] < 1.3 && told[3] < 1.3, "{errors:?}");
 }

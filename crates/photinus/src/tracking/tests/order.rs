@@ -43,6 +43,7 @@ fn track(
     let look = Look {
         time_s: *time_s,
         turned: Some(*turned),
+        moving: None,
         gravity: None,
         located,
         signals: &[],
@@ -164,6 +165,7 @@ fn one_lit_marker_keeps_a_track() {
         let look = Look {
             time_s,
             turned: Some(Turned { now_from_before: still, sigma_rad: 0.0 }),
+            moving: None,
             gravity: Some(down(&still)),
             located: observer
                 .locator

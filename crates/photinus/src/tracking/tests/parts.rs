@@ -9,7 +9,7 @@ use crate::pose::Pose;
 use crate::tracking::branches::Predicted;
 use crate::tracking::component::{Component, Covariance, Step, merged};
 use crate::tracking::joint::{Choice, Joint};
-use crate::tracking::motion::{Motion, Turn};
+use crate::tracking::motion::{Faster, Motion, Turn};
 use crate::tracking::reduction::reduce;
 use crate::tracking::settings::{Association, Settings};
 use crate::tracking::splitting::{split, straight_rad};
@@ -46,28 +46,31 @@ fn the_direction_of_a_marker_changes_as_differences_say() {
     }
 }
 
-/// The covariance of a prediction is that of predicted draws, the camera's turn among what is drawn.
+/// The covariance of a prediction is that of predicted draws, the camera's turn and how much faster it became among what is drawn.
 #[test]
 fn a_prediction_spreads_as_its_draws_do() {
     let mut rng = Pcg64::new(2, 1);
     let settings = Settings { acceleration: 1e-3, yaw_rate: 1e-3, tilt_time_s: 500.0, ..Settings::default() };
     let before =
         Component { covariance: any_component(&mut rng).covariance * 1e-4, ..any_component(&mut rng) };
-    let motion = |turn: Rotation3<f64>, sigma_rad: f64| Motion {
+    let by_m_s = Vector3::new(0.5, -0.2, 0.9);
+    let motion = |turn: Rotation3<f64>, by_m_s: Vector3<f64>, [sigma_rad, sigma_m_s]: [f64; 2]| Motion {
         interval_s: 0.4,
         turn: Turn { now_from_before: turn, sigma_rad },
+        faster: Some(Faster { by_m_s, sigma_m_s }),
         up: None,
         tilt_sigma_rad: 0.01,
     };
     let turn = Rotation3::new(Vector3::new(0.1, -0.4, 0.2));
-    let told = motion(turn, 2e-3).predict(&before, &settings);
+    let told = motion(turn, by_m_s, [2e-3, 0.05]).predict(&before, &settings);
     let root = before.covariance.cholesky().unwrap().l();
     let mut square = Covariance::zeros();
     let draws = 20_000;
     for _ in 0..draws {
         let drawn = before.stepped(&(root * Step::from_fn(|_, _| normal(&mut rng))));
         let turned = Rotation3::new(normal3(&mut rng) * 2e-3) * turn;
-        let off = told.step_to(&motion(turned, 0.0).predict(&drawn, &settings));
+        let faster_m_s = by_m_s + normal3(&mut rng) * 0.05;
+        let off = told.step_to(&motion(turned, faster_m_s, [0.0; 2]).predict(&drawn, &settings));
         square += off * off.transpose() / f64::from(draws);
     }
     for axis in 0..9 {

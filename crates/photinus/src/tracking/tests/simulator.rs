@@ -11,7 +11,7 @@ use crate::camera::{Bearing, Camera, Ideal, IdealLaw, Model, Pixel};
 use crate::locator::{self, Input, Locator};
 use crate::pose;
 use crate::spots::{Extent, Spot};
-use crate::tracking::{Look, Settings, Track, TrackError, Tracked, Tracker, Turned};
+use crate::tracking::{Look, Moving, Settings, Track, TrackError, Tracked, Tracker, Turned};
 
 pub(crate) const SIGMA_PX: f64 = 0.1;
 pub(crate) const RATE_HZ: f64 = 30.0;
@@ -60,13 +60,15 @@ pub(crate) struct Observer {
     before: Rotation3<f64>,
     /// How well its gyro tells a turn from frame to frame, rad.
     pub(crate) gyro_sigma_rad: f64,
+    /// How it moves over the ground, in its own axes, where it tells.
+    pub(crate) moving: Option<Moving>,
 }
 
 impl Observer {
     pub(crate) fn new(airframe: Airframe, settings: Settings) -> Self {
         let locator = Locator::new(camera(), &airframe, None, located_by()).unwrap();
         let tracker = Tracker::new(camera(), &airframe, &located_by(), settings).unwrap();
-        Self { airframe, locator, tracker, before: Rotation3::identity(), gyro_sigma_rad: 0.0 }
+        Self { airframe, locator, tracker, before: Rotation3::identity(), gyro_sigma_rad: 0.0, moving: None }
     }
 
     /// Forgets everything.
@@ -92,6 +94,7 @@ impl Observer {
         let look = Look {
             time_s,
             turned: Some(Turned { now_from_before, sigma_rad: self.gyro_sigma_rad }),
+            moving: self.moving,
             gravity: Some(gravity),
             located: self.locator.locate(Input::spots(&spots).gravity(&gravity)).expect("spots have no size"),
             signals: &[],

@@ -1,0 +1,185 @@
+//! How a camera turned from frame to frame, how fast it moves, and where down is: from what a dataset or a recording says of it, or from what arrives while it
+//! flies.
+
+use nalgebra::{Rotation3, Unit, UnitQuaternion, Vector3};
+use photinus::tracking::{self, Moving, Turned};
+use photinus_io::Result;
+use photinus_io::calibration::MountingFile;
+use photinus_io::dataset::{Dataset, ImuRow};
+
+use crate::motion::Motion;
+
+/// What an odometry's attitude is off by from frame to frame, rad per axis.
+const ODOMETRY_SIGMA_RAD: f64 = 3e-3;
+/// What the change of its velocity is off by from frame to frame, m/s per axis: 0.05 m/s in each of two.
+const ODOMETRY_SIGMA_M_S: f64 = 0.07;
+/// What an odometry says at times this far apart, s, says nothing of what is between.
+const LONGEST_GAP_S: f64 = 0.25;
+
+/// What tells how a camera moves.
+#[derive(Debug)]
+pub enum Course {
+    /// What was recorded of it.
+    Told(Told),
+    /// What arrives while frames do, of the body that the camera sits on.
+    Live {
+        /// What the vehicle says of its motion.
+        motion: Motion,
+        /// How the camera sits on it.
+        body_from_camera: UnitQuaternion<f64>,
+    },
+}
+
+/// How a camera moved, each in the order of time, s; empty where nothing says it.
+#[derive(Clone, Debug, Default)]
+pub struct Told {
+    /// Rates of turn in its own axes, rad/s. They go before attitudes.
+    pub rates: Vec<(f64, Vector3<f64>)>,
+    /// Attitudes world_from_camera.
+    pub attitudes: Vec<(f64, UnitQuaternion<f64>)>,
+    /// Velocities over the ground in its own axes, m/s.
+    pub velocities: Vec<(f64, Vector3<f64>)>,
+    /// Whether the attitudes say where down is: their world has z up.
+    pub has_down: bool,
+}
+
+impl Default for Course {
+    /// Nothing is known.
+    fn default() -> Self {
+        Self::Told(Told::default())
+    }
+}
+
+impl Course {
+    /// What a dataset says of a camera that is mounted so: its gyro and its odometry. A dataset without mountings has its gyro in the camera's frame; its
+    /// odometry is that of the vehicle, and says nothing of a camera whose mounting is not known.
+    ///
+    /// # Errors
+    /// As [`Dataset::imu`] and [`Dataset::odometry`].
+    pub fn of(dataset: &Dataset, is_rig: bool, mounting: Option<&MountingFile>) -> Result<Self> {
+        let (imu, odometry) = (dataset.imu()?, dataset.odometry()?);
+        let mut told = Told::default();
+        let camera_from_body = mounting.map(|mounting| mounting.body_from_camera.inverse());
+        let camera_from_gyro = if is_rig { camera_from_body } else { Some(UnitQuaternion::identity()) };
+        if let Some(camera_from_gyro) = camera_from_gyro {
+            let rate = |row: ImuRow| (row.time_s, camera_from_gyro * row.turn_rad_s);
+            told.rates.extend(imu.into_iter().flatten().map(rate));
+        }
+        if let Some(camera_from_body) = camera_from_body {
+            for row in odometry.into_iter().flatten() {
+                let attitude = row.pose.rotation * camera_from_body.inverse();
+                told.attitudes.push((row.time_s, attitude));
+                told.velocities.push((row.time_s, attitude.inverse() * row.velocity_m_s));
+            }
+        }
+        Ok(Self::Told(told))
+    }
+
+    /// How the camera turned between two times.
+    pub(crate) fn turned(&self, from_s: f64, to_s: f64) -> Option<Turned> {
+        let turned = |told: &Told| {
+            tracking::turned(&told.rates, from_s, to_s).or_else(|| turned_by(&told.attitudes, from_s, to_s))
+        };
+        self.with(turned)
+    }
+
+    /// How fast the camera moves at a time.
+    pub(crate) fn moving(&self, time_s: f64) -> Option<Moving> {
+        let at = |told: &Told| at(&told.velocities, time_s, |from, to, share| from.lerp(to, share));
+        self.with(at).map(|velocity_m_s| Moving { velocity_m_s, sigma_m_s: ODOMETRY_SIGMA_M_S })
+    }
+
+    /// Down in the camera frame at a time, where attitudes are known against a world with z up.
+    pub(crate) fn down(&self, time_s: f64) -> Option<Unit<Vector3<f64>>> {
+        let attitude = |told: &Told| told.has_down.then(|| attitude_at(&told.attitudes, time_s)).flatten();
+        self.with(attitude).map(|world_from_camera| world_from_camera.inverse() * -Vector3::z_axis())
+    }
+
+    fn with<T>(&self, ask: impl FnOnce(&Told) -> T) -> T {
+        match self {
+            Self::Told(told) => ask(told),
+            Self::Live { motion, body_from_camera } => ask(&seen_from(motion, body_from_camera)),
+        }
+    }
+}
+
+/// What a vehicle says by now of its motion, as that of a camera on it.
+fn seen_from(motion: &Motion, body_from_camera: &UnitQuaternion<f64>) -> Told {
+    let camera_from_body = body_from_camera.inverse();
+    let turn = |(time_s, told): (f64, Vector3<f64>)| (time_s, camera_from_body * told);
+    let attitude = |(time_s, attitude)| (time_s, attitude * body_from_camera);
+    Told {
+        rates: motion.rates().into_iter().map(turn).collect(),
+        attitudes: motion.attitudes().into_iter().map(attitude).collect(),
+        velocities: motion.velocities().into_iter().map(turn).collect(),
+        has_down: true,
+    }
+}
+
+/// How a camera with these attitudes turned between two times.
+fn turned_by(attitudes: &[(f64, UnitQuaternion<f64>)], from_s: f64, to_s: f64) -> Option<Turned> {
+    let [before, now] = [attitude_at(attitudes, from_s)?, attitude_at(attitudes, to_s)?];
+    let now_from_before: Rotation3<f64> = (now.inverse() * before).to_rotation_matrix();
+    Some(Turned { now_from_before, sigma_rad: ODOMETRY_SIGMA_RAD })
+}
+
+/// The attitude at a time, turned evenly between those before and after it.
+fn attitude_at(attitudes: &[(f64, UnitQuaternion<f64>)], time_s: f64) -> Option<UnitQuaternion<f64>> {
+    at(attitudes, time_s, |begin, end, share| {
+        let turn = (begin.inverse() * end).scaled_axis() * share;
+        begin * UnitQuaternion::from_scaled_axis(turn)
+    })
+}
+
+/// What is told at a time, between what is told before and after it.
+fn at<T: Copy>(told: &[(f64, T)], time_s: f64, between: impl FnOnce(&T, &T, f64) -> T) -> Option<T> {
+    let after = told.partition_point(|own| own.0 < time_s);
+    let (end_s, end) = told.get(after)?;
+    if *end_s <= time_s {
+        return Some(*end);
+    }
+    let (begin_s, begin) = told.get(after.checked_sub(1)?)?;
+    let share = (time_s - begin_s) / (end_s - begin_s);
+    (end_s - begin_s <= LONGEST_GAP_S).then(|| between(begin, end, share))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_recording_says_where_down_is_and_how_the_camera_turned_by_rates_or_else_by_attitudes() {
+        // It turns at 1 rad/s about its x axis, from level (z up) on.
+        let at = |time_s: f64| (time_s, UnitQuaternion::from_euler_angles(time_s, 0.0, 0.0));
+        let attitudes: Vec<_> = (0..=10).map(|step| at(0.1 * f64::from(step))).collect();
+        let of = |rates| {
+            let attitudes = attitudes.clone();
+            Course::Told(Told { rates, attitudes, has_down: true, ..Told::default() })
+        };
+        // Between two attitudes it turns evenly.
+        let down = of(Vec::new()).down(0.55).unwrap();
+        assert!((down.into_inner() - Vector3::new(0.0, -libm::sin(0.55), -libm::cos(0.55))).norm() < 1e-9);
+        assert!(of(Vec::new()).down(1.5).is_none() && of(Vec::new()).down(-0.1).is_none());
+        let turned = of(Vec::new()).turned(0.2, 0.25).unwrap().now_from_before;
+        assert!((turned.scaled_axis() + Vector3::x() * 0.05).norm() < 1e-9, "{turned}");
+        let rates: Vec<_> =
+            (0..=100).map(|step| (0.01 * f64::from(step), Vector3::new(2.0, 0.0, 0.0))).collect();
+        let turned = of(rates).turned(0.2, 0.25).unwrap().now_from_before;
+        assert!((turned.scaled_axis() + Vector3::x() * 0.1).norm() < 1e-9, "rates go before: {turned}");
+    }
+
+    #[test]
+    fn velocities_of_a_vehicle_are_told_in_the_axes_of_its_camera() {
+        // The camera looks to the left of the body, z ahead of it, and its x axis along the body's.
+        let body_from_camera = UnitQuaternion::from_euler_angles(-std::f64::consts::FRAC_PI_2, 0.0, 0.0);
+        let motion = Motion::default();
+        motion.velocity(1.0, Vector3::new(2.0, 0.0, 0.0));
+        motion.velocity(1.1, Vector3::new(2.0, 1.0, 0.0));
+        motion.velocity(1.05, Vector3::new(9.0, 9.0, 9.0));
+        motion.velocity(2.0, Vector3::repeat(f64::NAN));
+        let course = Course::Live { motion, body_from_camera };
+        let moving = course.moving(1.05).unwrap();
+        assert!((moving.velocity_m_s - Vector3::new(2.0, 0.0, 0.5)).norm() < 1e-9, "{moving:?}");
+        assert!(course.moving(0.99).is_none() && course.moving(1.11).is_none());
+    }
+}

@@ -7,6 +7,7 @@ use photinus::tracking::{Moving, Turned};
 use photinus_io::frames::{Frame, Moved};
 use photinus_io::image::{GreyImage, decode_image};
 use photinus_io::{Error, Place, Result};
+use serde::Deserialize;
 
 use super::Topic;
 use super::read::{Messages, Recording};
@@ -162,13 +163,29 @@ fn image(bytes: &[u8], path: &Path) -> Result<(ros::Header, GreyImage)> {
     Ok((message.header, file.image))
 }
 
-/// What is known of a frame; recordings of versions before 0.2 end with gravity.
+/// What is known of a frame, also as it stood in recordings before motions were kept.
 fn known_of(bytes: &[u8]) -> std::result::Result<ros::Frame, CdrError> {
-    cdr::decode::<ros::Frame>(bytes).or_else(|error| {
-        let longer = [bytes, &[0; 16]].concat();
-        let is_before = |frame: &ros::Frame| frame.turned.is_empty() && frame.moving.is_empty();
-        cdr::decode(&longer).ok().filter(is_before).ok_or(error)
-    })
+    cdr::decode(bytes).or_else(|error| cdr::decode(bytes).map(WithoutMotion::whole).map_err(|_| error))
+}
+
+/// photinus_msgs/Frame without motions.
+#[derive(Deserialize)]
+struct WithoutMotion {
+    header: ros::Header,
+    camera: String,
+    frame: u64,
+    time: f64,
+    exposure: f64,
+    source: String,
+    gravity: Vec<f64>,
+}
+
+impl WithoutMotion {
+    fn whole(self) -> ros::Frame {
+        let Self { header, camera, frame, time, exposure, source, gravity } = self;
+        let (turned, moving) = (Vec::new(), Vec::new());
+        ros::Frame { header, camera, frame, time, exposure, source, gravity, turned, moving }
+    }
 }
 
 /// How the camera moved, to the bit.
@@ -198,4 +215,40 @@ fn down(gravity: &[f64]) -> Option<Unit<Vector3<f64>>> {
     let down = Vector3::new(x, y, z);
     // As it was told, to the bit; what is not a unit vector is left out.
     ((down.norm() - 1.0).abs() < 0.01).then(|| Unit::new_unchecked(down))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_known_of_a_frame_is_read_from_recordings_made_before_motions_were_kept() {
+        for gravity in [vec![], vec![0.0, 1.0, 0.0]] {
+            let frame =
+                ros::Frame { frame: 7, time: 0.5, source: "a".to_owned(), gravity, ..ros::Frame::default() };
+            let now = cdr::encode(&frame).unwrap();
+            // Two lists without an entry are their two lengths.
+            let before = &now[..now.len() - 8];
+            assert_eq!(known_of(before).unwrap(), frame);
+            assert_eq!(known_of(&now).unwrap(), frame);
+            assert!(known_of(&before[..before.len() - 5]).is_err());
+            assert_eq!(moved(&frame), Moved::default());
+        }
+    }
+
+    #[test]
+    fn motions_that_are_none_are_left_out() {
+        let of = |turned: [f64; 10], moving: [f64; 4]| {
+            moved(&ros::Frame { turned: turned.to_vec(), moving: moving.to_vec(), ..ros::Frame::default() })
+        };
+        let still = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 1e-3];
+        let told = of(still, [1.0, 2.0, 3.0, 0.1]);
+        assert!(
+            told.turned.is_some_and(|turned| (turned.sigma_rad - 1e-3).abs() < 1e-15)
+                && told.moving.is_some()
+        );
+        let stretched = [2.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 1e-3];
+        assert_eq!(of(stretched, [f64::NAN, 2.0, 3.0, 0.1]), Moved::default());
+        assert_eq!(of([f64::NAN; 10], [1.0, 2.0, 3.0, -0.1]), Moved::default());
+    }
 }

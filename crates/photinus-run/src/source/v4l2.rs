@@ -6,7 +6,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use photinus_io::frames::Frame;
+use photinus_io::frames::{Frame, Moved};
 use photinus_io::{Error, Result};
 use rustix::time::{ClockId, clock_gettime};
 use v4l::buffer::{Flags, Metadata, Type};
@@ -167,8 +167,8 @@ impl V4l2 {
         let taken = taken(&meta, exposure_s);
         let time_s = Some(self.clock.unix_s(taken) - exposure_s);
         let source = name.display().to_string();
-        let frame =
-            Frame { image, index: u64::from(meta.sequence), time_s, source, gravity: None, conversions };
+        let (index, gravity, moved) = (u64::from(meta.sequence), None, Moved::default());
+        let frame = Frame { image, index, time_s, source, gravity, moved, conversions };
         let mut entry = Entry::from_frame(frame);
         entry.taken = Some(taken);
         entry.exposure_s = Some(exposure_s);

@@ -1,4 +1,4 @@
-//! What reads heads of requests and WebSocket messages, fed with what nobody should send: 100,000 of each, `PHOTINUS_CASES` says how many.
+//! What reads heads of requests and WebSocket messages, fed with what nobody should send: 1,000,000 of each, `PHOTINUS_CASES` says how many.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
@@ -11,7 +11,7 @@ use crate::request::{Answer, LONGEST, answer};
 use crate::server::{LONGEST_MESSAGE, socket};
 
 fn cases() -> u64 {
-    std::env::var("PHOTINUS_CASES").ok().and_then(|cases| cases.parse().ok()).unwrap_or(100_000)
+    std::env::var("PHOTINUS_CASES").ok().and_then(|cases| cases.parse().ok()).unwrap_or(1_000_000)
 }
 
 fn below(random: &mut Pcg64, most: usize) -> usize {

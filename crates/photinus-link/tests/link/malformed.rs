@@ -1,4 +1,4 @@
-//! What reads messages of others, fed with what nobody should send: 100,000 of each kind of link, `PHOTINUS_CASES` says how many. The same bytes
+//! What reads messages of others, fed with what nobody should send: 1,000,000 of each kind of link, `PHOTINUS_CASES` says how many. The same bytes
 //! come by ROS 2 and by Zenoh: both carry CDR.
 
 use photinus_link::cdr::{decode, encode};
@@ -13,7 +13,7 @@ use rand_pcg::rand_core::Rng;
 use crate::sample;
 
 fn cases() -> usize {
-    std::env::var("PHOTINUS_CASES").ok().and_then(|cases| cases.parse().ok()).unwrap_or(100_000)
+    std::env::var("PHOTINUS_CASES").ok().and_then(|cases| cases.parse().ok()).unwrap_or(1_000_000)
 }
 
 /// The most memory that this program ever had, MB.

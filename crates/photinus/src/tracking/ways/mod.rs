@@ -3,6 +3,14 @@
 //! Ways come from the prediction ([`super::branches`]) and, where that is too wide to tell markers apart, from the neighbours that the locator found near
 //! it: their poses say which spots are which markers and where to begin. Either way the weight is the density of the frame's spots under the vehicle's own
 //! prediction, so that a neighbour located again is a way to look at the same spots and no second sight of them.
+//!
+//! ```text
+//! screening    which vehicles may hide others
+//! candidates   which ways are worth a try, of all vehicles          branches, located
+//! trying       each with its Kalman update and its weight, but      update
+//!              those that are certain to count for nothing
+//! blinking     which markers are lit at a pose, for both
+//! ```
 
 mod blinking;
 mod candidates;

@@ -1,6 +1,8 @@
 //! How a camera turned from frame to frame, how fast it moves, and where down is: from what a dataset or a recording says of it, or from what arrives while it
 //! flies.
 
+use std::borrow::Cow;
+
 use nalgebra::{Rotation3, Unit, UnitQuaternion, Vector3};
 use photinus::tracking::{self, Moving, Turned};
 use photinus_io::Result;
@@ -77,43 +79,61 @@ impl Course {
 
     /// How the camera turned between two times.
     pub(crate) fn turned(&self, from_s: f64, to_s: f64) -> Option<Turned> {
-        let turned = |told: &Told| {
-            tracking::turned(&told.rates, from_s, to_s).or_else(|| turned_by(&told.attitudes, from_s, to_s))
-        };
-        self.with(turned)
+        tracking::turned(&self.rates(), from_s, to_s).or_else(|| turned_by(&self.attitudes(), from_s, to_s))
     }
 
     /// How fast the camera moves at a time.
     pub(crate) fn moving(&self, time_s: f64) -> Option<Moving> {
-        let at = |told: &Told| at(&told.velocities, time_s, |from, to, share| from.lerp(to, share));
-        self.with(at).map(|velocity_m_s| Moving { velocity_m_s, sigma_m_s: ODOMETRY_SIGMA_M_S })
+        let velocity_m_s = at(&self.velocities(), time_s, |from, to, share| from.lerp(to, share))?;
+        Some(Moving { velocity_m_s, sigma_m_s: ODOMETRY_SIGMA_M_S })
     }
 
     /// Down in the camera frame at a time, where attitudes are known against a world with z up.
     pub(crate) fn down(&self, time_s: f64) -> Option<Unit<Vector3<f64>>> {
-        let attitude = |told: &Told| told.has_down.then(|| attitude_at(&told.attitudes, time_s)).flatten();
-        self.with(attitude).map(|world_from_camera| world_from_camera.inverse() * -Vector3::z_axis())
+        let has_down = match self {
+            Self::Told(told) => told.has_down,
+            Self::Live { .. } => true,
+        };
+        let world_from_camera = has_down.then(|| attitude_at(&self.attitudes(), time_s)).flatten()?;
+        Some(world_from_camera.inverse() * -Vector3::z_axis())
     }
 
-    fn with<T>(&self, ask: impl FnOnce(&Told) -> T) -> T {
+    fn rates(&self) -> Cow<'_, [(f64, Vector3<f64>)]> {
         match self {
-            Self::Told(told) => ask(told),
-            Self::Live { motion, body_from_camera } => ask(&seen_from(motion, body_from_camera)),
+            Self::Told(told) => Cow::Borrowed(&told.rates),
+            Self::Live { motion, body_from_camera } => {
+                Cow::Owned(in_camera(motion.rates(), body_from_camera))
+            }
+        }
+    }
+
+    fn velocities(&self) -> Cow<'_, [(f64, Vector3<f64>)]> {
+        match self {
+            Self::Told(told) => Cow::Borrowed(&told.velocities),
+            Self::Live { motion, body_from_camera } => {
+                Cow::Owned(in_camera(motion.velocities(), body_from_camera))
+            }
+        }
+    }
+
+    fn attitudes(&self) -> Cow<'_, [(f64, UnitQuaternion<f64>)]> {
+        match self {
+            Self::Told(told) => Cow::Borrowed(&told.attitudes),
+            Self::Live { motion, body_from_camera } => {
+                let attitude = |(time_s, attitude)| (time_s, attitude * body_from_camera);
+                Cow::Owned(motion.attitudes().into_iter().map(attitude).collect())
+            }
         }
     }
 }
 
-/// What a vehicle says by now of its motion, as that of a camera on it.
-fn seen_from(motion: &Motion, body_from_camera: &UnitQuaternion<f64>) -> Told {
+/// What is told in the axes of the body, in those of a camera on it.
+fn in_camera(
+    of_body: Vec<(f64, Vector3<f64>)>,
+    body_from_camera: &UnitQuaternion<f64>,
+) -> Vec<(f64, Vector3<f64>)> {
     let camera_from_body = body_from_camera.inverse();
-    let turn = |(time_s, told): (f64, Vector3<f64>)| (time_s, camera_from_body * told);
-    let attitude = |(time_s, attitude)| (time_s, attitude * body_from_camera);
-    Told {
-        rates: motion.rates().into_iter().map(turn).collect(),
-        attitudes: motion.attitudes().into_iter().map(attitude).collect(),
-        velocities: motion.velocities().into_iter().map(turn).collect(),
-        has_down: true,
-    }
+    of_body.into_iter().map(|(time_s, told)| (time_s, camera_from_body * told)).collect()
 }
 
 /// How a camera with these attitudes turned between two times.

@@ -72,6 +72,8 @@ pub struct Autopilot {
     sequence: u8,
     cameras: Vec<Camera>,
     clock: ClockOffset,
+    /// Odometries are stamped by whoever makes them, not always by the autopilot.
+    odometry_clock: ClockOffset,
     attitude: Option<Attitude>,
     own: Option<Own>,
     began_s: f64,
@@ -104,6 +106,7 @@ impl Autopilot {
             sequence: 0,
             cameras: Vec::new(),
             clock: ClockOffset::default(),
+            odometry_clock: ClockOffset::default(),
             attitude: None,
             own: None,
             began_s: now_s,
@@ -231,7 +234,9 @@ impl Autopilot {
             MavMessage::LOCAL_POSITION_NED(data) => {
                 heard::speed(data, &self.attitude?, &mut self.clock, now_s).map(Heard::Speed)
             }
-            MavMessage::ODOMETRY(data) => heard::odometry(data, &mut self.clock, now_s).map(Heard::Speed),
+            MavMessage::ODOMETRY(data) => {
+                heard::odometry(data, &mut self.odometry_clock, now_s).map(Heard::Speed)
+            }
             MavMessage::GLOBAL_POSITION_INT(data) => {
                 self.own = Some(heard::own(data, &self.attitude?));
                 self.own.map(Heard::Own)

@@ -279,7 +279,7 @@ impl Moment {
 
     /// How much faster the camera became since it moved so, where both are known, and how it turned meanwhile: its velocities are in its own axes.
     pub(super) fn faster(&self, turn: &Turn, before: Option<&Moving>) -> Option<Faster> {
-        let (before, now, _) = (before?, self.moving?, self.turned?);
+        let (before, now) = (before?, self.moving.filter(|_| self.turned.is_some())?);
         let by_m_s = now.velocity_m_s - turn.now_from_before * before.velocity_m_s;
         Some(Faster { by_m_s, sigma_m_s: now.sigma_m_s })
     }

@@ -26,9 +26,10 @@ const WRONG: f64 = 1e-3;
 /// ... and then nothing is known of it but this: its distance to this much of itself, and yaw, rad.
 const ANEW_SHARE: f64 = 0.5;
 const ANEW_YAW_RAD: f64 = 1.0;
+
 impl Ways {
-    /// Gathers the ways that a neighbour's poses offer a distribution, where it does not tell by itself which of the neighbour's spots are which markers;
-    /// `first` is its first candidate.
+    /// Gathers the ways that a neighbour's poses offer a distribution, where none of its own takes all of the neighbour's spots; `first` is its first
+    /// candidate.
     pub(super) fn gather_at_neighbour(
         &mut self,
         scene: &Scene<'_>,

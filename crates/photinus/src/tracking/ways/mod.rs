@@ -1,7 +1,7 @@
 //! A predicted vehicle and a frame -> the ways in which the frame may show it, each with the state that follows and its weight.
 //!
-//! Ways come from the prediction ([`super::branches`]) and, where that is too wide to tell markers apart, from the neighbours that the locator found near
-//! it: their poses say which spots are which markers and where to begin. Either way the weight is the density of the frame's spots under the vehicle's own
+//! Ways come from the prediction ([`super::branches`]) and, where none of those takes all spots of a neighbour that the locator found near it, from that
+//! neighbour: its poses say which spots are which markers and where to begin. Either way the weight is the density of the frame's spots under the vehicle's own
 //! prediction, so that a neighbour located again is a way to look at the same spots and no second sight of them.
 //!
 //! ```text

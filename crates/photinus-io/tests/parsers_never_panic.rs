@@ -79,8 +79,9 @@ fn imu_text(rows: &[ImuRow]) -> String {
 
 fn odometry_text(rows: &[OdometryRow]) -> String {
     let lines = rows.iter().map(|row| row.line() + "\n");
-    let header = "time_s,x_m,y_m,z_m,qx,qy,qz,qw,vx_m_s,vy_m_s,vz_m_s\n";
-    lines.fold(header.to_owned(), |text, line| text + &line)
+    let sigma = if rows[0].velocity_sigma_m_s.is_some() { ",velocity_sigma_m_s" } else { "" };
+    let header = format!("time_s,x_m,y_m,z_m,qx,qy,qz,qw,vx_m_s,vy_m_s,vz_m_s{sigma}\n");
+    lines.fold(header, |text, line| text + &line)
 }
 
 /// Every parser on the same bytes. What is read must also stand being written.

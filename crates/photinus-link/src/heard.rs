@@ -85,8 +85,8 @@ impl Heard {
         if let Some(attitude) = turning.attitude {
             self.motion.attitude(time_s, attitude);
         }
-        if let Some(velocity_m_s) = turning.velocity_m_s {
-            self.motion.velocity(time_s, velocity_m_s);
+        if let Some(velocity) = turning.velocity {
+            self.motion.velocity(time_s, velocity);
         }
     }
 

@@ -2,6 +2,7 @@
 //! flies.
 
 use std::borrow::Cow;
+use std::f64::consts::SQRT_2;
 
 use nalgebra::{Rotation3, Unit, UnitQuaternion, Vector3};
 use photinus::tracking::{self, Moving, Turned};
@@ -9,12 +10,10 @@ use photinus_io::Result;
 use photinus_io::calibration::MountingFile;
 use photinus_io::dataset::{Dataset, ImuRow};
 
-use crate::motion::Motion;
+use crate::motion::{Motion, Velocity};
 
 /// What an odometry's attitude is off by from frame to frame, rad per axis.
 const ODOMETRY_SIGMA_RAD: f64 = 3e-3;
-/// What the change of its velocity is off by from frame to frame, m/s per axis: 0.05 m/s in each of two.
-const ODOMETRY_SIGMA_M_S: f64 = 0.07;
 /// What an odometry says at times this far apart, s, says nothing of what is between.
 const LONGEST_GAP_S: f64 = 0.25;
 
@@ -39,8 +38,8 @@ pub struct Told {
     pub rates: Vec<(f64, Vector3<f64>)>,
     /// Attitudes world_from_camera.
     pub attitudes: Vec<(f64, UnitQuaternion<f64>)>,
-    /// Velocities over the ground in its own axes, m/s.
-    pub velocities: Vec<(f64, Vector3<f64>)>,
+    /// Velocities over the ground in its own axes.
+    pub velocities: Vec<(f64, Velocity)>,
     /// Whether the attitudes say where down is: their world has z up.
     pub has_down: bool,
 }
@@ -71,7 +70,8 @@ impl Course {
             for row in odometry.into_iter().flatten() {
                 let attitude = row.pose.rotation * camera_from_body.inverse();
                 told.attitudes.push((row.time_s, attitude));
-                told.velocities.push((row.time_s, attitude.inverse() * row.velocity_m_s));
+                let velocity = Velocity::new(row.velocity_m_s, row.velocity_sigma_m_s);
+                told.velocities.push((row.time_s, velocity.turned(&attitude.inverse())));
             }
         }
         Ok(Self::Told(told))
@@ -82,10 +82,10 @@ impl Course {
         tracking::turned(&self.rates(), from_s, to_s).or_else(|| turned_by(&self.attitudes(), from_s, to_s))
     }
 
-    /// How fast the camera moves at a time.
+    /// How fast the camera moves at a time. Nobody says how much of a velocity's error the next one shares: none of it is the worst for what it gained.
     pub(crate) fn moving(&self, time_s: f64) -> Option<Moving> {
-        let velocity_m_s = at(&self.velocities(), time_s, |from, to, share| from.lerp(to, share))?;
-        Some(Moving { velocity_m_s, sigma_m_s: ODOMETRY_SIGMA_M_S })
+        let told = at(&self.velocities(), time_s, Velocity::lerp)?;
+        Some(Moving { velocity_m_s: told.velocity_m_s, sigma_m_s: SQRT_2 * told.sigma_m_s })
     }
 
     /// Down in the camera frame at a time, where attitudes are known against a world with z up.
@@ -102,16 +102,21 @@ impl Course {
         match self {
             Self::Told(told) => Cow::Borrowed(&told.rates),
             Self::Live { motion, body_from_camera } => {
-                Cow::Owned(in_camera(motion.rates(), body_from_camera))
+                let camera_from_body = body_from_camera.inverse();
+                let rate = |(time_s, of_body)| (time_s, camera_from_body * of_body);
+                Cow::Owned(motion.rates().into_iter().map(rate).collect())
             }
         }
     }
 
-    fn velocities(&self) -> Cow<'_, [(f64, Vector3<f64>)]> {
+    fn velocities(&self) -> Cow<'_, [(f64, Velocity)]> {
         match self {
             Self::Told(told) => Cow::Borrowed(&told.velocities),
             Self::Live { motion, body_from_camera } => {
-                Cow::Owned(in_camera(motion.velocities(), body_from_camera))
+                let camera_from_body = body_from_camera.inverse();
+                let velocity =
+                    |(time_s, velocity): (f64, Velocity)| (time_s, velocity.turned(&camera_from_body));
+                Cow::Owned(motion.velocities().into_iter().map(velocity).collect())
             }
         }
     }
@@ -125,15 +130,6 @@ impl Course {
             }
         }
     }
-}
-
-/// What is told in the axes of the body, in those of a camera on it.
-fn in_camera(
-    of_body: Vec<(f64, Vector3<f64>)>,
-    body_from_camera: &UnitQuaternion<f64>,
-) -> Vec<(f64, Vector3<f64>)> {
-    let camera_from_body = body_from_camera.inverse();
-    of_body.into_iter().map(|(time_s, told)| (time_s, camera_from_body * told)).collect()
 }
 
 /// How a camera with these attitudes turned between two times.
@@ -193,13 +189,25 @@ mod tests {
         // The camera looks to the left of the body, z ahead of it, and its x axis along the body's.
         let body_from_camera = UnitQuaternion::from_euler_angles(-std::f64::consts::FRAC_PI_2, 0.0, 0.0);
         let motion = Motion::default();
-        motion.velocity(1.0, Vector3::new(2.0, 0.0, 0.0));
-        motion.velocity(1.1, Vector3::new(2.0, 1.0, 0.0));
-        motion.velocity(1.05, Vector3::new(9.0, 9.0, 9.0));
-        motion.velocity(2.0, Vector3::repeat(f64::NAN));
+        let hear = |time_s: f64, [x, y, z]: [f64; 3], variance: f64| {
+            let velocity_m_s = Vector3::new(x, y, z);
+            motion.velocity(time_s, Velocity::with_variances(velocity_m_s, Vector3::repeat(variance)));
+        };
+        hear(1.0, [2.0, 0.0, 0.0], 0.01);
+        hear(1.1, [2.0, 1.0, 0.0], 0.09);
+        hear(1.05, [9.0, 9.0, 9.0], 0.01);
+        for (number, untold) in [0.0, -1.0, f64::NAN, f64::INFINITY].into_iter().enumerate() {
+            hear(1.2 + 0.1 * number as f64, [0.0; 3], untold);
+        }
+        hear(2.0, [f64::NAN; 3], 0.01);
         let course = Course::Live { motion, body_from_camera };
         let moving = course.moving(1.05).unwrap();
         assert!((moving.velocity_m_s - Vector3::new(2.0, 0.0, 0.5)).norm() < 1e-9, "{moving:?}");
-        assert!(course.moving(0.99).is_none() && course.moving(1.11).is_none());
+        assert!((moving.sigma_m_s - 0.2 * SQRT_2).abs() < 1e-9, "{moving:?}");
+        for time_s in [1.2, 1.3, 1.4, 1.5] {
+            let untold = course.moving(time_s).unwrap().sigma_m_s;
+            assert!((untold - 0.05 * SQRT_2).abs() < 1e-9, "{time_s}: {untold}");
+        }
+        assert!(course.moving(0.99).is_none() && course.moving(1.51).is_none());
     }
 }

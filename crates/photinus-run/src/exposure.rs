@@ -5,6 +5,7 @@
 //! a k that is learnt from located neighbours. One with saturated spots tells only that k is at least so much: until k is known, the exposure is halved
 //! for such a one. Before any neighbour was seen, nothing is changed.
 
+use nalgebra::Vector3;
 use photinus_io::results::{FrameRecord, NeighbourRecord};
 
 use crate::Entry;
@@ -90,8 +91,10 @@ impl Exposure {
     }
 
     fn learn(&mut self, record: &FrameRecord, exposure_us: f64) {
-        let distances_m = record.neighbours.iter().filter_map(|neighbour| neighbour.distance_m.estimate);
-        self.nearest_m = [distances_m.reduce(f64::min), self.nearest_m[0]];
+        // One that blinks is followed through frames in which it is dark.
+        let followed_m = record.tracks.iter().map(|track| Vector3::from(track.position_m).norm());
+        let seen_m = record.neighbours.iter().filter_map(|neighbour| neighbour.distance_m.estimate);
+        self.nearest_m = [seen_m.chain(followed_m).reduce(f64::min), self.nearest_m[0]];
         for neighbour in &record.neighbours {
             let Some(seen) = light(record, neighbour, exposure_us) else { continue };
             self.k = Some(self.k.map_or(seen, |known| known.with(seen)));

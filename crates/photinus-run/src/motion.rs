@@ -13,6 +13,47 @@ const KEPT_S: f64 = 5.0;
 /// What is kept of a source that sends without measure.
 const MOST: usize = 10_000;
 
+/// A velocity over the ground.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Velocity {
+    /// m/s, in whatever axes it is told in.
+    pub velocity_m_s: Vector3<f64>,
+    /// Standard deviation of its error, per axis, m/s.
+    pub sigma_m_s: f64,
+}
+
+impl Velocity {
+    /// Standard deviation of one of which nobody says it, m/s per axis: a good odometry's.
+    const UNTOLD_SIGMA_M_S: f64 = 0.05;
+
+    /// A velocity with its standard deviation per axis, where that is told: what is no positive number is not.
+    #[must_use]
+    pub fn new(velocity_m_s: Vector3<f64>, sigma_m_s: Option<f64>) -> Self {
+        let told = sigma_m_s.filter(|sigma_m_s| *sigma_m_s > 0.0 && sigma_m_s.is_finite());
+        Self { velocity_m_s, sigma_m_s: told.unwrap_or(Self::UNTOLD_SIGMA_M_S) }
+    }
+
+    /// A velocity with the variances along its axes, m^2/s^2: zeros, as of a message that nobody filled in, say nothing.
+    #[must_use]
+    pub fn with_variances(velocity_m_s: Vector3<f64>, variances_m2_s2: Vector3<f64>) -> Self {
+        Self::new(velocity_m_s, Some(variances_m2_s2.mean().sqrt()))
+    }
+
+    /// The same in other axes.
+    #[must_use]
+    pub fn turned(&self, turn: &UnitQuaternion<f64>) -> Self {
+        Self { velocity_m_s: turn * self.velocity_m_s, ..*self }
+    }
+
+    /// Between two, this share of the way.
+    pub(crate) fn lerp(&self, to: &Self, share: f64) -> Self {
+        Self {
+            velocity_m_s: self.velocity_m_s.lerp(&to.velocity_m_s, share),
+            sigma_m_s: self.sigma_m_s + share * (to.sigma_m_s - self.sigma_m_s),
+        }
+    }
+}
+
 /// What the vehicle says of its motion. A clone is the same motion.
 #[derive(Clone, Debug, Default)]
 pub struct Motion(Arc<Mutex<Known>>);
@@ -21,7 +62,7 @@ pub struct Motion(Arc<Mutex<Known>>);
 struct Known {
     rates: VecDeque<(f64, Vector3<f64>)>,
     attitudes: VecDeque<(f64, UnitQuaternion<f64>)>,
-    velocities: VecDeque<(f64, Vector3<f64>)>,
+    velocities: VecDeque<(f64, Velocity)>,
 }
 
 impl Motion {
@@ -39,10 +80,10 @@ impl Motion {
         }
     }
 
-    /// A velocity over the ground, m/s in the body frame. What is not later than the last one is left out.
-    pub fn velocity(&self, time_s: f64, velocity_m_s: Vector3<f64>) {
-        if velocity_m_s.iter().all(|part| part.is_finite()) {
-            put(&mut self.known().velocities, time_s, velocity_m_s);
+    /// A velocity over the ground in the body frame. What is not later than the last one is left out.
+    pub fn velocity(&self, time_s: f64, velocity: Velocity) {
+        if velocity.velocity_m_s.iter().all(|part| part.is_finite()) {
+            put(&mut self.known().velocities, time_s, velocity);
         }
     }
 
@@ -57,7 +98,7 @@ impl Motion {
     }
 
     /// The velocities that are known, in the order of time.
-    pub fn velocities(&self) -> Vec<(f64, Vector3<f64>)> {
+    pub fn velocities(&self) -> Vec<(f64, Velocity)> {
         self.known().velocities.iter().copied().collect()
     }
 

@@ -172,11 +172,11 @@ pub fn locate(
     let given = entry.record.spots.iter().map(|record| (Spot::from(record), record.signal));
     let spots: Vec<(Spot, Option<u32>)> = given.collect();
     let input = view.as_ref().map_or_else(|| Input::signalled(&spots), Input::frame);
-    let located =
-        locator.locate(input.gravity(gravity).sun(entry.sun).finished(finished)).map_err(|error| {
-            let advice = "give the calibration of this camera at this resolution; frames are not scaled";
-            in_frame(Error::format(&entry.record.source, error.to_string()).advise(advice), entry)
-        })?;
+    let input = input.gravity(gravity).sun(entry.sun).exposure(entry.exposure_s).finished(finished);
+    let located = locator.locate(input).map_err(|error| {
+        let advice = "give the calibration of this camera at this resolution; frames are not scaled";
+        in_frame(Error::format(&entry.record.source, error.to_string()).advise(advice), entry)
+    })?;
     entry.record.put_located(located, airframes);
     Ok(())
 }

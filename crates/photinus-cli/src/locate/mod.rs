@@ -276,7 +276,11 @@ fn recorded(
     let turn = |(time_s, of_body)| (time_s, camera_from_body * of_body);
     Ok(Course::Told(Told {
         rates: motions.rates.into_iter().map(turn).collect(),
-        velocities: motions.velocities.into_iter().map(turn).collect(),
+        velocities: motions
+            .velocities
+            .into_iter()
+            .map(|(time_s, velocity)| (time_s, velocity.turned(&camera_from_body)))
+            .collect(),
         has_down: true,
         attitudes: motions
             .attitudes

@@ -1,4 +1,4 @@
-//! Exposure control in a closed loop: `photinus run` sets the exposure of a simulated camera, before which a neighbour recedes and comes back.
+//! Exposure control in a closed loop: `photinus run` sets the exposure of a simulated camera, before which a neighbour recedes and comes back, or blinks.
 
 use crate::stage::Stage;
 
@@ -78,4 +78,56 @@ fn alternating_gives_the_nearest_a_frame_that_is_not_saturated() {
     };
     assert_eq!(blind(&two), 0, "{two:?}");
     assert!(blind(&one) > FRAMES / 5, "{one:?}");
+}
+
+/// Frames of a simulated camera in which a hexarotor that blinks is named, and those in which it is saturated, of 360.
+fn named(name: &str, control: &str) -> [usize; 2] {
+    let stage = Stage::new(name);
+    let codes = format!("{SCENES}/codes/l14-d3-r3.txt");
+    let airframe = format!("{SCENES}/airframes/hexarotor-0.4.toml");
+    stage.file(
+        "scene.toml",
+        format!(
+            "name = \"it blinks\"\nseed = 117\npreset = \"bluefox-dsl215-bp365\"\nrate_hz = 60.0\nduration_s = 6.0\nexposure_us = 1000.0\n\
+             [observer]\nmotion = {{ hover = {{ position_m = [0.0, 0.0, 5.0] }} }}\n\
+             [[camera]]\nname = \"front\"\nfile = \"{SCENES}/cameras/bluefox-dsl215.toml\"\nposition_m = [0.0, 0.0, 0.0]\n\
+             [[target]]\nid = 1\nairframe = \"{airframe}\"\nheading_deg = 170\n\
+             motion = {{ circle = {{ centre_m = [4.0, 0.0, 5.2], radius_m = 0.3, speed_m_s = 0.5, phase_deg = 0 }} }}\n\
+             blink = {{ codes = \"{codes}\", words = [2], rate_hz = 60.0, shift_s = 0.001, ppm = 12.0 }}\n"
+        ),
+    );
+    // Its airframe is found beside the list, and is all that is said of how neighbours are built.
+    std::fs::create_dir(stage.path("fleet")).unwrap();
+    std::fs::copy(&airframe, stage.path("fleet/hexarotor.toml")).unwrap();
+    stage.file(
+        "fleet/vehicles.toml",
+        "[[vehicle]]\nid = 1\nairframe = \"hexarotor.toml\"\nwords = [2]\nbit_rate_hz = 60.0\n",
+    );
+    stage.file(
+        "run.toml",
+        format!(
+            "pace = \"fast\"\n[[camera]]\nname = \"front\"\nsource = {{ scene = \"scene.toml\" }}\nexposure_us = 1000\n\
+             camera = \"{SCENES}/cameras/bluefox-dsl215.toml\"\n[vehicles]\nfile = \"fleet/vehicles.toml\"\ncodes = \"{codes}\"\n\
+             [json]\nfile = \"live.jsonl\"\n{control}"
+        ),
+    );
+    let done = stage.run("run run.toml -q");
+    assert_eq!(done.code, 0, "{}", done.err);
+    let records = stage.read("live.jsonl");
+    let records = records.lines().map(|line| serde_json::from_str::<serde_json::Value>(line).unwrap());
+    records.fold([0; 2], |[named, full], record| {
+        let has = |list: &str, what: fn(&serde_json::Value) -> bool| {
+            usize::from(record[list].as_array().unwrap().iter().any(what))
+        };
+        let is_full = has("spots", |spot| spot["saturated_px"].as_u64().unwrap() > 0);
+        [named + has("tracks", |track| track["id"] == 1), full + is_full]
+    })
+}
+
+#[test]
+fn one_that_blinks_is_named_whatever_the_exposures() {
+    let [still, full] = named("exposure-word", "");
+    let [changing, full_of_both] = named("exposure-word-two", &format!("{CONTROL}alternate = true\n"));
+    assert!(still > 340 && changing > 340, "{still} {changing}");
+    assert!(2 * full_of_both < full, "{full_of_both} {full}: it alternates");
 }

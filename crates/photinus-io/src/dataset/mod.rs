@@ -86,7 +86,10 @@ impl Dataset {
         };
         let codes = info.codes.as_ref().map(|named| read_codes(folder.join(named))).transpose()?;
         let vehicles = match &info.vehicles {
-            Some(named) => read_vehicles(&folder, named, codes.as_ref())?,
+            Some(named) => {
+                let (text, path) = in_folder(&folder, named)?;
+                vehicles_of(&text, (&path, &folder), codes.as_ref())?
+            }
             None => Vec::new(),
         };
         Ok(Self { folder, info, cameras, codes, vehicles })
@@ -201,22 +204,23 @@ fn in_folder(folder: &Path, name: &Path) -> Result<(String, PathBuf)> {
     }
 }
 
-/// Reads a list of vehicles, `named` in a folder that its airframes are relative to, too.
+/// Reads a list of vehicles; the airframes that it names are relative to its folder.
 ///
 /// # Errors
-/// As [`parse_vehicles`], and for words that the book does not hold, and airframes that cannot be read.
-pub fn read_vehicles(
-    folder: impl AsRef<Path>,
-    named: impl AsRef<Path>,
-    codes: Option<&CodeBook>,
-) -> Result<Vec<Vehicle>> {
-    let (folder, named) = (folder.as_ref(), named.as_ref());
-    let (text, path) = in_folder(folder, named)?;
-    let vehicles = parse_vehicles(&text, &path)?.into_iter().enumerate();
+/// As [`parse_vehicles`], and for words that the book does not hold, and files that cannot be read.
+pub fn read_vehicles(path: impl AsRef<Path>, codes: Option<&CodeBook>) -> Result<Vec<Vehicle>> {
+    let path = path.as_ref();
+    let folder = path.parent().unwrap_or(Path::new(""));
+    vehicles_of(&whole::read_text(path)?, (path, folder), codes)
+}
+
+/// The vehicles of a list, whose airframes are relative to `folder`.
+fn vehicles_of(text: &str, (path, folder): (&Path, &Path), codes: Option<&CodeBook>) -> Result<Vec<Vehicle>> {
+    let vehicles = parse_vehicles(text, path)?.into_iter().enumerate();
     vehicles
         .map(|(index, vehicle)| {
             let airframe = airframe::read_airframe(folder.join(&vehicle.airframe))?.airframe;
-            vehicle.with(airframe, codes, (index, path.as_path()))
+            vehicle.with(airframe, codes, (index, path))
         })
         .collect()
 }

@@ -8,7 +8,7 @@ use super::timed::{self, Column};
 use crate::{Error, Place, Result, physics, whole};
 
 const COMPONENT: std::ops::RangeInclusive<f64> = -1.01..=1.01;
-const COLUMNS: [Column; 11] = [
+const COLUMNS: [Column; 12] = [
     ("time_s", physics::TIME_S),
     ("x_m", physics::PLACE_M),
     ("y_m", physics::PLACE_M),
@@ -20,7 +20,10 @@ const COLUMNS: [Column; 11] = [
     ("vx_m_s", physics::SPEED_M_S),
     ("vy_m_s", physics::SPEED_M_S),
     ("vz_m_s", physics::SPEED_M_S),
+    ("velocity_sigma_m_s", 1e-6..=1e5),
 ];
+const POSE: usize = 8;
+const WITH_VELOCITY: usize = 11;
 
 /// A line of odometry.csv. The odometry frame has z up; its origin and its heading are the odometry's own, and drift.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,6 +34,8 @@ pub struct OdometryRow {
     pub pose: Isometry3<f64>,
     /// Velocity in the odometry frame, m/s.
     pub velocity_m_s: Vector3<f64>,
+    /// Standard deviation of its error, per axis, m/s, where that is told.
+    pub velocity_sigma_m_s: Option<f64>,
 }
 
 /// Reads an odometry.csv. Where it has no velocities, they are the slope of its places.
@@ -48,15 +53,24 @@ pub fn read_odometry(path: impl AsRef<Path>) -> Result<Vec<OdometryRow>> {
 /// is more than 1 % from 1, and times that do not grow.
 pub fn parse_odometry(text: &str, path: impl AsRef<Path>) -> Result<Vec<OdometryRow>> {
     let path = path.as_ref();
-    if !has_velocities(text) {
-        return Ok(with_slopes(&parse_poses(text, path)?));
-    }
-    let row = |(line, row): (usize, [f64; 11])| {
+    let row = |(line, row): (usize, [f64; WITH_VELOCITY]), velocity_sigma_m_s: Option<f64>| {
         let [time_s, x, y, z, qx, qy, qz, qw, vx, vy, vz] = row;
         let TimedPose { pose, .. } = pose_of([time_s, x, y, z, qx, qy, qz, qw], path, line)?;
-        Ok(OdometryRow { time_s, pose, velocity_m_s: Vector3::new(vx, vy, vz) })
+        Ok(OdometryRow { time_s, pose, velocity_m_s: Vector3::new(vx, vy, vz), velocity_sigma_m_s })
     };
-    timed::rows(text, path, &COLUMNS)?.into_iter().map(row).collect()
+    if has(text, WITH_VELOCITY) {
+        let rows = timed::rows(text, path, &COLUMNS)?.into_iter();
+        return rows
+            .map(|(line, [own @ .., sigma]): (usize, [f64; COLUMNS.len()])| row((line, own), Some(sigma)))
+            .collect();
+    }
+    if has(text, POSE) {
+        return timed::rows(text, path, first::<WITH_VELOCITY>())?
+            .into_iter()
+            .map(|own| row(own, None))
+            .collect();
+    }
+    Ok(with_slopes(&parse_poses(text, path)?))
 }
 
 /// Where a vehicle was at a time.
@@ -126,17 +140,27 @@ pub fn read_poses(path: impl AsRef<Path>) -> Result<Vec<TimedPose>> {
 /// As [`parse_odometry`].
 pub fn parse_poses(text: &str, path: impl AsRef<Path>) -> Result<Vec<TimedPose>> {
     let path = path.as_ref();
-    if has_velocities(text) {
+    if has(text, POSE) {
         let rows = parse_odometry(text, path)?;
         return Ok(rows.into_iter().map(|row| TimedPose { time_s: row.time_s, pose: row.pose }).collect());
     }
-    let columns: &[Column; 8] = COLUMNS.first_chunk().expect("a pose has 8 of the 11 columns");
-    timed::rows(text, path, columns)?.into_iter().map(|(line, row)| pose_of(row, path, line)).collect()
+    timed::rows(text, path, first::<POSE>())?
+        .into_iter()
+        .map(|(line, row)| pose_of(row, path, line))
+        .collect()
 }
 
-fn has_velocities(text: &str) -> bool {
+/// Whether a table has the column of this number.
+fn has(text: &str, column: usize) -> bool {
     let header = text.lines().find(|line| !line.trim().is_empty());
-    header.is_some_and(|names| names.contains(COLUMNS[8].0))
+    header.is_some_and(|names| names.contains(COLUMNS[column].0))
+}
+
+/// The first columns, so many.
+fn first<const N: usize>() -> &'static [Column; N] {
+    const { assert!(N <= COLUMNS.len()) };
+    static ALL: [Column; COLUMNS.len()] = COLUMNS;
+    ALL.first_chunk().expect("there are more")
 }
 
 /// With the velocities that the places before and after each row tell; none where there is but one.
@@ -146,7 +170,7 @@ fn with_slopes(poses: &[TimedPose]) -> Vec<OdometryRow> {
         let moved_m = after.pose.translation.vector - before.pose.translation.vector;
         let span_s = after.time_s - before.time_s;
         let velocity_m_s = if span_s > 0.0 { moved_m / span_s } else { Vector3::zeros() };
-        OdometryRow { time_s: pose.time_s, pose: pose.pose, velocity_m_s }
+        OdometryRow { time_s: pose.time_s, pose: pose.pose, velocity_m_s, velocity_sigma_m_s: None }
     };
     poses.iter().enumerate().map(row).collect()
 }
@@ -159,9 +183,9 @@ fn pose_of([time_s, x, y, z, qx, qy, qz, qw]: [f64; 8], path: &Path, line: usize
     })
 }
 
-/// The first line of an odometry.csv.
-pub(super) fn header() -> String {
-    timed::header(&COLUMNS)
+/// The first line of an odometry.csv, with or without what its velocities are off by.
+pub(super) fn header(has_sigma: bool) -> String {
+    timed::header(if has_sigma { &COLUMNS } else { first::<WITH_VELOCITY>() })
 }
 
 impl OdometryRow {
@@ -169,6 +193,9 @@ impl OdometryRow {
     pub fn line(&self) -> String {
         let (p, q, v) = (&self.pose.translation, &self.pose.rotation, &self.velocity_m_s);
         let values = [p.x, p.y, p.z, q.i, q.j, q.k, q.w, v.x, v.y, v.z];
-        values.iter().fold(self.time_s.to_string(), |line, value| format!("{line},{value}"))
+        values
+            .iter()
+            .chain(&self.velocity_sigma_m_s)
+            .fold(self.time_s.to_string(), |line, value| format!("{line},{value}"))
     }
 }

@@ -71,7 +71,7 @@ fn written(test: &str) -> Folder {
         let turn = Vector3::new(0.1, -0.2, 1.0 / 3.0);
         writer.imu(&ImuRow { time_s, turn_rad_s: turn }).unwrap();
         let pose = Isometry3::new(turn, turn * 3.0);
-        writer.odometry(&OdometryRow { time_s, pose, velocity_m_s: turn }).unwrap();
+        writer.odometry(&OdometryRow { time_s, pose, velocity_m_s: turn, velocity_sigma_m_s: None }).unwrap();
     }
     scratch
 }
@@ -222,6 +222,16 @@ fn what_is_wrong_with_measurements_is_named_by_its_line() {
     };
     assert_eq!(slopes("0,0,0,0,0,0,0,1\n1,1,0,0,0,0,0,1\n3,7,0,0,0,0,0,1\n"), [1.0, 7.0 / 3.0, 3.0]);
     assert_eq!(slopes("2,5,0,0,0,0,0,1\n"), [0.0]);
+    // What velocities are off by may be told; nothing is off by nothing.
+    let with_sigma = head.replace('\n', ",velocity_sigma_m_s\n");
+    let row = "0,0,0,0,0,0,0,1,2,0,0";
+    let sigma = |cell: &str| {
+        let rows = parse_odometry(&format!("{with_sigma}{row},{cell}\n"), "d/o.csv");
+        rows.map(|rows| (rows[0].velocity_m_s.x, rows[0].velocity_sigma_m_s))
+    };
+    assert_eq!(sigma("0.25").unwrap(), (2.0, Some(0.25)));
+    assert!(sigma("0").unwrap_err().to_string().contains("velocity_sigma_m_s 0.0 is out of range"));
+    assert_eq!(parse_odometry(&format!("{head}{row}\n"), "d/o.csv").unwrap()[0].velocity_sigma_m_s, None);
     assert!(parse_odometry(head, "d/o.csv").unwrap_err().to_string().contains("it holds no measurement"));
 }
 

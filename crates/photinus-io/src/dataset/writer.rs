@@ -178,10 +178,16 @@ impl DatasetWriter {
     /// Adds a measurement of where the vehicle with the cameras is.
     ///
     /// # Errors
-    /// As [`DatasetWriter::imu`].
+    /// As [`DatasetWriter::imu`]. All rows tell what their velocities are off by, or none does.
     pub fn odometry(&mut self, row: &OdometryRow) -> Result<()> {
         let path = self.folder.join(ODOMETRY_FILE);
-        Table::add(&mut self.odometry, &path, &odometry::header(), row.time_s, &row.line())
+        Table::add(
+            &mut self.odometry,
+            &path,
+            &odometry::header(row.velocity_sigma_m_s.is_some()),
+            row.time_s,
+            &row.line(),
+        )
     }
 
     fn camera(&mut self, index: usize) -> Result<&mut CameraWriter> {

@@ -1,5 +1,6 @@
 //! The link to an autopilot: a socket that never blocks, and a clock that the caller reads.
 
+use std::collections::VecDeque;
 use std::io::{self, ErrorKind};
 use std::net::{SocketAddr, ToSocketAddrs, UdpSocket};
 
@@ -81,6 +82,8 @@ pub struct Autopilot {
     obstacles_s: Option<f64>,
     targets_s: Option<f64>,
     refused: u64,
+    /// Of the datagram that came last: what was not handed on yet.
+    heard: VecDeque<Heard>,
 }
 
 impl Autopilot {
@@ -114,6 +117,7 @@ impl Autopilot {
             obstacles_s: None,
             targets_s: None,
             refused: 0,
+            heard: VecDeque::new(),
         })
     }
 
@@ -200,27 +204,31 @@ impl Autopilot {
     pub fn hear(&mut self, now_s: f64) -> Option<Heard> {
         let mut bytes = [0; DATAGRAM_BYTES];
         for _ in 0..MOST_AT_ONCE {
-            let (length, _) = self.socket.recv_from(&mut bytes).ok()?;
-            if let Some(heard) = self.understand(&bytes[..length], now_s) {
-                return Some(heard);
+            if !self.heard.is_empty() {
+                break;
             }
+            let (length, _) = self.socket.recv_from(&mut bytes).ok()?;
+            let mut heard = std::mem::take(&mut self.heard);
+            self.understand(&bytes[..length], now_s, |one| heard.push_back(one));
+            self.heard = heard;
         }
-        None
+        self.heard.pop_front()
     }
 
-    /// What the last message of a datagram says that means something, for those who receive it otherwise than [`Self::hear`].
-    pub fn understand(&mut self, datagram: &[u8], now_s: f64) -> Option<Heard> {
+    /// Hands over what the messages of a datagram say that means something, in their order, for those who receive it otherwise than [`Self::hear`].
+    pub fn understand(&mut self, datagram: &[u8], now_s: f64, mut hand_over: impl FnMut(Heard)) {
         let mut reader = mavlink::MavlinkReader::new(datagram);
-        let (mut last, mut any) = (None, false);
+        let mut any = false;
         while let Ok((header, message)) = reader.read_any_message::<MavMessage>() {
             any = true;
             if header.system_id != u32::from(self.settings.system) {
                 continue;
             }
-            last = self.meaning(&message, now_s).or(last);
+            if let Some(heard) = self.meaning(&message, now_s) {
+                hand_over(heard);
+            }
         }
         self.refused += u64::from(!any);
-        last
     }
 
     fn meaning(&mut self, message: &MavMessage, now_s: f64) -> Option<Heard> {

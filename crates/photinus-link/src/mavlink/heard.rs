@@ -5,6 +5,7 @@ use mavlink::dialects::common::{
     ODOMETRY_DATA,
 };
 use nalgebra::{Quaternion, Unit, UnitQuaternion, Vector3};
+use photinus_run::motion::Velocity;
 
 use super::{Own, frd, ned, ned_from_frd};
 use crate::clock_offset::ClockOffset;
@@ -42,8 +43,8 @@ pub struct Turn {
 pub struct Speed {
     /// On the clock of the frames, s.
     pub time_s: f64,
-    /// In the body frame FLU, m/s.
-    pub velocity_m_s: Vector3<f64>,
+    /// In the body frame FLU.
+    pub velocity: Velocity,
 }
 
 /// What a message of an attitude says; `None` where its numbers are no attitude.
@@ -88,15 +89,18 @@ pub(super) fn speed(
 ) -> Option<Speed> {
     let of_world = ned(&Vector3::new(data.vx, data.vy, data.vz).cast::<f64>());
     let time_s = clock.hear(f64::from(data.time_boot_ms) * 1e-3, arrived_s);
-    let velocity_m_s = attitude.enu_from_body.inverse() * of_world;
-    of_world.norm().is_finite().then_some(Speed { time_s, velocity_m_s })
+    let velocity = Velocity::new(attitude.enu_from_body.inverse() * of_world, None);
+    of_world.norm().is_finite().then_some(Speed { time_s, velocity })
 }
 
 /// What a message of an odometry says of the velocity; `None` where that is not told in the body's axes, or not finite.
 pub(super) fn odometry(data: &ODOMETRY_DATA, clock: &mut ClockOffset, arrived_s: f64) -> Option<Speed> {
     let velocity_m_s = frd(&Vector3::new(data.vx, data.vy, data.vz).cast::<f64>());
     let is_told = data.child_frame_id == MavFrame::MAV_FRAME_BODY_FRD && velocity_m_s.norm().is_finite();
-    is_told.then(|| Speed { time_s: clock.hear(data.time_usec as f64 * 1e-6, arrived_s), velocity_m_s })
+    // The upper triangle by rows of the covariance of velocity and rates; unknown where the first is NaN.
+    let variances = Vector3::from([0, 6, 11].map(|place| f64::from(data.velocity_covariance[place])));
+    let velocity = Velocity::with_variances(velocity_m_s, variances);
+    is_told.then(|| Speed { time_s: clock.hear(data.time_usec as f64 * 1e-6, arrived_s), velocity })
 }
 
 /// Where the own vehicle is, with the attitude that was heard last.

@@ -44,7 +44,7 @@ impl AutopilotSink {
             match heard {
                 Heard::Attitude(heard) => self.motion.attitude(heard.time_s - offset_s, heard.enu_from_body),
                 Heard::Turn(heard) => self.motion.rate(heard.time_s - offset_s, heard.turn_rad_s),
-                Heard::Speed(heard) => self.motion.velocity(heard.time_s - offset_s, heard.velocity_m_s),
+                Heard::Speed(heard) => self.motion.velocity(heard.time_s - offset_s, heard.velocity),
                 Heard::Own(_) => {}
             }
         }

@@ -1,6 +1,7 @@
 //! sensor_msgs/Imu and nav_msgs/Odometry -> attitudes and rates of the body, where they say such.
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+use photinus_run::motion::Velocity;
 
 use crate::ros::{self, Imu, Odometry};
 
@@ -13,8 +14,8 @@ pub struct Turning {
     pub attitude: Option<UnitQuaternion<f64>>,
     /// Rate against the world in the body frame, rad/s.
     pub rate_rad_s: Option<Vector3<f64>>,
-    /// Velocity over the ground in the body frame, m/s.
-    pub velocity_m_s: Option<Vector3<f64>>,
+    /// Velocity over the ground in the body frame.
+    pub velocity: Option<Velocity>,
 }
 
 /// What an IMU says. By the definition of the message, a covariance whose first number is -1 means that there is no such value. Its frame is
@@ -25,18 +26,20 @@ pub fn of_imu(imu: &Imu) -> Turning {
         time_s: imu.header.stamp.seconds(),
         attitude: attitude(&imu.orientation).filter(|_| imu.orientation_covariance[0][0] >= 0.0),
         rate_rad_s: vector(&imu.angular_velocity).filter(|_| imu.angular_velocity_covariance[0][0] >= 0.0),
-        velocity_m_s: None,
+        velocity: None,
     }
 }
 
 /// What an odometry says: its pose stands in a frame whose z is up, its twist in that of the body (REP 103, 105).
 #[must_use]
 pub fn of_odometry(odometry: &Odometry) -> Turning {
+    let variances = Vector3::from_fn(|axis, _| odometry.twist.covariance[axis][axis]);
     Turning {
         time_s: odometry.header.stamp.seconds(),
         attitude: attitude(&odometry.pose.pose.orientation),
         rate_rad_s: vector(&odometry.twist.twist.angular),
-        velocity_m_s: vector(&odometry.twist.twist.linear),
+        velocity: vector(&odometry.twist.twist.linear)
+            .map(|velocity_m_s| Velocity::with_variances(velocity_m_s, variances)),
     }
 }
 

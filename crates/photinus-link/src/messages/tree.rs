@@ -85,7 +85,7 @@ impl Tree {
         };
         let attitude = turned(of_world)?.inverse() * turned(of_body)?;
         self.told_s = time_s;
-        Some(Turning { time_s, attitude: Some(attitude), rate_rad_s: None, velocity_m_s: None })
+        Some(Turning { time_s, attitude: Some(attitude), rate_rad_s: None, velocity: None })
     }
 
     /// The transforms from a frame up to one without any; `None` where they go round in a circle.

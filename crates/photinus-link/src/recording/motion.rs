@@ -5,6 +5,7 @@ use std::path::Path;
 use nalgebra::{UnitQuaternion, Vector3};
 use photinus_io::kind::Kind;
 use photinus_io::{Error, Result};
+use photinus_run::motion::Velocity;
 
 use super::{Recording, Topic};
 use crate::bag::{self, Bag};
@@ -19,8 +20,8 @@ pub struct Motions {
     pub rates: Vec<(f64, Vector3<f64>)>,
     /// Attitudes world_from_body, world with z up, in the order of time.
     pub attitudes: Vec<(f64, UnitQuaternion<f64>)>,
-    /// Velocities over the ground in the body frame, m/s, in the order of time.
-    pub velocities: Vec<(f64, Vector3<f64>)>,
+    /// Velocities over the ground in the body frame, in the order of time.
+    pub velocities: Vec<(f64, Velocity)>,
 }
 
 impl Motions {
@@ -81,10 +82,10 @@ impl Motions {
 
     /// What is not later than the one before says nothing new.
     fn put(&mut self, said: Turning) {
-        let Turning { time_s, attitude, rate_rad_s, velocity_m_s } = said;
+        let Turning { time_s, attitude, rate_rad_s, velocity } = said;
         put(&mut self.rates, time_s, rate_rad_s);
         put(&mut self.attitudes, time_s, attitude);
-        put(&mut self.velocities, time_s, velocity_m_s);
+        put(&mut self.velocities, time_s, velocity);
     }
 
     /// Whether nothing is said.

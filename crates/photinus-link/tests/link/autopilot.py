@@ -41,6 +41,7 @@ while time.monotonic() - begun < seconds:
     link.mav.highres_imu_send(1000 * boot_ms, 0, 0, -9.81, 0.4, 0.5, 0.6, 0, 0, 0, 0, 0, 0, 0, 0b111000)
     # Once 3 m/s east, 2 south, 1 down, and once 1 m/s ahead, 2 to the right, 3 down.
     link.mav.local_position_ned_send(boot_ms, 0, 0, 0, -2.0, 3.0, 1.0)
-    nothing = [float("nan")] * 21
-    link.mav.odometry_send(1000 * boot_ms + 1, 1, 12, 0, 0, 0, [1, 0, 0, 0], 1.0, 2.0, 3.0, 0, 0, 0, nothing, nothing)
+    # The upper triangle by rows: 0.2 m/s each way.
+    nothing, by_0_2 = [float("nan")] * 21, [0.04 if place in (0, 6, 11) else 0.0 for place in range(21)]
+    link.mav.odometry_send(1000 * boot_ms + 1, 1, 12, 0, 0, 0, [1, 0, 0, 0], 1.0, 2.0, 3.0, 0, 0, 0, nothing, by_0_2)
     link.mav.global_position_int_send(boot_ms, 501000000, 144000000, 300000, 10000, 100, 200, -300, 9000)

@@ -8,6 +8,7 @@ use std::time::{Duration, Instant};
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use photinus::camera::{Camera, Model, Pinhole, Pixel};
 use photinus_link::mavlink::{Autopilot, Heard, Obstacles, Outlook, SECTORS, Settings, UNKNOWN_CM};
+use photinus_run::motion::Velocity;
 use photinus_testing::python_with;
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::Rng;
@@ -64,7 +65,7 @@ fn pymavlink_hears_obstacles_targets_and_silence_and_is_heard() {
             match heard {
                 Heard::Attitude(heard) => attitude = Some((heard, now_s())),
                 Heard::Turn(heard) => rates = Some(heard),
-                Heard::Speed(heard) => speeds.push(heard.velocity_m_s),
+                Heard::Speed(heard) => speeds.push(heard.velocity),
                 Heard::Own(heard) => own = Some(heard),
             }
         }
@@ -120,10 +121,48 @@ fn pymavlink_hears_obstacles_targets_and_silence_and_is_heard() {
     assert!((rates.expect("heard").turn_rad_s - Vector3::new(0.4, -0.5, -0.6)).norm() < 1e-6);
     // Of the place by the attitude, of the odometry as it is.
     let of_place = attitude.enu_from_body.inverse() * Vector3::new(3.0, -2.0, -1.0);
-    for told in [of_place, Vector3::new(1.0, -2.0, -3.0)] {
-        assert!(speeds.iter().any(|speed: &Vector3<f64>| (speed - told).norm() < 1e-5), "{told} {speeds:?}");
+    // Nobody says what the first is off by.
+    for told in [Velocity::new(of_place, None), Velocity::new(Vector3::new(1.0, -2.0, -3.0), Some(0.2))] {
+        let is_told = |heard: &Velocity| {
+            (heard.velocity_m_s - told.velocity_m_s).norm() < 1e-5
+                && (heard.sigma_m_s - told.sigma_m_s).abs() < 1e-6
+        };
+        assert!(speeds.iter().any(is_told), "{told:?} {speeds:?}");
     }
     assert!((own.expect("heard").altitude_m - 300.0).abs() < 1e-9);
+}
+
+#[test]
+fn messages_of_one_datagram_are_all_heard_in_their_order() {
+    use mavlink::dialects::common::{
+        ATTITUDE_QUATERNION_DATA, HIGHRES_IMU_DATA, HighresImuUpdatedFlags, MavMessage,
+    };
+    use mavlink::{MavHeader, MavlinkVersion, write_versioned_msg};
+
+    let mut link = Autopilot::new("127.0.0.1:0", "127.0.0.1:9", settings(), 0.0).expect("a socket");
+    let mouth = UdpSocket::bind("127.0.0.1:0").expect("a port");
+    let header = MavHeader { system_id: settings().system.into(), component_id: 1, sequence: 0 };
+    let attitude = ATTITUDE_QUATERNION_DATA { q1: 1.0, time_boot_ms: 1000, ..Default::default() };
+    let imu = HIGHRES_IMU_DATA {
+        time_usec: 1_000_000,
+        fields_updated: HighresImuUpdatedFlags::all(),
+        ..Default::default()
+    };
+    for _ in 0..2 {
+        let mut datagram = Vec::new();
+        for message in
+            [MavMessage::ATTITUDE_QUATERNION(attitude.clone()), MavMessage::HIGHRES_IMU(imu.clone())]
+        {
+            write_versioned_msg(&mut datagram, MavlinkVersion::V2, header, &message).expect("it is written");
+        }
+        mouth.send_to(&datagram, link.local().expect("an address")).expect("it is sent");
+    }
+    std::thread::sleep(Duration::from_millis(50));
+    for _ in 0..2 {
+        assert!(matches!(link.hear(1.0), Some(Heard::Attitude(_))));
+        assert!(matches!(link.hear(1.0), Some(Heard::Turn(_))));
+    }
+    assert_eq!(link.hear(1.0), None);
 }
 
 #[test]

@@ -33,7 +33,7 @@ def write(bag, store, encode, numbered):
         pose = types["geometry_msgs/msg/Pose"](types["geometry_msgs/msg/Point"](1.0, 2.0, 3.0), Turn(0.0, 0.0, 0.6, 0.8))
         pose = types["geometry_msgs/msg/PoseWithCovariance"](pose, np.zeros(36))
         twist = types["geometry_msgs/msg/Twist"](Vector(0.0, 0.0, 0.0), Vector(9.0, 9.0, 9.0))
-        twist = types["geometry_msgs/msg/TwistWithCovariance"](twist, np.zeros(36))
+        twist = types["geometry_msgs/msg/TwistWithCovariance"](twist, np.diag([0.09, 0.09, 0.09, 0.0, 0.0, 0.0]).flatten())
         odometry = types["nav_msgs/msg/Odometry"](head(step), "base_link", pose, twist)
         bag.write(odometries, 10**9 * 1000 + step * 10**7, encode(odometry, "nav_msgs/msg/Odometry"))
 
@@ -63,6 +63,11 @@ fn rates_of_the_imu_and_attitudes_of_the_odometry_are_read_from_bags_of_rosbags(
         assert!(
             (time_s - 11.23).abs() < 1e-9 && (rate - Vector3::new(0.1, 0.2, 1.23)).norm() < 1e-12,
             "{file}: {time_s}, {rate}"
+        );
+        let velocity = motions.velocities[123].1;
+        assert!(
+            (velocity.sigma_m_s - 0.3).abs() < 1e-12 && velocity.velocity_m_s.norm() == 0.0,
+            "{velocity:?}"
         );
         // The IMU says that it has no attitude, so the odometry's counts: 0.6, 0.8 are the sine and cosine of half the turn.
         let (time_s, attitude) = motions.attitudes[249];

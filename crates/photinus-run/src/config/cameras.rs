@@ -4,13 +4,14 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use nalgebra::{Unit, Vector3};
+use photinus::identity::CodeBook;
 use photinus::locator::{self, Kind};
 use photinus::lookout::Fleet;
 use photinus::spots::Brightness;
 use photinus_io::airframe::{AirframeFile, read_airframe};
 use photinus_io::calibration::read_mounting;
 use photinus_io::codes::read_codes;
-use photinus_io::dataset::{self, Dataset, DatasetCamera};
+use photinus_io::dataset::{self, Dataset, DatasetCamera, Vehicle};
 use photinus_io::mask::read_mask;
 use photinus_io::spot_curve::{SpotCurveFile, read_spot_curve};
 use photinus_io::{Error, Place, Result, read_camera};
@@ -90,6 +91,35 @@ impl Named<'_> {
     }
 }
 
+/// The vehicles that the configuration lists itself.
+struct Listed {
+    file: PathBuf,
+    vehicles: Vec<Vehicle>,
+    codes: Option<CodeBook>,
+}
+
+impl Listed {
+    /// Their airframes, a file each, as they can be opened.
+    fn airframes(&self) -> Vec<PathBuf> {
+        let folder = self.file.parent().unwrap_or(Path::new(""));
+        let mut files: Vec<PathBuf> = Vec::new();
+        for vehicle in &self.vehicles {
+            let file = folder.join(&vehicle.airframe_file);
+            if !files.contains(&file) {
+                files.push(file);
+            }
+        }
+        files
+    }
+
+    fn fleets(&self, kinds: &[Kind], note: &mut dyn FnMut(String)) -> Result<Vec<Option<Fleet>>> {
+        match &self.codes {
+            Some(book) => watch::fleets_of(book, &self.vehicles, &self.file, kinds, note),
+            None => Ok(kinds.iter().map(|_| None).collect()),
+        }
+    }
+}
+
 impl Config {
     /// The cameras, ready to run. `motion` is what arrives of the vehicle's own motion; `linked` opens frames from elsewhere, where it can; `note` takes what
     /// was read otherwise than it stands in a file.
@@ -105,8 +135,13 @@ impl Config {
         let named = self.keys.camera.iter().enumerate().map(|(number, keys)| self.named(number, keys));
         let named: Vec<Named<'_>> = named.collect::<Result<_>>()?;
         let first = named.iter().find_map(|camera| camera.recording.as_ref());
-        let kinds = self.kinds(first.map(|(dataset, _)| dataset), note)?;
-        let fleets = self.fleets(first.map(|(dataset, _)| dataset), &kinds, note)?;
+        let dataset = first.map(|(dataset, _)| dataset);
+        let listed = self.listed()?;
+        let kinds = self.kinds(listed.as_ref(), dataset, note)?;
+        let fleets = match &listed {
+            Some(listed) => listed.fleets(&kinds, note)?,
+            None => watch::fleets(dataset, &kinds, &mut *note)?,
+        };
         let begun = (HostClock::start(), Takeoff::default());
         let start_s = named
             .iter()
@@ -140,15 +175,30 @@ impl Config {
         Ok(Named { keys, recording: Some((dataset, place)) })
     }
 
-    fn kinds(&self, dataset: Option<&Dataset>, note: &mut dyn FnMut(String)) -> Result<Vec<Kind>> {
+    /// The vehicles that the configuration lists itself.
+    fn listed(&self) -> Result<Option<Listed>> {
+        let Some(keys) = &self.keys.vehicles else { return Ok(None) };
+        let of_key = |key: &str, error: Error| self.of_key(&format!("vehicles.{key}"), error);
+        let codes = keys.codes.as_ref().map(|path| read_codes(self.located(path))).transpose();
+        let codes = codes.map_err(|error| of_key("codes", error))?;
+        let file = self.located(&keys.file);
+        let vehicles =
+            dataset::read_vehicles(&file, codes.as_ref()).map_err(|error| of_key("file", error))?;
+        Ok(Some(Listed { file, vehicles, codes }))
+    }
+
+    /// The kinds of neighbours: as the configuration says, or else those of the vehicles that it lists, or of the dataset.
+    fn kinds(
+        &self,
+        listed: Option<&Listed>,
+        dataset: Option<&Dataset>,
+        note: &mut dyn FnMut(String),
+    ) -> Result<Vec<Kind>> {
         let own = self.keys.airframe.as_ref().map(|keys| keys.file.iter().map(|file| self.located(file)));
-        let paths = own.map(Iterator::collect).or_else(|| dataset.map(Dataset::airframes));
-        let Some(paths) = paths else {
-            return Err(self.refuse(
-                "airframe",
-                "nobody says how neighbours are built",
-                "add [airframe] with file = \"...\"",
-            ));
+        let paths = own.map(Iterator::collect).or_else(|| listed.map(Listed::airframes));
+        let Some(paths) = paths.or_else(|| dataset.map(Dataset::airframes)) else {
+            let advice = "add [airframe] with file = \"...\", or [vehicles]";
+            return Err(self.refuse("airframe", "nobody says how neighbours are built", advice));
         };
         let named = |error: Error| match &self.keys.airframe {
             Some(_) => self.of_key("airframe.file", error),
@@ -160,27 +210,6 @@ impl Config {
         let settings = &self.keys.locate;
         files.iter().flat_map(|file| &file.notes).for_each(|text| note(text.clone()));
         Ok(files.into_iter().map(|file| settings.kind(file)).collect())
-    }
-
-    fn fleets(
-        &self,
-        dataset: Option<&Dataset>,
-        kinds: &[Kind],
-        note: &mut dyn FnMut(String),
-    ) -> Result<Vec<Option<Fleet>>> {
-        let fleets = match &self.keys.vehicles {
-            None => watch::fleets(dataset, kinds, note)?,
-            Some(keys) => {
-                let codes = keys.codes.as_ref().map(|path| read_codes(self.located(path))).transpose()?;
-                let vehicles =
-                    dataset::read_vehicles(self.located(Path::new("")), &keys.file, codes.as_ref())?;
-                match codes {
-                    Some(book) => watch::fleets_of(&book, &vehicles, &self.located(&keys.file), kinds, note)?,
-                    None => kinds.iter().map(|_| None).collect(),
-                }
-            }
-        };
-        Ok(fleets)
     }
 
     fn camera(

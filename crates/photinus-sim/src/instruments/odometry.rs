@@ -58,6 +58,7 @@ impl Odometry {
                 ),
                 velocity_m_s: velocity_m_s
                     + normals(seed, Use::Odometry, VELOCITY, number) * odometry.velocity_noise_m_s,
+                velocity_sigma_m_s: None,
             };
             let grown = step_s.sqrt();
             place_m += normals(seed, Use::Odometry, WALK, number) * (odometry.place_walk_m * grown);

@@ -27,6 +27,9 @@ const LEAST_UNEXPLAINED: f64 = 0.1;
 const WORTH_BEGINNING: f64 = 0.2;
 /// A first sighting is never more probably a marker.
 const MOST_NEW: f64 = 0.5;
+/// Half of all new markers come so near to others, rad: to the arms of a vehicle of 0.8 m across, 5 m away.
+const BESIDE_RAD: f64 = 0.1;
+const BESIDE_SR: f64 = core::f64::consts::PI * BESIDE_RAD * BESIDE_RAD;
 /// For how long at least a frame is looked at for what is new: the first has none before it, s.
 const SHORTEST_S: f64 = 1.0 / 60.0;
 /// After so long without a frame nobody is where they were, s.
@@ -128,13 +131,12 @@ impl Follower {
         }
         self.last_s = Some(frame.time_s);
         self.sightings.of_sightings(frame.sightings);
-        self.seen.clear();
-        self.seen.extend(frame.sightings.iter().map(Seen::of));
         self.wait(frame, passed_s);
         if passed_s > 0.0 {
             self.turn(frame, passed_s);
         }
         self.expect(frame, passed_s);
+        self.look_at_each(frame, passed_s);
         self.associate(frame);
         self.learn(frame);
         self.begin_tracks(frame, passed_s);
@@ -228,6 +230,20 @@ impl Follower {
         };
         let others = self.confirmed.near(&ahead, 2.0 * resolution_rad).filter(|&other| other != index);
         others.map(into).fold((0.0, 0.0), |most, own| if own.0 > most.0 { own } else { most })
+    }
+
+    /// What each sighting is worth to all tracks. New markers come anywhere, or beside others, as those of a vehicle do that turns.
+    fn look_at_each(&mut self, frame: &Frame<'_>, passed_s: f64) {
+        let new = self.settings.new_per_s * passed_s.max(SHORTEST_S);
+        let anywhere = new / self.field_sr;
+        let beside_one = new / (BESIDE_SR * self.confirmed.len().max(1) as f64);
+        self.seen.clear();
+        for sighting in frame.sightings {
+            let ahead = sighting.bearing.vector();
+            let is_beside = |&other: &usize| (self.tracks[other].motion.ahead() - ahead).norm() < BESIDE_RAD;
+            let beside = self.confirmed.near(ahead, BESIDE_RAD).filter(is_beside).count();
+            self.seen.push(Seen::of(sighting, 0.5 * (anywhere + beside as f64 * beside_one)));
+        }
     }
 
     /// Which sighting is whose.

@@ -38,6 +38,10 @@ impl Directions {
         self.sorted.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
     }
 
+    pub(super) fn len(&self) -> usize {
+        self.sorted.len()
+    }
+
     /// All that may lie within `reach_rad` of a direction, and others.
     pub(super) fn near(&self, direction: &Vector3<f64>, reach_rad: f64) -> impl Iterator<Item = usize> + '_ {
         let (low, high) = (direction.y - reach_rad, direction.y + reach_rad);

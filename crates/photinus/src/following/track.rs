@@ -134,10 +134,18 @@ impl Track {
     }
 
     /// Where and how bright a sighting is beside what is expected.
-    pub(super) fn compare(&self, index: usize, seen: &Seen, others_per_sr: f64, offset: Offset) -> Candidate {
+    pub(super) fn compare(
+        &self,
+        index: usize,
+        seen: &Seen,
+        clutter_per_sr: f64,
+        offset: Offset,
+    ) -> Candidate {
         let (melted, _) = self.frame.melted;
         let covariance = self.motion.covariance().bearing + offset.noise;
-        let place = seen.looks * super::turn::density(&offset.value, &covariance) / others_per_sr;
+        // What is not its own is clutter, which seldom looks like a marker, or a new one, which does.
+        let others_per_sr = clutter_per_sr / seen.looks + seen.new_per_sr;
+        let place = super::turn::density(&offset.value, &covariance) / others_per_sr;
         let by_light = match (seen.light, &self.level) {
             (Some((light, sigma)), Some(level)) => {
                 density_of_light(light, sigma, level).map(|density| density * light * LIGHT_RANGE)

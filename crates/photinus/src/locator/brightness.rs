@@ -13,7 +13,7 @@ use super::cells::{ByCell, Cells};
 use crate::float::Float as _;
 use crate::optics::Vignetting;
 use crate::pose::LogLight;
-use crate::spots::Spot;
+use crate::spots::{self, Brightness, Spot};
 
 /// Error of a logarithm of light against others of the frame that all spots have: where in a pixel they fall, how much of the
 /// halo is in the window.
@@ -31,6 +31,28 @@ const NARROWED_PX: f64 = 4.2;
 /// may be hidden.
 const HIDDEN_LOG: f64 = 0.3;
 const HIDDEN_SIGMA: f64 = 0.6;
+
+/// Light of a spot that is found half of the time over the step that makes a pixel bright, px (rendered frames).
+const FAINTEST_PX: f64 = 2.5;
+
+/// The unit of light, the same for all frames: grey levels at the exposure of the first whose exposure is known.
+#[derive(Debug, Default)]
+pub(super) struct Unit {
+    exposure_s: Option<f64>,
+}
+
+impl Unit {
+    /// How much more light a frame shows than it would at the unit's exposure, as a logarithm.
+    pub(super) fn log_longer(&mut self, exposure_s: Option<f64>) -> f64 {
+        exposure_s.map_or(0.0, |own| libm::log(own / *self.exposure_s.get_or_insert(own)))
+    }
+}
+
+/// Light at which a detector with these settings finds a marker half of the time, grey levels of its frame.
+pub(super) fn faintest_light(settings: &spots::Settings) -> f64 {
+    let (Brightness::Threshold(step) | Brightness::Contrast(step)) = settings.brightness;
+    FAINTEST_PX * f64::from(step)
+}
 
 /// Tells the light of all sightings in an image of `size` (width, height) px, as bright as they were on the axis where the
 /// lens's vignetting is known; of more than `most` the brightest come first, and of the others no more is told than by
@@ -63,6 +85,12 @@ pub(super) fn tell(
         }
         sightings[own].log_light = Some(light);
     }
+}
+
+/// Tells light as at an exposure that is shorter by this factor, a logarithm.
+pub(super) fn shorten(sightings: &mut [Sighting], log_longer: f64) {
+    let lights = sightings.iter_mut().filter_map(|sighting| sighting.log_light.as_mut());
+    lights.for_each(|light| light.value -= log_longer);
 }
 
 /// The order of light; of light that is not known, that of places.

@@ -131,6 +131,7 @@ impl Inference {
             gravity: input.gravity,
             watched,
             power: None,
+            faintest_light: located.faintest_light,
             clutter: &[],
             log_neighbours: 0.0,
         };

@@ -21,6 +21,7 @@ pub struct Input<'a> {
     pub(super) seen: Seen<'a>,
     pub(super) gravity: Option<&'a Unit<Vector3<f64>>>,
     pub(super) sun: Option<Sun>,
+    pub(super) exposure_s: Option<f64>,
     finished: Option<&'a mut dyn FnMut(Stage)>,
 }
 
@@ -50,7 +51,7 @@ impl<'a> Input<'a> {
     }
 
     fn of(seen: Seen<'a>) -> Self {
-        Self { seen, gravity: None, sun: None, finished: None }
+        Self { seen, gravity: None, sun: None, exposure_s: None, finished: None }
     }
 
     /// Down in the camera frame, where it is known.
@@ -61,6 +62,12 @@ impl<'a> Input<'a> {
     /// The sun, where it is known where it stands.
     pub fn sun(self, sun: impl Into<Option<Sun>>) -> Self {
         Self { sun: sun.into(), ..self }
+    }
+
+    /// How long it was exposed, s, where that is known: the light of frames is compared as at one exposure. What is not positive is unknown.
+    pub fn exposure(self, exposure_s: impl Into<Option<f64>>) -> Self {
+        let exposure_s = exposure_s.into().filter(|exposure_s| *exposure_s > 0.0 && exposure_s.is_finite());
+        Self { exposure_s, ..self }
     }
 
     /// Who is told each stage as it ends, so that a caller with a clock can time it.

@@ -10,7 +10,7 @@ use super::context::Context;
 use super::error::LocatorError;
 use super::matching::Matcher;
 use super::neighbour::{Distance, Located, Neighbour};
-use super::posing::{self, Poser};
+use super::posing::Poser;
 use super::settings::Settings;
 use crate::airframe::Airframe;
 use crate::pose;
@@ -61,12 +61,11 @@ impl Kinds {
         if kinds.is_empty() {
             return Err(LocatorError::NoKind);
         }
-        let faintest_light = posing::faintest_light(&settings.spots);
         let looked = |(number, kind): (usize, &Kind)| {
             let (airframe, believed) = (&kind.airframe, kind.believed(&settings.pose));
             Ok(Looked {
-                poser: Poser::new(airframe, believed, &settings.spots, (number, kinds.len()))?,
-                matcher: Matcher::new(airframe, settings.max_tilt_rad, &believed, faintest_light),
+                poser: Poser::new(airframe, believed, (number, kinds.len()))?,
+                matcher: Matcher::new(airframe, settings.max_tilt_rad, &believed),
             })
         };
         let each = kinds.iter().enumerate().map(looked).collect::<Result<_, LocatorError>>()?;

@@ -51,7 +51,7 @@ pub use input::Input;
 use input::Seen;
 pub use kinds::Kind;
 pub use neighbour::{Distance, Located, Neighbour, Orientation, Position, RunnerUp};
-pub(crate) use posing::{faintest_light, of_mean_calibration};
+pub(crate) use posing::of_mean_calibration;
 pub use settings::Settings;
 pub use sighting::Sighting;
 pub use sun::Sun;
@@ -92,6 +92,8 @@ pub struct Locator {
     detector: Detector,
     inference: Inference,
     by_cell: ByCell,
+    faintest_light: f64,
+    unit: brightness::Unit,
     located: Located,
 }
 
@@ -134,6 +136,8 @@ impl Locator {
             detector,
             inference,
             by_cell: ByCell::default(),
+            faintest_light: brightness::faintest_light(&settings.spots),
+            unit: brightness::Unit::default(),
             located: Located { is_complete: true, ..Located::default() },
         })
     }
@@ -153,6 +157,7 @@ impl Locator {
     /// Forgets what frames told of the power of LEDs and of clutter: for frames that do not follow on those before.
     pub fn forget(&mut self) {
         self.inference.forget();
+        self.unit = brightness::Unit::default();
     }
 
     /// What it told of the frame that it was handed last.
@@ -182,6 +187,9 @@ impl Locator {
         let vignetting = self.camera.optics().and_then(|optics| optics.vignetting.as_ref());
         let most = self.inference.most();
         brightness::tell(&mut self.located.sightings, vignetting, most, size, &mut self.by_cell);
+        let log_longer = self.unit.log_longer(input.exposure_s);
+        brightness::shorten(&mut self.located.sightings, log_longer);
+        self.located.faintest_light = self.faintest_light / libm::exp(log_longer);
         input.tell(Stage::Bearings);
         let watched = Watched::new(&self.camera, self.mask.as_ref());
         self.inference.explain(&mut self.located, watched, &mut input);

@@ -91,4 +91,6 @@ pub struct Located {
     pub neighbours: Vec<Neighbour>,
     /// Whether the frame was explained within the budget; if not, neighbours may be missing.
     pub is_complete: bool,
+    /// Light at which a marker is found half of the time, in the unit of the sightings' light; 0 where unknown.
+    pub faintest_light: f64,
 }

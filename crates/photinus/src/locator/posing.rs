@@ -25,14 +25,11 @@ use crate::pose::{
     SettingsError, Summary, Visible,
 };
 use crate::ranging::Interval;
-use crate::spots::{self, Brightness};
 
 /// Logarithm of the farthest over the nearest distance of a neighbour: they are even over it.
 pub(super) const LOG_RANGE: f64 = 4.6;
 /// Light of the wrong power does not rule out what geometry is sure of, nats.
 const MOST_POWER_NATS: f64 = 12.0;
-/// Light of a spot that is found half of the time over the step that makes a pixel bright, px (rendered frames).
-const FAINTEST_PX: f64 = 2.5;
 
 /// Over this much of the field the error of a calibration changes by itself.
 const CALIBRATION_LENGTH_RAD: f64 = 0.5;
@@ -49,7 +46,6 @@ pub(super) struct Poser {
     observations: Vec<Observation>,
     pairs: Pairs,
     scale_sigma: f64,
-    visible: Visible<'static>,
     lit: Vec<f64>,
     within: Vec<usize>,
     others: Vec<Bearing>,
@@ -60,7 +56,6 @@ impl Poser {
     pub(super) fn new(
         airframe: &Airframe,
         settings: pose::Settings,
-        spots: &spots::Settings,
         (kind, kinds): (usize, usize),
     ) -> Result<Self, SettingsError> {
         Ok(Self {
@@ -72,7 +67,6 @@ impl Poser {
             observations: Vec::with_capacity(airframe.markers().len()),
             pairs: Pairs::new(airframe),
             scale_sigma: settings.scale_sigma,
-            visible: Visible { faintest_light: faintest_light(spots), watched: None, others: &[], lit: &[] },
             lit: lit(airframe),
             within: Vec::with_capacity(airframe.markers().len()),
             others: Vec::with_capacity(512),
@@ -130,8 +124,12 @@ impl Poser {
         self.gather_others(context, group, matcher);
         // A group that sets the prior of the LED power does not get it as its prior.
         let power = if group.len() < CLEAR_SPOTS { context.power } else { None };
-        let visible =
-            Visible { watched: Some(context.watched), others: &self.others, lit: &self.lit, ..self.visible };
+        let visible = Visible {
+            faintest_light: context.faintest_light,
+            watched: Some(context.watched),
+            others: &self.others,
+            lit: &self.lit,
+        };
         let believed = told_apart(sightings, group, matcher.reach_m(), &bounds);
         let known = Known { up, bounds: believed, size, power, visible };
         let posterior = self.estimator.estimate(&self.observations, &mut self.hypotheses, &known);
@@ -264,12 +262,6 @@ pub(crate) fn of_mean_calibration(
         mean_rad2 * position_m.norm_squared() + position_m * position_m.transpose() * scale,
         scale * position_m.norm_squared(),
     )
-}
-
-/// Light at which a detector with these settings finds a marker half of the time, grey levels.
-pub(crate) fn faintest_light(settings: &spots::Settings) -> f64 {
-    let (Brightness::Threshold(step) | Brightness::Contrast(step)) = settings.brightness;
-    FAINTEST_PX * f64::from(step)
 }
 
 fn observe(sighting: &Sighting, clutter_log_density: f64) -> Observation {

@@ -14,7 +14,7 @@ pub struct Sighting {
     pub spot: Spot,
     /// Which of the airframe's signals it was seen to blink, where that is known.
     pub signal: Option<u32>,
-    /// Its light, in units that are the same all over the frame, with what a saturated core hides put back; `None` where none
+    /// Its light, in a unit that is the same all over the frame and for all frames, with what a saturated core hides put back; `None` where none
     /// was measured.
     pub log_light: Option<LogLight>,
     /// Its direction in the camera frame.

@@ -277,6 +277,30 @@ fn spots_outside_the_field_are_rejected_with_that_reason() {
     );
 }
 
+/// Exposures that alternate, one of them unknown at times: who compares light from frame to frame sees no difference.
+#[test]
+fn light_is_told_as_at_the_exposure_of_the_first_frame() {
+    let mut locator = locator(&hexarotor());
+    let places = [(300.0, 200.0), (320.0, 205.0), (340.0, 200.0)].map(|(u, v)| Pixel::new(u, v));
+    let mut told = |exposure_s: Option<f64>, brightness: f64| {
+        let spots = places.map(|place| Spot { flux: 500.0 * brightness, ..spot(place, 1.0, 3.0) });
+        let located = locator.locate(Input::spots(&spots).exposure(exposure_s)).expect("spots have no size");
+        (located.sightings[0].log_light.unwrap().value, located.faintest_light)
+    };
+    let (first, faintest) = told(Some(1e-3), 1.0);
+    let (longer, lower) = told(Some(4e-3), 4.0);
+    assert!((longer - first).abs() < 1e-12 && (lower - faintest / 4.0).abs() < 1e-12, "{longer} {first}");
+    for unknown in [None, Some(0.0), Some(-1.0), Some(f64::NAN), Some(f64::INFINITY)] {
+        assert_eq!(told(unknown, 1.0), (first, faintest), "{unknown:?}");
+    }
+    let (shorter, higher) = told(Some(5e-4), 0.5);
+    assert!((shorter - first).abs() < 1e-12 && (higher - 2.0 * faintest).abs() < 1e-12, "{shorter} {first}");
+    locator.forget();
+    let spots = places.map(|place| spot(place, 1.0, 3.0));
+    let located = locator.locate(Input::spots(&spots).exposure(5e-4)).expect("spots have no size");
+    assert_eq!(located.faintest_light, faintest, "it is the first again");
+}
+
 #[test]
 fn any_number_of_spots_anywhere_gives_finite_answers() {
     let mut rng = Pcg64::new(4, 1);

@@ -19,7 +19,7 @@ use super::directory::Directory;
 use super::starts::Starts;
 use crate::airframe::Airframe;
 use crate::following::MarkerTrack;
-use crate::locator::{Settings, faintest_light};
+use crate::locator::Settings;
 use crate::pose::{Estimator, Hypotheses, Known, LogLight, Observation, POWER_RANGE, SettingsError, Visible};
 use crate::tracking::Called;
 
@@ -51,7 +51,6 @@ pub(super) struct Calling {
     starts: Starts,
     estimator: Estimator,
     hypotheses: Hypotheses,
-    faintest_light: f64,
     lit: Vec<f64>,
     /// By marker that is followed: vehicle, signal and place among the followed.
     heard: Vec<Heard>,
@@ -68,7 +67,6 @@ impl Calling {
             starts: Starts::new(airframe),
             estimator: Estimator::new(airframe, settings.pose)?,
             hypotheses: Hypotheses::with_room(MOST),
-            faintest_light: faintest_light(&settings.spots),
             lit: vec![UNHEARD_LIT; airframe.markers().len()],
             heard: Vec::with_capacity(MOST),
             own: Vec::with_capacity(MOST),
@@ -135,7 +133,7 @@ impl Calling {
         self.observations.extend(own.iter().map(|&(_, signal, place)| observe(&markers[place], signal)));
         self.starts.offer(&self.observations, up, &mut self.hypotheses);
         let visible = Visible {
-            faintest_light: self.faintest_light,
+            faintest_light: before.faintest_light,
             watched: Some(before.watched),
             others: &[],
             lit: &self.lit,

@@ -85,7 +85,6 @@ pub struct Glance<'a> {
 pub struct Lookout {
     camera: Camera,
     mask: Option<Mask>,
-    faintest_light: f64,
     tracker: Tracker,
     tracked: Tracked,
     blinking: Option<Blinking>,
@@ -119,6 +118,8 @@ struct Before<'a> {
     /// Where anybody looks.
     watched: Watched<'a>,
     tracked: &'a Tracked,
+    /// Light at which a marker is found half of the time.
+    faintest_light: f64,
     /// The light of an LED of intensity 1 at 1 m, where several tracks tell it.
     power: Option<LogLight>,
 }
@@ -155,8 +156,7 @@ impl Lookout {
     ) -> Result<Self, LookoutError> {
         let tracker = Tracker::new(camera.clone(), airframe, locator, settings)?;
         let blinking = fleet.map(|fleet| Blinking::new(&camera, airframe, locator, fleet)).transpose()?;
-        let faintest_light = locator::faintest_light(&locator.spots);
-        Ok(Self { camera, mask: None, faintest_light, tracker, tracked: Tracked::default(), blinking })
+        Ok(Self { camera, mask: None, tracker, tracked: Tracked::default(), blinking })
     }
 
     /// Sets where the locator does not look.
@@ -181,8 +181,10 @@ impl Lookout {
         look.check()?;
         if let Some(blinking) = &mut self.blinking {
             let watched = Watched::new(&self.camera, self.mask.as_ref());
-            let heard = Before { watched, tracked: &self.tracked, power: self.tracker.power() };
-            (look.blinking, look.signals) = blinking.hear(glance, self.faintest_light, &heard);
+            let faintest_light = located.faintest_light;
+            let before =
+                Before { watched, tracked: &self.tracked, faintest_light, power: self.tracker.power() };
+            (look.blinking, look.signals) = blinking.hear(glance, &before);
         }
         self.tracked.take_over(self.tracker.track(&look)?);
         if let Some(blinking) = &mut self.blinking {
@@ -237,7 +239,6 @@ impl Blinking {
     fn hear(
         &mut self,
         glance: &Glance<'_>,
-        faintest_light: f64,
         before: &Before<'_>,
     ) -> (Option<tracking::Blinking<'_>>, &[Option<Signalled>]) {
         let Before { watched, tracked, .. } = *before;
@@ -248,7 +249,7 @@ impl Blinking {
             time_s: glance.time_s,
             exposure_s: glance.exposure_s,
             sightings: &glance.located.sightings,
-            faintest_light,
+            faintest_light: glance.located.faintest_light,
             turn: glance.turned.map(following::Turn::from),
             watched,
         };

@@ -7,7 +7,7 @@ use alloc::vec::Vec;
 
 use nalgebra::Matrix3;
 
-use super::component::{Component, Covariance};
+use super::component::{Component, Covariance, YAW_RATE};
 use super::look::Moment;
 use super::reduction::reduce;
 use super::state::{MOST_TARGETS, State, Target};
@@ -92,10 +92,13 @@ fn begin(model: &Model, mode: &Mode, first: Option<&Component>, turns: usize) ->
     let speed = model.settings.velocity_sigma_m_s * model.settings.velocity_sigma_m_s;
     covariance.fixed_view_mut::<3, 3>(3, 3).copy_from(&Matrix3::from_diagonal_element(speed));
     covariance.fixed_view_mut::<3, 3>(6, 6).copy_from(&mode.orientation_covariance_rad2);
+    covariance[(YAW_RATE, YAW_RATE)] =
+        model.settings.yaw_rate_sigma_rad_s * model.settings.yaw_rate_sigma_rad_s;
     let begun = Component {
         weight: mode.weight,
         pose: mode.pose,
         velocity_m_s: nalgebra::Vector3::zeros(),
+        yaw_rate_rad_s: 0.0,
         covariance,
     };
     let turn = first.and_then(|first| turn_next_to(model, &begun.pose, &first.pose, turns));

@@ -1,21 +1,30 @@
 //! One normal distribution of where a vehicle is, how fast and how turned.
 //!
-//! An error is [position, m; velocity, m/s; rotation in the body frame, rad], position and velocity along the camera's axes at the stamp, relative to the
-//! camera, which do not rotate.
+//! An error is [position, m; velocity, m/s; rotation in the body frame, rad; yaw rate, rad/s], position and velocity along the camera's axes at the stamp,
+//! relative to the camera, which do not rotate.
 
-use nalgebra::{Matrix3, Matrix3x6, Matrix6, Rotation3, SMatrix, SVector, Vector3, Vector6};
+use nalgebra::{
+    Matrix3, Matrix4, Matrix4x6, Matrix6, Rotation3, SMatrix, SVector, Vector3, Vector4, Vector6,
+};
 
 use crate::pose::{Pose, turn_of};
 
+/// Numbers of a state.
+pub(super) const SIZE: usize = 10;
 /// An error of the state.
-pub(super) type Step = SVector<f64, 9>;
+pub(super) type Step = SVector<f64, SIZE>;
 /// Its part that is the pose's: [position, m; rotation in the body frame, rad].
 pub(super) type PoseStep = Vector6<f64>;
 /// The covariance of an error of the state.
-pub(super) type Covariance = SMatrix<f64, 9, 9>;
+pub(super) type Covariance = SMatrix<f64, SIZE, SIZE>;
 
 /// Where an error of the state has that of the pose: position and rotation.
 pub(super) const POSE: [usize; 6] = [0, 1, 2, 6, 7, 8];
+/// Where it has that of the rates at which the pose changes: velocity and yaw rate.
+pub(super) const RATES: [usize; 4] = [3, 4, 5, YAW_RATE];
+/// Where it has the yaw, and how fast that changes.
+pub(super) const YAW: usize = 8;
+pub(super) const YAW_RATE: usize = 9;
 
 /// A normal distribution of the state, with a weight.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,6 +32,8 @@ pub(super) struct Component {
     pub(super) weight: f64,
     pub(super) pose: Pose,
     pub(super) velocity_m_s: Vector3<f64>,
+    /// How fast it turns about its own vertical axis, rad/s.
+    pub(super) yaw_rate_rad_s: f64,
     pub(super) covariance: Covariance,
 }
 
@@ -31,7 +42,8 @@ impl Component {
     pub(super) fn stepped(&self, step: &Step) -> Self {
         let of_pose = PoseStep::from_fn(|axis, _| step[POSE[axis]]);
         let velocity_m_s = self.velocity_m_s + step.fixed_rows::<3>(3);
-        Self { pose: pose_after(&self.pose, &of_pose), velocity_m_s, ..*self }
+        let yaw_rate_rad_s = self.yaw_rate_rad_s + step[YAW_RATE];
+        Self { pose: pose_after(&self.pose, &of_pose), velocity_m_s, yaw_rate_rad_s, ..*self }
     }
 
     /// The step that leads to another.
@@ -40,6 +52,7 @@ impl Component {
         let mut step = Step::zeros();
         POSE.into_iter().zip(of_pose.iter()).for_each(|(place, own)| step[place] = *own);
         step.fixed_rows_mut::<3>(3).copy_from(&(other.velocity_m_s - self.velocity_m_s));
+        step[YAW_RATE] = other.yaw_rate_rad_s - self.yaw_rate_rad_s;
         step
     }
 
@@ -56,9 +69,18 @@ impl Component {
         Matrix6::from_fn(|line, column| self.covariance[(POSE[line], POSE[column])])
     }
 
-    /// The covariance of the velocity with the pose.
-    pub(super) fn velocity_with_pose(&self) -> Matrix3x6<f64> {
-        Matrix3x6::from_fn(|axis, column| self.covariance[(axis + 3, POSE[column])])
+    /// The covariance of the rates, and that of them with the pose.
+    pub(super) fn rates_covariances(&self) -> (Matrix4<f64>, Matrix4x6<f64>) {
+        (
+            Matrix4::from_fn(|line, column| self.covariance[(RATES[line], RATES[column])]),
+            Matrix4x6::from_fn(|line, column| self.covariance[(RATES[line], POSE[column])]),
+        )
+    }
+
+    /// The same with other rates: velocity, then yaw rate.
+    pub(super) fn with_rates_off(&self, off: &Vector4<f64>) -> Self {
+        let velocity_m_s = self.velocity_m_s + off.fixed_rows::<3>(0);
+        Self { velocity_m_s, yaw_rate_rad_s: self.yaw_rate_rad_s + off[3], ..*self }
     }
 
     /// The covariance of a part of the state: 0 position, 1 velocity, 2 attitude.

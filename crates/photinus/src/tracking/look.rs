@@ -15,6 +15,8 @@ const MOST_MODES: usize = 16;
 /// Markers and neighbours that a frame has room for beforehand.
 const FOLLOWED: usize = 128;
 const NEIGHBOURS: usize = 4;
+/// A marker is lit in no smaller share of the frames.
+const LEAST_LIT: f64 = 0.05;
 /// A signal that comes with its sighting is right so often.
 const SIGNAL_IS_RIGHT: f64 = 0.99;
 
@@ -175,6 +177,8 @@ pub(super) struct Moment {
     pub(super) turned: Option<Turned>,
     pub(super) moving: Option<Moving>,
     pub(super) up: Option<Unit<Vector3<f64>>>,
+    /// Light at which a marker is found half of the time.
+    pub(super) faintest_light: f64,
     /// With the density of clutter per unit of the logarithm of its light, for one point of clutter per sr.
     pub(super) observations: Vec<Observation>,
     /// What the camera's calibration adds to the covariance of each.
@@ -185,6 +189,8 @@ pub(super) struct Moment {
     modes: Vec<Mode>,
     pub(super) lit: Vec<Lit>,
     pub(super) followed: Vec<Followed>,
+    /// Which share of the frames in which a vehicle shows has each of its markers: 1 where all of them blink alike.
+    pub(super) share_lit: f64,
     /// How likely markers are lit that are not among them; `None` where they do not blink.
     pub(super) others_lit: Option<f64>,
 }
@@ -203,6 +209,7 @@ impl Moment {
     pub(super) fn keep(&mut self, look: &Look<'_>, kind: usize) {
         let Look { time_s, turned, moving, gravity, located, signals, lit, blinking } = *look;
         (self.time_s, self.turned, self.moving) = (time_s, turned, moving);
+        self.faintest_light = located.faintest_light;
         self.up = gravity.map(|down| -down);
         self.observations.clear();
         self.calibrations.clear();
@@ -226,6 +233,7 @@ impl Moment {
         self.members.clear();
         self.modes.clear();
         let appearing = blinking.and_then(|blinking| blinking.appearing);
+        self.share_lit = appearing.and(self.others_lit).unwrap_or(1.0).max(LEAST_LIT);
         let is_stranger = |spot: &usize| {
             appearing.is_none_or(|Appearing { strangers, .. }| strangers.get(*spot).copied().unwrap_or(false))
         };

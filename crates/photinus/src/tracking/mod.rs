@@ -85,7 +85,6 @@ impl Tracker {
             airframe: airframe.clone(),
             symmetry: Symmetry::of(airframe),
             pose: locator.pose,
-            faintest_light: locator::faintest_light(&locator.spots),
             settings,
         };
         let stepper = Stepper::new(airframe);

@@ -1,13 +1,15 @@
-//! A state -> the same a while later: velocity carries on, tilts fade, yaw wanders, and the camera turned and became faster or slower.
+//! A state -> the same a while later: velocity carries on, yaw turns on, tilts fade, and the camera turned and became faster or slower.
 //!
-//! Acceleration and yaw rate are white; a tilt is an Ornstein-Uhlenbeck process about the vertical, whose sigma is the prior of the pose. Where gravity is
-//! not known the tilt changes as fast, about the image's up, and is hardly pulled to it. Y. Bar-Shalom, X. R. Li, T. Kirubarajan, "Estimation with
-//! Applications to Tracking and Navigation" (2001), 6.2.1.
+//! Acceleration is white; the yaw rate is an Ornstein-Uhlenbeck process about none, a tilt one about the vertical, whose sigma is
+//! the prior of the pose. Where gravity is not known the tilt changes as fast, about the image's up, and is hardly pulled to it.
+//! Y. Bar-Shalom, X. R. Li, T. Kirubarajan, "Estimation with Applications to Tracking and Navigation" (2001), 6.2.1.
 
 use nalgebra::{Matrix3, Rotation3, SMatrix, Unit, Vector3};
 
-use super::component::{Component, Covariance};
+use super::component::{Component, Covariance, SIZE, YAW, YAW_RATE};
 use super::settings::Settings;
+#[cfg(not(feature = "std"))]
+use crate::float::Float as _;
 use crate::pose::Pose;
 
 /// Without gravity: how far a vehicle is from upright in the image, rad.
@@ -44,6 +46,37 @@ pub(super) struct Motion {
     pub(super) tilt_sigma_rad: f64,
 }
 
+/// What becomes of a yaw and its rate over an interval.
+struct Turning {
+    /// How much yaw follows from the rate before, s.
+    by_rate: f64,
+    /// The share of the rate that is left.
+    keeps: f64,
+    /// What is new: the variances of both, and their covariance.
+    yaw_rad2: f64,
+    yaw_with_rate: f64,
+    rate_rad2_s2: f64,
+}
+
+impl Turning {
+    fn over(interval_s: f64, settings: &Settings) -> Self {
+        let time_s = settings.yaw_rate_time_s;
+        let variance = settings.yaw_rate_sigma_rad_s * settings.yaw_rate_sigma_rad_s;
+        let gone = -libm::expm1(-interval_s / time_s);
+        Self {
+            by_rate: time_s * gone,
+            keeps: 1.0 - gone,
+            // of 2 (x - gone) - gone^2 the first orders cancel
+            yaw_rad2: variance
+                * time_s
+                * time_s
+                * (2.0 * (interval_s / time_s - gone) - gone * gone).max(0.0),
+            yaw_with_rate: variance * time_s * gone * gone,
+            rate_rad2_s2: variance * gone * (2.0 - gone),
+        }
+    }
+}
+
 impl Motion {
     /// Where a vehicle is afterwards.
     pub(super) fn predict(&self, before: &Component, settings: &Settings) -> Component {
@@ -53,7 +86,9 @@ impl Motion {
         let carried_m = turn * (before.pose.position_m + before.velocity_m_s * interval_s);
         let position_m = carried_m - faster.by_m_s * (0.5 * interval_s);
         let velocity_m_s = turn * before.velocity_m_s - faster.by_m_s;
-        let camera_from_body = turn * before.pose.camera_from_body;
+        let turning = Turning::over(interval_s, settings);
+        let turned = Rotation3::from_axis_angle(&Vector3::z_axis(), turning.by_rate * before.yaw_rate_rad_s);
+        let camera_from_body = turn * before.pose.camera_from_body * turned;
         let (keeps, tilt_rad2) = self.tilt(settings);
         let upright = self.upright(&camera_from_body);
         let mut transition = Covariance::identity();
@@ -61,8 +96,11 @@ impl Motion {
         transition.fixed_view_mut::<3, 3>(0, 0).copy_from(matrix);
         transition.fixed_view_mut::<3, 3>(0, 3).copy_from(&(matrix * interval_s));
         transition.fixed_view_mut::<3, 3>(3, 3).copy_from(matrix);
-        transition[(6, 6)] = keeps;
-        transition[(7, 7)] = keeps;
+        // Errors of the attitude are along the axes of the body, which turn.
+        transition.fixed_view_mut::<3, 3>(6, 6).copy_from(turned.inverse().matrix());
+        transition.fixed_view_mut::<2, 3>(6, 6).scale_mut(keeps);
+        transition[(YAW, YAW_RATE)] = turning.by_rate;
+        transition[(YAW_RATE, YAW_RATE)] = turning.keeps;
         let mut covariance = transition * before.covariance * transition.transpose();
         let density = settings.acceleration * settings.acceleration;
         let speed_m2_s2 = faster.sigma_m_s * faster.sigma_m_s;
@@ -76,13 +114,21 @@ impl Motion {
         }
         covariance[(6, 6)] += tilt_rad2;
         covariance[(7, 7)] += tilt_rad2;
-        let wandering = settings.yaw_rate * settings.yaw_rate * interval_s;
-        covariance[(8, 8)] += wandering.min((MOST_YAW_RAD * MOST_YAW_RAD - covariance[(8, 8)]).max(0.0));
+        covariance[(YAW, YAW)] += turning.yaw_rad2;
+        covariance[(YAW, YAW_RATE)] += turning.yaw_with_rate;
+        covariance[(YAW_RATE, YAW)] += turning.yaw_with_rate;
+        covariance[(YAW_RATE, YAW_RATE)] += turning.rate_rad2_s2;
+        let too_wide = covariance[(YAW, YAW)].sqrt() / MOST_YAW_RAD;
+        if too_wide > 1.0 {
+            covariance.row_mut(YAW).unscale_mut(too_wide);
+            covariance.column_mut(YAW).unscale_mut(too_wide);
+        }
         let by_turn = by_turn(&position_m, &velocity_m_s, &camera_from_body);
         covariance += by_turn * by_turn.transpose() * (self.turn.sigma_rad * self.turn.sigma_rad);
         let pose =
             Pose { position_m, camera_from_body: camera_from_body * Rotation3::new(upright * (1.0 - keeps)) };
-        Component { weight: before.weight, pose, velocity_m_s, covariance }
+        let yaw_rate_rad_s = turning.keeps * before.yaw_rate_rad_s;
+        Component { weight: before.weight, pose, velocity_m_s, yaw_rate_rad_s, covariance }
     }
 
     /// The share of a tilt that is left, and the variance that is new.
@@ -114,8 +160,8 @@ fn by_turn(
     position_m: &Vector3<f64>,
     velocity_m_s: &Vector3<f64>,
     camera_from_body: &Rotation3<f64>,
-) -> SMatrix<f64, 9, 3> {
-    let mut by_turn = SMatrix::<f64, 9, 3>::zeros();
+) -> SMatrix<f64, SIZE, 3> {
+    let mut by_turn = SMatrix::<f64, SIZE, 3>::zeros();
     by_turn.fixed_view_mut::<3, 3>(0, 0).copy_from(&-position_m.cross_matrix());
     by_turn.fixed_view_mut::<3, 3>(3, 0).copy_from(&-velocity_m_s.cross_matrix());
     let back: Matrix3<f64> = camera_from_body.matrix().transpose();

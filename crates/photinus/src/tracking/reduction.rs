@@ -2,7 +2,7 @@
 
 use alloc::vec::Vec;
 
-use super::component::{Component, merged};
+use super::component::{Component, YAW, merged};
 use super::state::MOST_COMPONENTS;
 
 /// A share of the weight that counts for nothing.
@@ -24,7 +24,8 @@ pub(super) fn reduce(components: &mut Vec<Component>, straight_rad: f64) {
         };
         let is_same = |other: &Component| {
             let off = heaviest.step_to(other);
-            let yaw_rad2 = heaviest.covariance[(8, 8)].max(other.covariance[(8, 8)]) + 0.25 * off[8] * off[8];
+            let widest_rad2 = heaviest.covariance[(YAW, YAW)].max(other.covariance[(YAW, YAW)]);
+            let yaw_rad2 = widest_rad2 + 0.25 * off[YAW] * off[YAW];
             yaw_rad2 < straight_rad * straight_rad && off.dot(&factor.solve(&off)) < SAME
         };
         // Those that say the same, brought next to it.

@@ -12,9 +12,10 @@ pub struct Settings {
     pub velocity_sigma_m_s: f64,
     /// Time after which a tilt is another one, s. Its sigma is that of the pose's settings. Default 0.5.
     pub tilt_time_s: f64,
-    /// White yaw rate, root of its spectral density, rad per sqrt(s). Default 0.3: rms 0.5 rad/s that lasts a fifth of a second,
-    /// sqrt(2 * 0.2 s) * 0.5 rad/s.
-    pub yaw_rate: f64,
+    /// How fast a vehicle turns about the vertical, standard deviation, rad/s. Default 0.6: brisk turns of 1.5 rad/s, and long times of none.
+    pub yaw_rate_sigma_rad_s: f64,
+    /// After so long it turns otherwise, s. Default 1.
+    pub yaw_rate_time_s: f64,
     /// How fast the camera turns where nobody tells, standard deviation per axis, rad/s. Default 0.35.
     pub turn_sigma_rad_s: f64,
     /// Errors of markers, lobes and LED powers last for so long, s, until another side shows: frames in between tell the same error again. Default 0.5.
@@ -48,7 +49,8 @@ impl Default for Settings {
             acceleration: 3.0,
             velocity_sigma_m_s: 5.0,
             tilt_time_s: 0.5,
-            yaw_rate: 0.3,
+            yaw_rate_sigma_rad_s: 0.6,
+            yaw_rate_time_s: 1.0,
             turn_sigma_rad_s: 0.35,
             correlation_s: 0.5,
             hiding_per_s: 0.05,
@@ -71,7 +73,8 @@ impl Settings {
             ("the acceleration", self.acceleration),
             ("the first velocity's sigma", self.velocity_sigma_m_s),
             ("the time of a tilt", self.tilt_time_s),
-            ("the yaw rate", self.yaw_rate),
+            ("the yaw rate's sigma", self.yaw_rate_sigma_rad_s),
+            ("the time of a yaw rate", self.yaw_rate_time_s),
             ("the camera's turn rate", self.turn_sigma_rad_s),
             ("the time over which errors last", self.correlation_s),
             ("how often vehicles get hidden", self.hiding_per_s),

@@ -5,7 +5,7 @@
 
 use alloc::vec::Vec;
 
-use super::component::{Component, Covariance};
+use super::component::{Component, Covariance, YAW};
 #[cfg(not(feature = "std"))]
 use crate::float::Float as _;
 
@@ -18,8 +18,6 @@ const MOST_PARTS: usize = 13;
 /// Parts are at most so far apart, in their own standard deviations, and reach so far, in those of the whole.
 const SPACING: f64 = 1.5;
 const REACH: f64 = 2.4;
-/// The yaw in an error of the state.
-const YAW: usize = 8;
 
 /// Over so wide a yaw, one standard deviation, rad, valleys are straight, for markers so far from the axis whose places have this sigma in a frame.
 pub(super) fn straight_rad(radius_m: f64, sigma_m: f64) -> f64 {

@@ -43,7 +43,6 @@ pub(super) struct Model {
     pub(super) airframe: Airframe,
     pub(super) symmetry: Symmetry,
     pub(super) pose: pose::Settings,
-    pub(super) faintest_light: f64,
     pub(super) settings: Settings,
 }
 

@@ -2,12 +2,12 @@
 //!
 //! The update of an error-state Kalman filter, iterated: down the sum of the prior's squared error and the measurement's cost, by Gauss and Newton; B. M.
 //! Bell, F. W. Cathey, "The iterated Kalman filter update as a Gauss-Newton method", IEEE Trans. Autom. Control 38 (1993). The measurement brings its
-//! robustness (Huber), markers that merge, and light. How likely it was is Laplace's integral around the summit, as for poses. No spot tells the velocity:
-//! the search is over the pose alone, and the velocity follows from what the prediction says about both.
+//! robustness (Huber), markers that merge, and light. How likely it was is Laplace's integral around the summit, as for poses. No spot tells how fast the
+//! pose changes: the search is over the pose alone, and its rates follow from what the prediction says about both.
 
-use nalgebra::{Matrix3x6, Matrix6};
+use nalgebra::{Matrix4x6, Matrix6};
 
-use super::component::{Component, Covariance, POSE, PoseStep, pose_after, pose_step};
+use super::component::{Component, Covariance, POSE, PoseStep, RATES, pose_after, pose_step};
 use crate::pose::{Measurement, Normal, Pose};
 
 /// Most steps to a summit.
@@ -25,8 +25,8 @@ pub(super) struct Prior {
     information: Matrix6<f64>,
     /// Logarithm of the determinant of the information.
     log_determinant: f64,
-    /// What an error of the pose says of that of the velocity.
-    velocity_by_pose: Matrix3x6<f64>,
+    /// What an error of the pose says of those of its rates.
+    rates_by_pose: Matrix4x6<f64>,
 }
 
 /// A state with a frame's spots.
@@ -43,8 +43,9 @@ impl Prior {
     /// `None` where the matrix is not a covariance.
     pub(super) fn of(component: &Component) -> Option<Self> {
         let (information, log_determinant) = inverse(component.pose_covariance())?;
-        let velocity_by_pose = component.velocity_with_pose() * information;
-        Some(Self { component: *component, information, log_determinant, velocity_by_pose })
+        let (_, with_pose) = component.rates_covariances();
+        let rates_by_pose = with_pose * information;
+        Some(Self { component: *component, information, log_determinant, rates_by_pose })
     }
 
     /// The state with a measurement, the nearest to `start`; `None` also where its evidence is certain to be less than `least`.
@@ -96,28 +97,28 @@ impl Prior {
 
     /// The state whose pose is told with this covariance.
     fn with(&self, here: &Here<'_>, covariance: &Matrix6<f64>) -> Component {
-        let by_pose = &self.velocity_by_pose;
+        let by_pose = &self.rates_by_pose;
         let off = pose_step(&self.component.pose, &here.pose);
         let crossed = by_pose * covariance;
-        let known = by_pose * self.component.velocity_with_pose().transpose();
-        let velocity = self.component.block(1) - known + crossed * by_pose.transpose();
+        let (of_rates, with_pose) = self.component.rates_covariances();
+        let rates = of_rates - by_pose * with_pose.transpose() + crossed * by_pose.transpose();
+        let rates = (rates + rates.transpose()) * 0.5;
         let mut whole = Covariance::zeros();
         for (line, to_line) in POSE.into_iter().enumerate() {
             for (column, to_column) in POSE.into_iter().enumerate() {
                 whole[(to_line, to_column)] = covariance[(line, column)];
             }
-            for axis in 0..3 {
-                whole[(axis + 3, to_line)] = crossed[(axis, line)];
-                whole[(to_line, axis + 3)] = crossed[(axis, line)];
+            for (rate, to_rate) in RATES.into_iter().enumerate() {
+                whole[(to_rate, to_line)] = crossed[(rate, line)];
+                whole[(to_line, to_rate)] = crossed[(rate, line)];
             }
         }
-        whole.fixed_view_mut::<3, 3>(3, 3).copy_from(&((velocity + velocity.transpose()) * 0.5));
-        Component {
-            pose: here.pose,
-            velocity_m_s: self.component.velocity_m_s + by_pose * off,
-            covariance: whole,
-            ..self.component
+        for (line, to_line) in RATES.into_iter().enumerate() {
+            for (column, to_column) in RATES.into_iter().enumerate() {
+                whole[(to_line, to_column)] = rates[(line, column)];
+            }
         }
+        Component { pose: here.pose, covariance: whole, ..self.component.with_rates_off(&(by_pose * off)) }
     }
 }
 

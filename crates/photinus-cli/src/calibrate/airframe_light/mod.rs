@@ -159,9 +159,9 @@ impl Recording {
                 }
             };
             let Some(image) = &entry.image else { continue };
-            let located =
-                self.locator.locate(locator::Input::frame(&image.view()).gravity(entry.gravity.as_ref()));
-            let located = located.map_err(|error| {
+            let view = image.view();
+            let input = locator::Input::frame(&view).gravity(entry.gravity.as_ref());
+            let located = self.locator.locate(input.exposure(entry.exposure_s)).map_err(|error| {
                 let frame = entry.record.frame.unwrap_or(u64::from(number));
                 Failure::input(Error::format(&entry.record.source, error.to_string()).at(Place::Frame(frame)))
             })?;

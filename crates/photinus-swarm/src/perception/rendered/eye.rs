@@ -111,10 +111,13 @@ impl Eye {
         let gravity = Unit::new_normalize(down);
         let turn = camera_from_body * looking.turned.inverse() * self.body_from_camera.rotation;
         // the renderer makes frames of the camera's size
-        let Ok(located) = self.locator.locate(Input::frame(&frame.view()).gravity(&gravity)) else { return };
+        let exposure_s = moment.exposure_us * 1e-6;
+        let view = frame.view();
+        let input = Input::frame(&view).gravity(&gravity).exposure(exposure_s);
+        let Ok(located) = self.locator.locate(input) else { return };
         let glance = Glance {
             time_s: moment.time_s,
-            exposure_s: moment.exposure_us * 1e-6,
+            exposure_s,
             turned: (moment.number > 0)
                 .then(|| Turned { now_from_before: Rotation3::from(turn), sigma_rad: self.turn_sigma_rad }),
             moving: None,

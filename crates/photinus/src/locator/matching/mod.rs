@@ -60,7 +60,6 @@ pub(super) struct Matcher {
     tilt_sigma_rad: f64,
     log_flux_sigma: f64,
     unseen_nats: f64,
-    log_faintest: f64,
     bearings: Vec<BoundedBearing>,
     places: Vec<Vector2<f64>>,
     costs: Vec<Lanes>,
@@ -68,12 +67,7 @@ pub(super) struct Matcher {
 }
 
 impl Matcher {
-    pub(super) fn new(
-        airframe: &Airframe,
-        max_tilt_rad: f64,
-        believed: &pose::Settings,
-        faintest_light: f64,
-    ) -> Self {
+    pub(super) fn new(airframe: &Airframe, max_tilt_rad: f64, believed: &pose::Settings) -> Self {
         let unseen_nats: Vec<f64> =
             lit(airframe).iter().map(|lit| -libm::log(1.0 - lit * (1.0 - believed.missed))).collect();
         let grid_rad = ELEVATION_STEP_RAD / 2.0;
@@ -87,7 +81,6 @@ impl Matcher {
             tilt_sigma_rad: libm::hypot(believed.tilt_sigma_rad, grid_rad),
             log_flux_sigma: libm::hypot(LOG_FLUX_GRID, believed.unit_sigma),
             unseen_nats: unseen_nats.iter().copied().fold(0.0, f64::max),
-            log_faintest: libm::log(faintest_light),
             bearings: Vec::new(),
             places: Vec::new(),
             costs: Vec::new(),
@@ -244,7 +237,9 @@ impl Matcher {
 
     /// What it costs that a spot's other markers are not seen, nats: nothing where it is hardly seen itself, all where it is e times as bright.
     fn lone_nats(&self, context: &Context<'_>, spot: usize) -> f64 {
-        let brighter = context.sightings[spot].log_light.map_or(1.0, |light| light.value - self.log_faintest);
+        let brighter = context.sightings[spot]
+            .log_light
+            .map_or(1.0, |light| light.value - libm::log(context.faintest_light));
         self.views.lone_nats * brighter.clamp(0.0, 1.0)
     }
 

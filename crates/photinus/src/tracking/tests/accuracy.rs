@@ -39,7 +39,8 @@ fn fly(airframe: Airframe, flights: u64, distances_m: [f64; 2], lost: f64) -> Sc
         let mut vehicle = Vehicle::at(place_m, [0.0; 3], any(0.0, core::f64::consts::TAU, &mut rng));
         vehicle.velocity_m_s = normal3(&mut rng) * settings.velocity_sigma_m_s;
         vehicle.tilt_rad = [(); 2].map(|()| tilt_sigma_rad * normal(&mut rng));
-        let mut told = Told::near(&vehicle, settings.velocity_sigma_m_s, tilt_sigma_rad, &mut rng);
+        vehicle.yaw_rate_rad_s = settings.yaw_rate_sigma_rad_s * normal(&mut rng);
+        let mut told = Told::near(&vehicle, &settings, tilt_sigma_rad, &mut rng);
         let (mut ids, mut is_clear, mut squares) = (Vec::new(), true, [0.0; 3]);
         for frame in 0..45 {
             if frame > 0 {
@@ -90,7 +91,7 @@ fn fly(airframe: Airframe, flights: u64, distances_m: [f64; 2], lost: f64) -> Sc
 fn drawn_flights_have_the_covariance_that_is_claimed() {
     for (name, airframe) in [("hexarotor", hexarotor()), ("quadrotor", quadrotor())] {
         for lost in [0.0, 0.3] {
-            let flights = 60;
+            let flights = 80;
             let score = fly(airframe.clone(), flights, [4.0, 9.0], lost);
             let ratio = (score.square_m2 / score.told_square_m2).sqrt();
             println!(

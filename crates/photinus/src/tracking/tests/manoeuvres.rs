@@ -103,8 +103,7 @@ fn turning(time_s: f64) -> (Vec<(Vehicle, bool)>, Rotation3<f64>) {
     let (sin, cos) = libm::sincos(speed_m_s / radius_m * time_s);
     let place_m = Vector3::new(radius_m * cos, 0.0, 8.0 + radius_m * sin);
     let velocity_m_s = Vector3::new(-sin, 0.0, cos) * speed_m_s;
-    let vehicle =
-        Vehicle { position_m: place_m, velocity_m_s, yaw_rad: 0.3, tilt_rad: [0.0; 2], body_m: 0.0 };
+    let vehicle = Vehicle { position_m: place_m, velocity_m_s, ..Vehicle::at([0.0; 3], [0.0; 3], 0.3) };
     (vec![(vehicle, true)], Rotation3::identity())
 }
 

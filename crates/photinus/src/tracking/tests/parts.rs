@@ -7,7 +7,7 @@ use rand_pcg::Pcg64;
 use super::simulator::{hexarotor, normal, normal3};
 use crate::pose::Pose;
 use crate::tracking::branches::Predicted;
-use crate::tracking::component::{Component, Covariance, Step, merged};
+use crate::tracking::component::{Component, Covariance, SIZE, Step, merged};
 use crate::tracking::joint::{Choice, Joint};
 use crate::tracking::motion::{Faster, Motion, Turn};
 use crate::tracking::reduction::reduce;
@@ -23,6 +23,7 @@ fn any_component(rng: &mut Pcg64) -> Component {
             camera_from_body: Rotation3::new(normal3(rng)),
         },
         velocity_m_s: normal3(rng),
+        yaw_rate_rad_s: normal(rng),
         covariance: root * root.transpose() + Covariance::identity() * 1e-3,
     }
 }
@@ -50,7 +51,12 @@ fn the_direction_of_a_marker_changes_as_differences_say() {
 #[test]
 fn a_prediction_spreads_as_its_draws_do() {
     let mut rng = Pcg64::new(2, 1);
-    let settings = Settings { acceleration: 1e-3, yaw_rate: 1e-3, tilt_time_s: 500.0, ..Settings::default() };
+    let settings = Settings {
+        acceleration: 1e-3,
+        yaw_rate_sigma_rad_s: 1e-5,
+        tilt_time_s: 500.0,
+        ..Settings::default()
+    };
     let before =
         Component { covariance: any_component(&mut rng).covariance * 1e-4, ..any_component(&mut rng) };
     let by_m_s = Vector3::new(0.5, -0.2, 0.9);
@@ -73,7 +79,7 @@ fn a_prediction_spreads_as_its_draws_do() {
         let off = told.step_to(&motion(turned, faster_m_s, [0.0; 2]).predict(&drawn, &settings));
         square += off * off.transpose() / f64::from(draws);
     }
-    for axis in 0..9 {
+    for axis in 0..SIZE {
         let ratio = square[(axis, axis)] / told.covariance[(axis, axis)];
         assert!((ratio - 1.0).abs() < 0.05, "axis {axis}: {ratio}");
     }

@@ -130,6 +130,7 @@ pub(crate) struct Vehicle {
     pub(crate) position_m: Vector3<f64>,
     pub(crate) velocity_m_s: Vector3<f64>,
     pub(crate) yaw_rad: f64,
+    pub(crate) yaw_rate_rad_s: f64,
     /// About the world's horizontal axes, rad.
     pub(crate) tilt_rad: [f64; 2],
     /// Radius of what hides markers behind it, m.
@@ -139,7 +140,7 @@ pub(crate) struct Vehicle {
 impl Vehicle {
     pub(crate) fn at(position_m: [f64; 3], velocity_m_s: [f64; 3], yaw_rad: f64) -> Self {
         let [position_m, velocity_m_s] = [position_m, velocity_m_s].map(Vector3::from);
-        Self { position_m, velocity_m_s, yaw_rad, tilt_rad: [0.0; 2], body_m: 0.0 }
+        Self { position_m, velocity_m_s, yaw_rad, yaw_rate_rad_s: 0.0, tilt_rad: [0.0; 2], body_m: 0.0 }
     }
 
     /// Whether it hides a place from the camera.
@@ -172,7 +173,11 @@ impl Vehicle {
             let kick_m_s = normal3(rng) * (settings.acceleration * fine_s.sqrt());
             self.position_m += (self.velocity_m_s + kick_m_s * 0.5) * fine_s;
             self.velocity_m_s += kick_m_s;
-            self.yaw_rad += settings.yaw_rate * fine_s.sqrt() * normal(rng);
+            self.yaw_rad += self.yaw_rate_rad_s * fine_s;
+            let time_s = settings.yaw_rate_time_s;
+            self.yaw_rate_rad_s -= self.yaw_rate_rad_s * fine_s / time_s;
+            self.yaw_rate_rad_s +=
+                settings.yaw_rate_sigma_rad_s * (2.0 * fine_s / time_s).sqrt() * normal(rng);
             for tilt in &mut self.tilt_rad {
                 *tilt -= *tilt * fine_s / settings.tilt_time_s;
                 *tilt += tilt_sigma_rad * (2.0 * fine_s / settings.tilt_time_s).sqrt() * normal(rng);

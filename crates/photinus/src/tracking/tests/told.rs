@@ -9,49 +9,53 @@ use crate::airframe::Airframe;
 use crate::camera::Bearing;
 use crate::tracking::Settings;
 
-/// Position, velocity, yaw, tilt about the world's x and z.
-type State = SVector<f64, 9>;
+/// Position, velocity, yaw, tilt about the world's x and z, yaw rate.
+type State = SVector<f64, 10>;
 
 pub(super) struct Told {
     state: State,
-    covariance: SMatrix<f64, 9, 9>,
+    covariance: SMatrix<f64, 10, 10>,
 }
 
 impl Told {
     /// Begins near the truth.
-    pub(super) fn near(
-        truth: &Vehicle,
-        velocity_sigma_m_s: f64,
-        tilt_sigma_rad: f64,
-        rng: &mut Pcg64,
-    ) -> Self {
+    pub(super) fn near(truth: &Vehicle, settings: &Settings, tilt_sigma_rad: f64, rng: &mut Pcg64) -> Self {
         let mut state = State::zeros();
         state.fixed_rows_mut::<3>(0).copy_from(&truth.position_m);
         state.fixed_rows_mut::<3>(3).copy_from(&truth.velocity_m_s);
         state[6] = truth.yaw_rad;
         state[7] = truth.tilt_rad[0];
         state[8] = truth.tilt_rad[1];
-        let v = velocity_sigma_m_s;
-        let sigmas = State::from_column_slice(&[0.1, 0.1, 0.1, v, v, v, 0.2, tilt_sigma_rad, tilt_sigma_rad]);
+        state[9] = truth.yaw_rate_rad_s;
+        let (v, tilt, rate) = (settings.velocity_sigma_m_s, tilt_sigma_rad, settings.yaw_rate_sigma_rad_s);
+        let sigmas = State::from_column_slice(&[0.1, 0.1, 0.1, v, v, v, 0.2, tilt, tilt, rate]);
         let noise = State::from_fn(|axis, _| sigmas[axis] * normal(rng));
         Self { state: state + noise, covariance: SMatrix::from_diagonal(&sigmas.component_mul(&sigmas)) }
     }
 
     pub(super) fn predict(&mut self, interval_s: f64, settings: &Settings, tilt_sigma_rad: f64) {
         let keeps = libm::exp(-interval_s / settings.tilt_time_s);
-        let mut f = SMatrix::<f64, 9, 9>::identity();
+        let mut f = SMatrix::<f64, 10, 10>::identity();
         f.fixed_view_mut::<3, 3>(0, 3).copy_from(&(Matrix3::identity() * interval_s));
         f[(7, 7)] = keeps;
         f[(8, 8)] = keeps;
         let (a2, t) = (settings.acceleration * settings.acceleration, interval_s);
-        let mut q = SMatrix::<f64, 9, 9>::zeros();
+        let mut q = SMatrix::<f64, 10, 10>::zeros();
         for axis in 0..3 {
             q[(axis, axis)] = a2 * t * t * t / 3.0;
             q[(axis, axis + 3)] = a2 * t * t / 2.0;
             q[(axis + 3, axis)] = a2 * t * t / 2.0;
             q[(axis + 3, axis + 3)] = a2 * t;
         }
-        q[(6, 6)] = settings.yaw_rate * settings.yaw_rate * t;
+        // The rate is white noise through a filter of the first order; over a frame it is taken to change evenly.
+        let (time_s, keeps_rate) = (settings.yaw_rate_time_s, libm::exp(-t / settings.yaw_rate_time_s));
+        f[(6, 9)] = time_s * (1.0 - keeps_rate);
+        f[(9, 9)] = keeps_rate;
+        let density = 2.0 * settings.yaw_rate_sigma_rad_s * settings.yaw_rate_sigma_rad_s / time_s;
+        q[(6, 6)] = density * t * t * t / 3.0;
+        q[(6, 9)] = density * t * t / 2.0;
+        q[(9, 6)] = q[(6, 9)];
+        q[(9, 9)] = density * t;
         q[(7, 7)] = tilt_sigma_rad * tilt_sigma_rad * (1.0 - keeps * keeps);
         q[(8, 8)] = q[(7, 7)];
         self.state = f * self.state;
@@ -77,11 +81,11 @@ impl Told {
             seen.iter().flat_map(|seen| [seen.spot.centre.u, seen.spot.centre.v]),
         );
         let prior = self.state;
-        let p = DMatrix::from_column_slice(9, 9, self.covariance.as_slice());
+        let p = DMatrix::from_column_slice(10, 10, self.covariance.as_slice());
         let mut after = p.clone();
         for _ in 0..3 {
-            let mut h = DMatrix::zeros(2 * seen.len(), 9);
-            for axis in 0..9 {
+            let mut h = DMatrix::zeros(2 * seen.len(), 10);
+            for axis in 0..10 {
                 let mut step = State::zeros();
                 step[axis] = 1e-5;
                 let slope = (project(&(self.state + step)) - project(&(self.state - step))) / 2e-5;
@@ -96,7 +100,7 @@ impl Told {
             self.state = prior + State::from_column_slice(step.as_slice());
             after = &p - &gain * &h * &p;
         }
-        let after = SMatrix::<f64, 9, 9>::from_column_slice(after.as_slice());
+        let after = SMatrix::<f64, 10, 10>::from_column_slice(after.as_slice());
         self.covariance = (after + after.transpose()) * 0.5;
     }
 
@@ -110,6 +114,7 @@ fn vehicle(state: &State) -> Vehicle {
         position_m: state.fixed_rows::<3>(0).into_owned(),
         velocity_m_s: state.fixed_rows::<3>(3).into_owned(),
         yaw_rad: state[6],
+        yaw_rate_rad_s: state[9],
         tilt_rad: [state[7], state[8]],
         body_m: 0.0,
     }

@@ -131,7 +131,16 @@ fn anew(model: &Model, mode: &Mode) -> Component {
     let far_m = ANEW_SHARE * mode.pose.position_m.norm();
     let speed_m_s = model.settings.velocity_sigma_m_s;
     let tilt_rad = model.pose.tilt_sigma_rad;
-    let sigmas = [far_m, far_m, far_m, speed_m_s, speed_m_s, speed_m_s, tilt_rad, tilt_rad, ANEW_YAW_RAD];
+    let rate_rad_s = model.settings.yaw_rate_sigma_rad_s;
+    let of_place = [far_m, far_m, far_m, speed_m_s, speed_m_s, speed_m_s];
+    let of_attitude = [tilt_rad, tilt_rad, ANEW_YAW_RAD, rate_rad_s];
+    let sigmas = of_place.into_iter().chain(of_attitude);
     let covariance = Covariance::from_diagonal(&Step::from_iterator(sigmas.map(|sigma| sigma * sigma)));
-    Component { weight: mode.weight, pose: mode.pose, velocity_m_s: Vector3::zeros(), covariance }
+    Component {
+        weight: mode.weight,
+        pose: mode.pose,
+        velocity_m_s: Vector3::zeros(),
+        yaw_rate_rad_s: 0.0,
+        covariance,
+    }
 }

@@ -102,6 +102,7 @@ pub(super) struct Ways {
     clutter_nats: f64,
     per_frame: pose::Settings,
     /// The light of an LED of intensity 1 at 1 m, as one frame may count it, and where it counts.
+    log_power: Option<f64>,
     power: Option<LogLight>,
     own_power: Option<LogLight>,
     repeats: f64,
@@ -150,6 +151,7 @@ impl Ways {
             observations: Vec::new(),
             clutter_nats: 0.0,
             per_frame: pose::Settings::default(),
+            log_power: None,
             power: None,
             own_power: None,
             repeats: 1.0,
@@ -199,7 +201,7 @@ impl Ways {
 
     /// Begins a frame with so many points of clutter, and LEDs of this power, where that is known.
     pub(super) fn begin(&mut self, scene: &Scene<'_>, clutter: f64, log_power: Option<f64>) {
-        let Scene { model, moment, interval_s, .. } = *scene;
+        let Scene { moment, .. } = *scene;
         self.all.clear();
         self.screens.clear();
         self.choices.clear();
@@ -226,15 +228,7 @@ impl Ways {
             }),
         );
         self.clutter_nats = -self.observations.iter().map(|seen| seen.clutter_log_density).sum::<f64>();
-        self.repeats = model.repeats(interval_s);
-        let widening = self.repeats.sqrt();
-        let sigma = POWER_SIGMA * widening;
-        self.power = log_power.map(|value| LogLight { value, sigma });
-        self.per_frame = pose::Settings {
-            unit_sigma: model.pose.unit_sigma * widening,
-            lobe_sigma: model.pose.lobe_sigma * widening,
-            ..model.pose
-        };
+        self.log_power = log_power;
     }
 
     /// Gathers what is worth a try for the next vehicle, whose distributions are predicted.
@@ -293,6 +287,16 @@ impl Ways {
     /// What spots are against this vehicle, whose markers are where the airframe says but for the prior's sigma.
     fn prepare(&mut self, scene: &Scene<'_>, target: &Target, components: &[Component]) {
         let Scene { model, moment, .. } = *scene;
+        // Frames in which nothing of it shines repeat nothing, and of LEDs that blink words of their own each is dark in some.
+        let since_s = (moment.time_s - target.seen_s) / moment.share_lit;
+        self.repeats = model.repeats(since_s);
+        let widening = self.repeats.sqrt();
+        self.power = self.log_power.map(|value| LogLight { value, sigma: POWER_SIGMA * widening });
+        self.per_frame = pose::Settings {
+            unit_sigma: model.pose.unit_sigma * widening,
+            lobe_sigma: model.pose.lobe_sigma * widening,
+            ..model.pose
+        };
         let distance_m = components.first().map_or(1.0, |first| first.pose.position_m.norm()).max(1e-3);
         let angle_rad = model.pose.marker_sigma_m / distance_m;
         let extra_rad2 = self.repeats * angle_rad * angle_rad;
@@ -340,9 +344,9 @@ impl Ways {
 
     /// Does something with what the spots say under the assignment in `markers`.
     fn measured<T>(&self, scene: &Scene<'_>, near: &Pose, with: impl FnOnce(&Measurement<'_>) -> T) -> T {
-        let Scene { model, watched, .. } = *scene;
+        let Scene { model, watched, moment, .. } = *scene;
         let visible = Visible {
-            faintest_light: model.faintest_light,
+            faintest_light: moment.faintest_light,
             watched: Some(watched),
             others: &self.others,
             lit: &self.lit,

@@ -16,6 +16,8 @@ use crate::motion::{Motion, Velocity};
 const ODOMETRY_SIGMA_RAD: f64 = 3e-3;
 /// What an odometry says at times this far apart, s, says nothing of what is between.
 const LONGEST_GAP_S: f64 = 0.25;
+/// Attitudes this far apart, s, tell a rate where no gyro does.
+const RATE_FROM_S: f64 = 0.02;
 
 /// What tells how a camera moves.
 #[derive(Debug)]
@@ -26,8 +28,8 @@ pub enum Course {
     Live {
         /// What the vehicle says of its motion.
         motion: Motion,
-        /// How the camera sits on it.
-        body_from_camera: UnitQuaternion<f64>,
+        /// How and where the camera sits on it.
+        mounting: MountingFile,
     },
 }
 
@@ -38,8 +40,10 @@ pub struct Told {
     pub rates: Vec<(f64, Vector3<f64>)>,
     /// Attitudes world_from_camera.
     pub attitudes: Vec<(f64, UnitQuaternion<f64>)>,
-    /// Velocities over the ground in its own axes.
+    /// Velocities of the body's origin over the ground, in the camera's axes.
     pub velocities: Vec<(f64, Velocity)>,
+    /// From that origin to the camera, in the camera's axes, m.
+    pub lever_m: Vector3<f64>,
     /// Whether the attitudes say where down is: their world has z up.
     pub has_down: bool,
 }
@@ -66,6 +70,7 @@ impl Course {
             let rate = |row: ImuRow| (row.time_s, camera_from_gyro * row.turn_rad_s);
             told.rates.extend(imu.into_iter().flatten().map(rate));
         }
+        told.lever_m = mounting.map_or_else(Vector3::zeros, lever_m);
         if let Some(camera_from_body) = camera_from_body {
             for row in odometry.into_iter().flatten() {
                 let attitude = row.pose.rotation * camera_from_body.inverse();
@@ -85,7 +90,28 @@ impl Course {
     /// How fast the camera moves at a time. Nobody says how much of a velocity's error the next one shares: none of it is the worst for what it gained.
     pub(crate) fn moving(&self, time_s: f64) -> Option<Moving> {
         let told = at(&self.velocities(), time_s, Velocity::lerp)?;
-        Some(Moving { velocity_m_s: told.velocity_m_s, sigma_m_s: SQRT_2 * told.sigma_m_s })
+        let swung = self.swung(time_s)?;
+        let variance_m2_s2 = told.sigma_m_s * told.sigma_m_s + swung.sigma_m_s * swung.sigma_m_s;
+        let velocity_m_s = told.velocity_m_s + swung.velocity_m_s;
+        Some(Moving { velocity_m_s, sigma_m_s: SQRT_2 * variance_m2_s2.sqrt() })
+    }
+
+    /// How much faster than the body's origin the camera is because the body turns.
+    fn swung(&self, time_s: f64) -> Option<Velocity> {
+        let lever_m = match self {
+            Self::Told(told) => told.lever_m,
+            Self::Live { mounting, .. } => lever_m(mounting),
+        };
+        if lever_m == Vector3::zeros() {
+            return Some(Velocity { velocity_m_s: Vector3::zeros(), sigma_m_s: 0.0 });
+        }
+        let by_gyro = at(&self.rates(), time_s, |begin, end, share| begin.lerp(end, share));
+        let (rate_rad_s, sigma_rad_s) = by_gyro.map(|rate| (rate, 0.0)).or_else(|| {
+            let turned = turned_by(&self.attitudes(), time_s - RATE_FROM_S, time_s)?;
+            let rate = -turned.now_from_before.scaled_axis() / RATE_FROM_S;
+            Some((rate, turned.sigma_rad / RATE_FROM_S))
+        })?;
+        Some(Velocity { velocity_m_s: rate_rad_s.cross(&lever_m), sigma_m_s: sigma_rad_s * lever_m.norm() })
     }
 
     /// Down in the camera frame at a time, where attitudes are known against a world with z up.
@@ -101,8 +127,8 @@ impl Course {
     fn rates(&self) -> Cow<'_, [(f64, Vector3<f64>)]> {
         match self {
             Self::Told(told) => Cow::Borrowed(&told.rates),
-            Self::Live { motion, body_from_camera } => {
-                let camera_from_body = body_from_camera.inverse();
+            Self::Live { motion, mounting } => {
+                let camera_from_body = mounting.body_from_camera.inverse();
                 let rate = |(time_s, of_body)| (time_s, camera_from_body * of_body);
                 Cow::Owned(motion.rates().into_iter().map(rate).collect())
             }
@@ -112,8 +138,8 @@ impl Course {
     fn velocities(&self) -> Cow<'_, [(f64, Velocity)]> {
         match self {
             Self::Told(told) => Cow::Borrowed(&told.velocities),
-            Self::Live { motion, body_from_camera } => {
-                let camera_from_body = body_from_camera.inverse();
+            Self::Live { motion, mounting } => {
+                let camera_from_body = mounting.body_from_camera.inverse();
                 let velocity =
                     |(time_s, velocity): (f64, Velocity)| (time_s, velocity.turned(&camera_from_body));
                 Cow::Owned(motion.velocities().into_iter().map(velocity).collect())
@@ -124,12 +150,18 @@ impl Course {
     fn attitudes(&self) -> Cow<'_, [(f64, UnitQuaternion<f64>)]> {
         match self {
             Self::Told(told) => Cow::Borrowed(&told.attitudes),
-            Self::Live { motion, body_from_camera } => {
-                let attitude = |(time_s, attitude)| (time_s, attitude * body_from_camera);
+            Self::Live { motion, mounting } => {
+                let attitude = |(time_s, attitude)| (time_s, attitude * mounting.body_from_camera);
                 Cow::Owned(motion.attitudes().into_iter().map(attitude).collect())
             }
         }
     }
+}
+
+/// From the body's origin to a camera that is mounted so, in the camera's axes, m: none where nobody measured it.
+#[must_use]
+pub fn lever_m(mounting: &MountingFile) -> Vector3<f64> {
+    mounting.body_from_camera.inverse() * mounting.position_m.unwrap_or_default()
 }
 
 /// How a camera with these attitudes turned between two times.
@@ -161,6 +193,8 @@ fn at<T: Copy>(told: &[(f64, T)], time_s: f64, between: impl FnOnce(&T, &T, f64)
 
 #[cfg(test)]
 mod tests {
+    use nalgebra::Matrix3;
+
     use super::*;
 
     #[test]
@@ -184,10 +218,64 @@ mod tests {
         assert!((turned.scaled_axis() + Vector3::x() * 0.1).norm() < 1e-9, "rates go before: {turned}");
     }
 
+    fn mounted(body_from_camera: UnitQuaternion<f64>, position_m: Option<Vector3<f64>>) -> MountingFile {
+        MountingFile {
+            body_from_camera,
+            rotation_covariance_rad2: Matrix3::zeros(),
+            position_m,
+            position_covariance_m2: None,
+        }
+    }
+
+    #[test]
+    fn a_camera_beside_the_middle_of_its_vehicle_is_swung_when_that_turns() {
+        let body_from_camera = UnitQuaternion::from_euler_angles(-1.2, 0.1, 0.4);
+        let mounting = mounted(body_from_camera, Some(Vector3::new(0.3, -0.1, 0.05)));
+        let position_m = |time_s: f64| Vector3::new(libm::sin(time_s), 0.5 * time_s * time_s, -time_s);
+        let attitude =
+            |time_s: f64| UnitQuaternion::from_euler_angles(0.2 * libm::sin(3.0 * time_s), 0.3, 2.5 * time_s);
+        // The truth is where the camera is, twice.
+        let step_s = 1e-5;
+        let camera_m = |time_s: f64| position_m(time_s) + attitude(time_s) * mounting.position_m.unwrap();
+        let slope = |of: &dyn Fn(f64) -> Vector3<f64>, time_s: f64| {
+            (of(time_s + step_s) - of(time_s - step_s)) / (2.0 * step_s)
+        };
+        for has_gyro in [false, true] {
+            let motion = Motion::default();
+            for step in 0..400 {
+                let time_s = 5e-3 * f64::from(step);
+                motion.attitude(time_s, attitude(time_s));
+                let velocity_m_s = attitude(time_s).inverse() * slope(&position_m, time_s);
+                motion.velocity(time_s, Velocity::new(velocity_m_s, Some(0.02)));
+                if has_gyro {
+                    let turn = attitude(time_s - step_s).inverse() * attitude(time_s + step_s);
+                    motion.rate(time_s, turn.scaled_axis() / (2.0 * step_s));
+                }
+            }
+            let course = Course::Live { motion, mounting };
+            for time_s in [0.3071, 0.62, 1.4033] {
+                let moving = course.moving(time_s).unwrap();
+                let truth_m_s = (attitude(time_s) * body_from_camera).inverse() * slope(&camera_m, time_s);
+                let off_m_s = (moving.velocity_m_s - truth_m_s).norm();
+                let (most_m_s, least_sigma_m_s) = if has_gyro { (1e-3, 0.0) } else { (0.01, 0.04) };
+                assert!(off_m_s < most_m_s, "{has_gyro} {time_s}: {off_m_s}");
+                assert!(moving.sigma_m_s > least_sigma_m_s, "{moving:?}");
+                // Without the lever it would be off by more than half a metre per second.
+                assert!(
+                    (truth_m_s
+                        - (attitude(time_s) * body_from_camera).inverse() * slope(&position_m, time_s))
+                    .norm()
+                        > 0.5
+                );
+            }
+        }
+    }
+
     #[test]
     fn velocities_of_a_vehicle_are_told_in_the_axes_of_its_camera() {
         // The camera looks to the left of the body, z ahead of it, and its x axis along the body's.
         let body_from_camera = UnitQuaternion::from_euler_angles(-std::f64::consts::FRAC_PI_2, 0.0, 0.0);
+        let mounting = mounted(body_from_camera, None);
         let motion = Motion::default();
         let hear = |time_s: f64, [x, y, z]: [f64; 3], variance: f64| {
             let velocity_m_s = Vector3::new(x, y, z);
@@ -200,7 +288,7 @@ mod tests {
             hear(1.2 + 0.1 * number as f64, [0.0; 3], untold);
         }
         hear(2.0, [f64::NAN; 3], 0.01);
-        let course = Course::Live { motion, body_from_camera };
+        let course = Course::Live { motion, mounting };
         let moving = course.moving(1.05).unwrap();
         assert!((moving.velocity_m_s - Vector3::new(2.0, 0.0, 0.5)).norm() < 1e-9, "{moving:?}");
         assert!((moving.sigma_m_s - 0.2 * SQRT_2).abs() < 1e-9, "{moving:?}");

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use photinus_io::calibration::{read_known_sightings, read_led_sightings, read_spot_sizes};
 use photinus_io::corners::read_corners;
-use photinus_io::dataset::{parse_frames_csv, read_imu, read_odometry};
+use photinus_io::dataset::{GravityLog, parse_frames_csv, read_imu, read_odometry, read_poses};
 use photinus_io::kind::{Kind, Table};
 use photinus_io::{Error, Result};
 
@@ -17,10 +17,11 @@ pub(super) fn report(path: &Path, table: Table) -> Result<Report> {
         Table::Frames => parse_frames_csv(&text(path)?, path)?.iter().map(|row| row.time_s).collect(),
         Table::Gyro => read_imu(path)?.iter().map(|row| row.time_s).collect(),
         Table::Odometry => read_odometry(path)?.iter().map(|row| row.time_s).collect(),
+        Table::Poses => read_poses(path)?.iter().map(|row| row.time_s).collect(),
         _ => Vec::new(),
     };
     let rows = match table {
-        Table::Frames | Table::Gyro | Table::Odometry => times_s.len(),
+        Table::Frames | Table::Gyro | Table::Odometry | Table::Poses => times_s.len(),
         Table::Corners => {
             let photos = read_corners(path)?;
             report.fact("photos", photos.len().to_string());
@@ -29,9 +30,12 @@ pub(super) fn report(path: &Path, table: Table) -> Result<Report> {
         Table::SpotSizes => read_spot_sizes(path)?.len(),
         Table::LedSightings => read_led_sightings(path)?.len(),
         Table::KnownSightings => read_known_sightings(path)?.len(),
-        Table::Results | Table::Poses | Table::Gravity | Table::Figure | Table::Summary => {
-            text(path)?.lines().skip(1).filter(|line| !line.trim().is_empty()).count()
+        Table::Gravity => {
+            let text = text(path)?;
+            GravityLog::parse(&text, path)?;
+            rows_of(&text)
         }
+        Table::Results | Table::Figure | Table::Summary => rows_of(&text(path)?),
         Table::Unknown => {
             let columns = text(path)?.lines().next().unwrap_or_default().chars().take(80).collect::<String>();
             let refused = Error::format(path, format!("no table of Photinus has the columns `{columns}`"));
@@ -43,6 +47,10 @@ pub(super) fn report(path: &Path, table: Table) -> Result<Report> {
         report.fact("time", span(*first_s, *last_s));
     }
     Ok(report)
+}
+
+fn rows_of(text: &str) -> usize {
+    text.lines().skip(1).filter(|line| !line.trim().is_empty()).count()
 }
 
 fn text(path: &Path) -> Result<String> {

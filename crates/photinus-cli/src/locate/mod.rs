@@ -18,7 +18,7 @@ use photinus_io::mask::MaskFile;
 use photinus_io::sky::Sky;
 use photinus_link::recording::Motions;
 use photinus_run::View;
-use photinus_run::course::{Course, Told};
+use photinus_run::course::{Course, Told, lever_m};
 use photinus_run::watch::{self, Watch};
 
 use crate::beforehand::{self, Conditions};
@@ -261,9 +261,9 @@ fn recorded(
 ) -> photinus_io::Result<Course> {
     let Some(path) = &input.recording else { return Ok(Course::default()) };
     let motions = Motions::read(path)?;
-    let body_from_camera = match mounting {
+    let mounting = match mounting {
         _ if motions.is_empty() => return Ok(Course::default()),
-        Some(mounting) => mounting.body_from_camera,
+        Some(mounting) => mounting,
         None => {
             let path = path.display();
             terminal.warning(format_args!(
@@ -272,7 +272,7 @@ fn recorded(
             return Ok(Course::default());
         }
     };
-    let camera_from_body = body_from_camera.inverse();
+    let camera_from_body = mounting.body_from_camera.inverse();
     let turn = |(time_s, of_body)| (time_s, camera_from_body * of_body);
     Ok(Course::Told(Told {
         rates: motions.rates.into_iter().map(turn).collect(),
@@ -281,11 +281,12 @@ fn recorded(
             .into_iter()
             .map(|(time_s, velocity)| (time_s, velocity.turned(&camera_from_body)))
             .collect(),
+        lever_m: lever_m(mounting),
         has_down: true,
         attitudes: motions
             .attitudes
             .into_iter()
-            .map(|(time_s, world_from_body)| (time_s, world_from_body * body_from_camera))
+            .map(|(time_s, world_from_body)| (time_s, world_from_body * mounting.body_from_camera))
             .collect(),
     }))
 }

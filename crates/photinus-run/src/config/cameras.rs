@@ -268,7 +268,7 @@ impl Config {
                 Some((dataset, camera)) => Course::of(dataset, camera.name.is_some(), mounting.as_ref())?,
                 None => mounting.map_or_else(Course::default, |mounting| Course::Live {
                     motion: motion.clone(),
-                    body_from_camera: mounting.body_from_camera,
+                    mounting,
                 }),
             };
             let beside = (fleets, course, exposure_us);

@@ -61,6 +61,7 @@ pub(super) struct Commitment<'a> {
     steps: [Step; POINTS],
     velocity_error_m_s: f64,
     top_speed_m_s: f64,
+    reach_m: f64,
 }
 
 impl<'a> Commitment<'a> {
@@ -81,7 +82,15 @@ impl<'a> Commitment<'a> {
         }
         // The speed between two velocities on a straight line is largest at one of them.
         let top_speed_m_s = underway.top_speed_m_s.max(left.norm());
-        Self { underway, steps, velocity_error_m_s: error, top_speed_m_s }
+        let mut path =
+            Self { underway, steps, velocity_error_m_s: error, top_speed_m_s, reach_m: f64::INFINITY };
+        path.reach_m = -path.clear_of_m(|place| -place.norm());
+        path
+    }
+
+    /// How far the path gets from where the vehicle is, at the most, m.
+    pub(super) fn reach_m(&self) -> f64 {
+        self.reach_m
     }
 
     /// The largest speed on the path, m/s.
@@ -169,6 +178,7 @@ mod tests {
                 p += v * step + u * (0.5 * step * step);
                 v += u * step;
                 prop_assert!((p - to).norm() >= clear - 1e-2);
+                prop_assert!(p.norm() <= path.reach_m() + 1e-2);
                 prop_assert!(p.dot(&to) <= path.progress_m(&to.normalize()) * to.norm() + 1e-2 * to.norm());
                 prop_assert!(v.norm() <= path.top_speed_m_s() + 1e-2);
             }

@@ -63,8 +63,11 @@ impl Place {
 /// Whether a path keeps clear of wherever somebody in the sector can be, or brake into.
 fn is_clear(limits: &Limits, path: &Commitment<'_>, sector: &Sector, grown_m: f64) -> bool {
     let keep_m = limits.clearance_m() + grown_m + limits.stray_m;
-    // Where the path begins tells most of them.
-    sector.distances.min_m() >= keep_m && path.clear_of_m(|x| sector.distance_m(x)) >= keep_m
+    let near_m = sector.distances.min_m();
+    // How far the path gets, and where it begins, tell most of them.
+    let edged = sector.edged();
+    near_m - path.reach_m() >= keep_m
+        || near_m >= keep_m && path.clear_of_m(|x| edged.distance_m(x)) >= keep_m
 }
 
 /// Whether a path leads away, slowly, from somebody who is too near.

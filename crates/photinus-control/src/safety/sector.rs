@@ -17,19 +17,40 @@ pub struct Sector {
 impl Sector {
     /// How far `point` is from the nearest place of the sector, m; zero inside.
     pub fn distance_m(&self, point: &Vector3<f64>) -> f64 {
-        let (near, far) = (self.distances.min_m(), self.distances.max_m());
-        let range = point.norm();
-        let outside_rad =
-            libm::atan2(point.cross(&self.axis).norm(), point.dot(&self.axis)) - self.half_angle_rad;
+        self.edged().distance_m(point)
+    }
+
+    /// The same sector, for the distances of many points.
+    pub(super) fn edged(&self) -> Edged<'_> {
+        Edged { sector: self, sine_cosine: libm::sincos(self.half_angle_rad) }
+    }
+}
+
+/// A sector with the direction of its edge.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Edged<'a> {
+    sector: &'a Sector,
+    sine_cosine: (f64, f64),
+}
+
+impl Edged<'_> {
+    /// As [`Sector::distance_m`].
+    pub(super) fn distance_m(&self, point: &Vector3<f64>) -> f64 {
+        let Sector { axis, half_angle_rad, distances } = self.sector;
+        let (near, far) = (distances.min_m(), distances.max_m());
+        let (sine, cosine) = self.sine_cosine;
+        // In the plane of point and axis, turned so that the edge of the cone is the first of its axes.
+        let (along, across) = (point.dot(axis), point.cross(axis).norm());
+        let (along_edge, outside) = (along * cosine + across * sine, across * cosine - along * sine);
+        let is_opposite = outside == 0.0 && sine == 0.0 && along < 0.0;
         // Every direction is in a half angle of pi, whatever the axis.
-        if outside_rad <= 0.0 || self.half_angle_rad >= core::f64::consts::PI {
+        if outside <= 0.0 && !is_opposite || *half_angle_rad >= core::f64::consts::PI {
+            let range = point.norm();
             return (near - range).max(range - far).max(0.0);
         }
-        // The nearest place is on the edge of the cone, in the plane of point and axis.
-        let (sine, cosine) = libm::sincos(outside_rad);
-        let along_edge = range * cosine;
-        let nearest = along_edge.max(near).min(far);
-        libm::hypot(along_edge - nearest, range * sine)
+        // The nearest place is on the edge.
+        let beyond = along_edge - along_edge.max(near).min(far);
+        libm::sqrt(beyond * beyond + outside * outside)
     }
 }
 
@@ -62,6 +83,22 @@ mod tests {
             let told = sector.distance_m(&point);
             prop_assert!(told <= least + 1e-9 && least - told < 0.1, "{told} {least}");
         }
+    }
+
+    #[test]
+    fn a_ray_is_far_from_what_is_behind_it_and_what_is_no_number_is_nowhere() {
+        let distances = Interval::new(2.0, 5.0).unwrap();
+        let ray = Sector { axis: Vector3::x_axis(), half_angle_rad: 0.0, distances };
+        for (x, y, distance_m) in
+            [(-1.0, 0.0, 3.0), (1.0, 0.0, 1.0), (3.0, 0.0, 0.0), (3.0, 2.0, 2.0), (7.0, 0.0, 2.0)]
+        {
+            assert!((ray.distance_m(&Vector3::new(x, y, 0.0)) - distance_m).abs() < 1e-12, "{x} {y}");
+        }
+        assert!(ray.distance_m(&Vector3::new(f64::NAN, 0.0, 0.0)).is_nan());
+        let anywhere = Sector { half_angle_rad: f64::NAN, ..ray };
+        assert!(anywhere.distance_m(&Vector3::zeros()).is_nan());
+        let all = Sector { half_angle_rad: core::f64::consts::PI, ..ray };
+        assert!((all.distance_m(&Vector3::new(-1.0, 0.0, 0.0)) - 1.0).abs() < 1e-12);
     }
 
     #[test]

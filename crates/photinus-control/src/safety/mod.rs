@@ -7,6 +7,7 @@
 //! between vehicles, no clock to agree, nobody to be known. The proof and what it rests upon: `docs/safety.md`.
 
 mod alternatives;
+mod angle;
 mod commitment;
 mod layer;
 mod limits;

@@ -2,8 +2,11 @@
 //!
 //! Nobody stands nearer behind a body than both can: a hidden vehicle keeps its distance from the one that hides it, as all do who keep the contract.
 
+use core::cmp::Ordering;
+
 use nalgebra::{UnitVector3, Vector3};
 
+use super::angle::compare;
 use super::{Cone, Limits, Obstacle};
 use crate::Seen;
 
@@ -56,21 +59,20 @@ impl Shadow {
 
     /// Whether any direction of a cone is within the shadow.
     pub fn touches(&self, cone: &Cone) -> bool {
-        let clear_rad = self.off_arc_rad(&cone.axis) - self.half_angle_rad - cone.half_angle_rad;
-        // What is no number hides.
-        clear_rad.is_nan() || clear_rad < 0.0
-    }
-
-    fn off_arc_rad(&self, direction: &UnitVector3<f64>) -> f64 {
+        let direction = &cone.axis;
+        let reach_rad = self.half_angle_rad + cone.half_angle_rad;
         let [a, b] = self.arc;
         let normal = a.cross(&b);
         let is_abreast = normal.cross(&a).dot(direction) > 0.0 && b.cross(&normal).dot(direction) > 0.0;
-        if is_abreast {
+        let off = if is_abreast {
             // no division: the arc has a length where a direction is abreast of it
-            libm::asin((normal.dot(direction).abs() / normal.norm()).min(1.0))
+            libm::asin((normal.dot(direction).abs() / normal.norm()).min(1.0)).partial_cmp(&reach_rad)
         } else {
-            angle_rad(&a, direction).min(angle_rad(&b, direction))
-        }
+            let nearer = if a.dot(direction) >= b.dot(direction) { a } else { b };
+            compare(&nearer, direction, reach_rad)
+        };
+        // What is no number hides.
+        off.is_none_or(Ordering::is_lt)
     }
 }
 
@@ -84,10 +86,6 @@ fn spans_rad(radius_m: f64, near_m: f64) -> f64 {
 fn beyond_m(radius_m: f64, near_m: f64, apart_m: f64) -> f64 {
     let leg = |long: f64| libm::sqrt((long * long - radius_m * radius_m).max(0.0));
     if near_m > radius_m { leg(near_m) + leg(apart_m) } else { 0.0 }
-}
-
-fn angle_rad(a: &UnitVector3<f64>, b: &UnitVector3<f64>) -> f64 {
-    libm::atan2(a.cross(b).norm(), a.dot(b))
 }
 
 #[cfg(test)]

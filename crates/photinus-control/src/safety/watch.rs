@@ -4,9 +4,12 @@
 //! have been missed in all of them with a probability below a stated one; that knowledge then grows old, and a vehicle may come in
 //! at full speed. Where no camera looks, nothing is known.
 
+use core::cmp::Ordering;
+
 use nalgebra::{Rotation3, UnitVector3, Vector3};
 use photinus::ranging::Interval;
 
+use super::angle::{compare, widest_rad};
 use super::{Sector, Shadow};
 
 /// Cells along each edge of a cube's faces.
@@ -26,6 +29,26 @@ pub struct Cone {
     pub axis: UnitVector3<f64>,
     /// The angle, rad.
     pub half_angle_rad: f64,
+}
+
+impl Cone {
+    /// Whether all directions of another are within it.
+    fn covers(&self, other: &Self) -> bool {
+        let spare_rad = self.half_angle_rad - other.half_angle_rad;
+        compare(&self.axis, &other.axis, spare_rad).is_some_and(Ordering::is_le)
+    }
+
+    /// Whether any direction of another is within it.
+    fn touches(&self, other: &Self) -> bool {
+        let both_rad = self.half_angle_rad + other.half_angle_rad;
+        compare(&self.axis, &other.axis, both_rad).is_some_and(Ordering::is_lt)
+    }
+
+    /// Whether no direction of another is for certain.
+    fn is_apart_from(&self, other: &Self) -> bool {
+        let both_rad = self.half_angle_rad + other.half_angle_rad;
+        compare(&self.axis, &other.axis, both_rad).is_some_and(Ordering::is_gt)
+    }
 }
 
 /// How likely one frame shows a neighbour that is no further than a range.
@@ -95,12 +118,10 @@ impl Watch {
     pub fn look(&mut self, eyes: &[Cone], hidden: &[Shadow], turned_rad: f64, dt_s: f64, age_s: f64) {
         self.turned_rad += turned_rad;
         let still_from_level = Rotation3::from_axis_angle(&Vector3::z_axis(), self.turned_rad);
-        let off = |other: &Cone, cone: &Cone| angle_rad(&(still_from_level * other.axis), &cone.axis);
-        let covered =
-            |cone: &Cone| eyes.iter().any(|eye| off(eye, cone) + cone.half_angle_rad <= eye.half_angle_rad);
-        let touched = |cone: &Cone| {
-            eyes.iter().any(|other| off(other, cone) < other.half_angle_rad + cone.half_angle_rad)
-        };
+        let eyes: Vec<Cone> =
+            eyes.iter().map(|eye| Cone { axis: still_from_level * eye.axis, ..*eye }).collect();
+        let covered = |cone: &Cone| eyes.iter().any(|eye| eye.covers(cone));
+        let touched = |cone: &Cone| eyes.iter().any(|eye| eye.touches(cone));
         let level_from_still = still_from_level.inverse();
         for (index, cell) in self.cells.iter_mut().enumerate() {
             cell.age_s += dt_s;
@@ -132,10 +153,11 @@ impl Watch {
     /// is none of those whose absence is known from before.
     pub(super) fn is_newer(&self, cone: &Cone, age_s: f64) -> bool {
         let still_from_level = Rotation3::from_axis_angle(&Vector3::z_axis(), self.turned_rad);
-        let axis = still_from_level * cone.axis;
+        let cone = Cone { axis: still_from_level * cone.axis, ..*cone };
         self.cells.iter().all(|cell| {
-            let is_apart = angle_rad(&axis, &cell.cone.axis) > cone.half_angle_rad + cell.cone.half_angle_rad;
-            is_apart || cell.age_s < age_s || cell.empty_m <= self.closing_m_s * cell.age_s
+            cone.is_apart_from(&cell.cone)
+                || cell.age_s < age_s
+                || cell.empty_m <= self.closing_m_s * cell.age_s
         })
     }
 
@@ -196,12 +218,7 @@ fn patch(face: usize, [row, column]: [f64; 2], size: f64) -> Cone {
     };
     let axis = at(0.5, 0.5);
     let corners = [at(0.0, 0.0), at(0.0, 1.0), at(1.0, 0.0), at(1.0, 1.0)];
-    Cone { axis, half_angle_rad: corners.iter().map(|corner| angle_rad(corner, &axis)).fold(0.0, f64::max) }
-}
-
-/// Accurate from 0 to pi.
-fn angle_rad(a: &UnitVector3<f64>, b: &UnitVector3<f64>) -> f64 {
-    libm::atan2(a.cross(b).norm(), a.dot(b))
+    Cone { axis, half_angle_rad: widest_rad(&axis, &corners) }
 }
 
 /// The cell of a direction.

@@ -33,7 +33,7 @@ fn stage(test: &str) -> Stage {
     stage.file("other.csv", "a,b,c\n1,2,3\n");
     stage.file("poses.csv", "time_s,x_m,y_m,z_m,qx,qy,qz,qw\n0,0,0,1,0,0,0,1\n1,0,0,1,0,0,0,1\n");
     stage.file("poses-nan.csv", "time_s,x_m,y_m,z_m,qx,qy,qz,qw\n0,0,0,NaN,0,0,0,1\n");
-    stage.file("down.csv", "time_s,gx,gy,gz\n0,0,0,1\n1,0,2,0\n");
+    stage.file("down.csv", "time_s,gx,gy,gz\n0,0,0,1\n1,0,0.5,0\n");
     stage.file("keys.yaml", "detector: 3\ntracking: 4\n");
     let levels = |black: usize| (0..96 * 64).map(|px| if px < black { 0 } else { 255 }).collect();
     write_png(stage.path("mask-inverted.png"), &GreyImage::new(levels(5000), 96, 64).unwrap().view())
@@ -49,7 +49,7 @@ const LOCATE: &str = "locate frame.png --camera camera.toml --airframe hexa.toml
 
 const FILES: [Mistake; 33] = [
     ("info poses-nan.csv", 2, &["poses-nan.csv, line 2", "NaN"]),
-    ("info down.csv", 2, &["down.csv, line 3", "length 2, not 1"]),
+    ("info down.csv", 2, &["down.csv, line 3", "length 0.5, not 1"]),
     ("info readme.md", 2, &["this is text in no format that Photinus knows; name a camera"]),
     ("info notes.txt", 2, &["this is text in no format"]),
     ("info empty.txt", 2, &["a file that holds nothing"]),

@@ -18,10 +18,11 @@ pub(super) fn report(path: &Path, table: Table) -> Result<Report> {
         Table::Gyro => read_imu(path)?.iter().map(|row| row.time_s).collect(),
         Table::Odometry => read_odometry(path)?.iter().map(|row| row.time_s).collect(),
         Table::Poses => read_poses(path)?.iter().map(|row| row.time_s).collect(),
+        Table::Gravity => GravityLog::read(path)?.times_s().collect(),
         _ => Vec::new(),
     };
     let rows = match table {
-        Table::Frames | Table::Gyro | Table::Odometry | Table::Poses => times_s.len(),
+        Table::Frames | Table::Gyro | Table::Odometry | Table::Poses | Table::Gravity => times_s.len(),
         Table::Corners => {
             let photos = read_corners(path)?;
             report.fact("photos", photos.len().to_string());
@@ -30,12 +31,9 @@ pub(super) fn report(path: &Path, table: Table) -> Result<Report> {
         Table::SpotSizes => read_spot_sizes(path)?.len(),
         Table::LedSightings => read_led_sightings(path)?.len(),
         Table::KnownSightings => read_known_sightings(path)?.len(),
-        Table::Gravity => {
-            let text = text(path)?;
-            GravityLog::parse(&text, path)?;
-            rows_of(&text)
+        Table::Results | Table::Figure | Table::Summary => {
+            text(path)?.lines().skip(1).filter(|line| !line.trim().is_empty()).count()
         }
-        Table::Results | Table::Figure | Table::Summary => rows_of(&text(path)?),
         Table::Unknown => {
             let columns = text(path)?.lines().next().unwrap_or_default().chars().take(80).collect::<String>();
             let refused = Error::format(path, format!("no table of Photinus has the columns `{columns}`"));
@@ -47,10 +45,6 @@ pub(super) fn report(path: &Path, table: Table) -> Result<Report> {
         report.fact("time", span(*first_s, *last_s));
     }
     Ok(report)
-}
-
-fn rows_of(text: &str) -> usize {
-    text.lines().skip(1).filter(|line| !line.trim().is_empty()).count()
 }
 
 fn text(path: &Path) -> Result<String> {

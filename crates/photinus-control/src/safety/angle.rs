@@ -16,13 +16,15 @@ pub(super) fn angle_rad(a: &UnitVector3<f64>, b: &UnitVector3<f64>) -> f64 {
 
 /// How the angle between two directions compares with a limit; `None` where something is no number.
 pub(super) fn compare(a: &UnitVector3<f64>, b: &UnitVector3<f64>, limit_rad: f64) -> Option<Ordering> {
-    let (chord_squared, limit_squared) = (2.0 - 2.0 * a.dot(b), limit_rad * limit_rad);
-    if limit_rad > 0.0 && chord_squared > limit_squared + ROUNDING {
-        return Some(Ordering::Greater);
-    }
-    let is_acute = chord_squared < 2.0 - ROUNDING;
-    if limit_rad > 0.0 && is_acute && chord_squared * ARC_OVER_CHORD_SQUARED + ROUNDING < limit_squared {
-        return Some(Ordering::Less);
+    if limit_rad > 0.0 {
+        let (chord_squared, limit_squared) = (2.0 - 2.0 * a.dot(b), limit_rad * limit_rad);
+        if chord_squared > limit_squared + ROUNDING {
+            return Some(Ordering::Greater);
+        }
+        let is_acute = chord_squared < 2.0 - ROUNDING;
+        if is_acute && chord_squared * ARC_OVER_CHORD_SQUARED + ROUNDING < limit_squared {
+            return Some(Ordering::Less);
+        }
     }
     angle_rad(a, b).partial_cmp(&limit_rad)
 }

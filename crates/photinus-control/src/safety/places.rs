@@ -64,10 +64,15 @@ impl Place {
 fn is_clear(limits: &Limits, path: &Commitment<'_>, sector: &Sector, grown_m: f64) -> bool {
     let keep_m = limits.clearance_m() + grown_m + limits.stray_m;
     let near_m = sector.distances.min_m();
-    // How far the path gets, and where it begins, tell most of them.
+    // Where the path begins, and how far it gets, tell most of them.
+    if near_m < keep_m {
+        return false;
+    }
+    if near_m - path.reach_m() >= keep_m {
+        return true;
+    }
     let edged = sector.edged();
-    near_m - path.reach_m() >= keep_m
-        || near_m >= keep_m && path.clear_of_m(|x| edged.distance_m(x)) >= keep_m
+    path.clear_of_m(|x| edged.distance_m(x)) >= keep_m
 }
 
 /// Whether a path leads away, slowly, from somebody who is too near.

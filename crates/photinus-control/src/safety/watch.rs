@@ -38,13 +38,7 @@ impl Cone {
         compare(&self.axis, &other.axis, spare_rad).is_some_and(Ordering::is_le)
     }
 
-    /// Whether any direction of another is within it.
-    fn touches(&self, other: &Self) -> bool {
-        let both_rad = self.half_angle_rad + other.half_angle_rad;
-        compare(&self.axis, &other.axis, both_rad).is_some_and(Ordering::is_lt)
-    }
-
-    /// Whether no direction of another is for certain.
+    /// Whether surely no direction of another is within it.
     fn is_apart_from(&self, other: &Self) -> bool {
         let both_rad = self.half_angle_rad + other.half_angle_rad;
         compare(&self.axis, &other.axis, both_rad).is_some_and(Ordering::is_gt)
@@ -117,19 +111,16 @@ impl Watch {
     /// `eyes` cover was watched, as far as nothing is `hidden`.
     pub fn look(&mut self, eyes: &[Cone], hidden: &[Shadow], turned_rad: f64, dt_s: f64, age_s: f64) {
         self.turned_rad += turned_rad;
-        let still_from_level = Rotation3::from_axis_angle(&Vector3::z_axis(), self.turned_rad);
-        let eyes: Vec<Cone> =
-            eyes.iter().map(|eye| Cone { axis: still_from_level * eye.axis, ..*eye }).collect();
+        let level_from_still = Rotation3::from_axis_angle(&Vector3::z_axis(), -self.turned_rad);
+        let here = |cone: &Cone| Cone { axis: level_from_still * cone.axis, ..*cone };
         let covered = |cone: &Cone| eyes.iter().any(|eye| eye.covers(cone));
-        let touched = |cone: &Cone| eyes.iter().any(|eye| eye.touches(cone));
-        let level_from_still = still_from_level.inverse();
         for (index, cell) in self.cells.iter_mut().enumerate() {
             cell.age_s += dt_s;
+            let all = here(&cell.cone);
+            let is_apart = || eyes.iter().all(|eye| eye.is_apart_from(&all));
             // Two eyes may cover a cell together, part by part.
-            let is_covered =
-                covered(&cell.cone) || touched(&cell.cone) && parts(index).all(|part| covered(&part));
-            let here = Cone { axis: level_from_still * cell.cone.axis, ..cell.cone };
-            let before = hidden.iter().filter(|shadow| shadow.touches(&here)).map(Shadow::starts_m);
+            let is_covered = covered(&all) || !is_apart() && parts(index).all(|part| covered(&here(&part)));
+            let before = hidden.iter().filter(|shadow| shadow.touches(&all)).map(Shadow::starts_m);
             let watched_m = if is_covered { before.fold(f64::INFINITY, f64::min) } else { 0.0 };
             for (Ring { range_m, looks }, in_a_row) in self.rings.iter().zip(&mut cell.looks) {
                 *in_a_row = if *range_m <= watched_m { in_a_row.saturating_add(1) } else { 0 };

@@ -46,6 +46,11 @@ impl GravityLog {
         timed::rows(text, path, &COLUMNS)?.into_iter().map(row).collect::<Result<_>>().map(Self)
     }
 
+    /// When it was measured, s.
+    pub fn times_s(&self) -> impl Iterator<Item = f64> {
+        self.0.iter().map(|(time_s, _)| *time_s)
+    }
+
     /// The direction at a time, s, between the measurements around it; nothing where there are none.
     pub fn at(&self, time_s: f64) -> Option<Unit<Vector3<f64>>> {
         let (first, last) = (self.0.first()?, self.0.last()?);

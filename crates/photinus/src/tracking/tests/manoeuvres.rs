@@ -138,7 +138,7 @@ fn behind(airframe: &Airframe, time_s: f64) -> (Vec<(Vehicle, bool)>, Rotation3<
 fn manoeuvres_are_followed() {
     for (name, airframe) in [("hexarotor", hexarotor()), ("quadrotor", quadrotor())] {
         let behind = |time_s| behind(&airframe, time_s);
-        // Crossing quadrotors trail by millimetres, which docs/tracking.md says.
+        // Those that cross are ahead a little, those behind another trail: docs/tracking.md says by how much.
         let all: [(&str, &Manoeuvre<'_>, [f64; 2], bool); 6] = [
             ("even", &even, [0.3, 3.0], true),
             ("crossing", &crossing, [0.3, 2.4], false),

@@ -72,7 +72,7 @@ impl Bench {
         let tracked = time_s.and_then(|time_s| {
             let turned = Some(Turned { now_from_before: Rotation3::identity(), sigma_rad: STILL_RAD });
             self.lookout
-                .look(&Glance { time_s, exposure_s: 0.0, turned, moving: None, gravity, located })
+                .look(&Glance { exposure_s: 0.0, turned, gravity, ..Glance::new(time_s, located) })
                 .ok()
         });
         told::json(&told::Frame::of(located, tracked))

@@ -61,7 +61,7 @@ impl State {
             .map_err(|error| Refusal::new(Status::Image, error))?;
         if let Some(lookout) = lookout {
             // How long an exposure lasts matters to what blinks alone.
-            let glance = Glance { time_s, exposure_s: 0.0, turned: None, moving: None, gravity, located };
+            let glance = Glance { exposure_s: 0.0, gravity, ..Glance::new(time_s, located) };
             lookout.look(&glance).map_err(|error| Refusal::new(Status::Time, error))?;
         }
         Ok(Frame::new(located, lookout.as_ref().map(Lookout::tracked), time_s))
@@ -116,7 +116,7 @@ pub unsafe extern "C" fn photinus_set_mask(locator: Locator, mask: *const Image)
         let mask = mask.map(|mask| Mask::from_frame(&mask));
         state.locator.set_mask(mask.clone()).map_err(setting)?;
         match &mut state.lookout {
-            Some(lookout) => lookout.set_mask(mask).map_err(setting),
+            Some(lookout) => lookout.set_mask(0, mask).map_err(setting),
             None => Ok(()),
         }
     })

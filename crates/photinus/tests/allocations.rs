@@ -223,6 +223,7 @@ fn a_warm_tracker_allocates_nothing() {
         // Every fifth frame comes after the next one.
         let time_s = f64::from(number + u32::from(number % 5 == 1) - u32::from(number % 5 == 2)) / 30.0;
         let look = Look {
+            camera: 0,
             time_s,
             turned: None,
             moving: None,
@@ -278,6 +279,8 @@ fn a_warm_lookout_allocates_nothing() {
             let located = locator.locate(Input::spots(&spots).gravity(&gravity)).expect("spots have no size");
             let time_s = f64::from(number) / 60.0;
             let glance = Glance {
+                camera: 0,
+                turned_since_any: None,
                 time_s,
                 exposure_s: 1e-3,
                 turned: None,

@@ -44,6 +44,8 @@ fn record(shown: &Shown, camera: &Camera, file: &AirframeFile) -> FrameRecord {
         let time_s = f64::from(number) / 30.0;
         lookout
             .look(&Glance {
+                camera: 0,
+                turned_since_any: None,
                 time_s,
                 exposure_s: 0.0,
                 turned: None,

@@ -41,6 +41,8 @@ pub(crate) fn fly(seed: u64, built: Built) -> Vec<Flight> {
         let located =
             locator.locate(Input::frame(&view).gravity(gravity.as_ref())).expect("the camera's size");
         let glance = Glance {
+            camera: 0,
+            turned_since_any: None,
             time_s,
             exposure_s: scene.exposure_us * 1e-6,
             turned: None,

@@ -6,7 +6,8 @@
 //!
 //! A [`Model`] holds checked parameters; a [`Camera`] is a model with an image and a field. The lenses that are symmetric
 //! about their axis ([`OCam`], [`Ideal`], [`KannalaBrandt`]) share one geometry (`radial.rs`) and differ in one curve.
-//! A camera may carry the covariance of its calibration (`calibration.rs`) and tells what it means for a bearing.
+//! A camera may carry the covariance of its calibration (`calibration.rs`) and tells what it means for a bearing. Cameras that are mounted on one vehicle
+//! are a [`Rig`].
 
 mod bearing;
 mod calibration;
@@ -21,6 +22,7 @@ mod pinhole;
 mod plane;
 mod polynomial;
 mod radial;
+mod rig;
 #[cfg(test)]
 mod tests;
 mod watched;
@@ -36,6 +38,7 @@ pub use kannala_brandt::KannalaBrandt;
 pub use model::Model;
 pub use ocam::OCam;
 pub use pinhole::Pinhole;
+pub use rig::{Mounted, Mounting, Rig, RigError};
 pub use watched::Watched;
 
 #[cfg(not(feature = "std"))]

@@ -18,7 +18,8 @@ const MOST: f64 = 0.999;
 /// A marker track, and the vehicle that it belongs to.
 #[derive(Debug, Default)]
 pub(super) struct Belonging {
-    /// Number of the marker track.
+    /// The camera that shows it, and the number of its marker track there.
+    pub(super) camera: usize,
     pub(super) number: u64,
     /// The vehicle's track.
     pub(super) track: u64,
@@ -43,21 +44,23 @@ impl Belongings {
         self.all.iter().filter(move |own| own.track == track)
     }
 
-    /// That of a marker track.
-    pub(super) fn of_marker(&self, number: u64) -> Option<&Belonging> {
-        self.all.iter().find(|own| own.number == number)
+    /// That of a marker track of a camera.
+    pub(super) fn of_marker(&self, camera: usize, number: u64) -> Option<&Belonging> {
+        self.all.iter().find(|own| (own.camera, own.number) == (camera, number))
     }
 
-    /// Moves all on by a frame. Those whose marker is followed no more, or whose vehicle is not, end: `ended` is told the last that was heard of each.
+    /// Moves those of a camera on by a frame of it. Those whose marker is followed no more, or whose vehicle is not, end: `ended` is told the last that was heard of each.
     pub(super) fn follow(
         &mut self,
+        camera: usize,
         follower: &Follower,
         tracked: &Tracked,
         mut ended: impl FnMut(&Belonging),
     ) {
         let (markers, spare) = (follower.tracks(), &mut self.spare);
         let is_over = |own: &mut Belonging| {
-            find(markers, own.number).is_none() || !tracked.tracks.iter().any(|track| track.id == own.track)
+            let is_followed = || tracked.tracks.iter().any(|track| track.id == own.track);
+            own.camera == camera && (find(markers, own.number).is_none() || !is_followed())
         };
         for over in self.all.extract_if(.., is_over) {
             ended(&over);
@@ -65,19 +68,20 @@ impl Belongings {
         }
         for marker in markers {
             let seen = marker.sighting.and_then(|sighting| whose(tracked, sighting));
-            let known = self.all.iter_mut().find(|own| own.number == marker.number);
+            let is_known = |own: &&mut Belonging| (own.camera, own.number) == (camera, marker.number);
+            let known = self.all.iter_mut().find(is_known);
             match (known, seen) {
                 (Some(own), Some((track, place))) => own.see(track, place),
                 (None, Some((track, place))) => {
                     let mut own = spare.pop().unwrap_or_default();
-                    (own.number, own.track, own.marker) = (marker.number, track, place);
-                    own.share = FIRST;
+                    (own.camera, own.number) = (camera, marker.number);
+                    (own.track, own.marker, own.share) = (track, place, FIRST);
                     self.all.push(own);
                 }
                 (_, None) => {}
             }
         }
-        for own in &mut self.all {
+        for own in self.all.iter_mut().filter(|own| own.camera == camera) {
             follower.tell_words(own.number, &mut own.words);
         }
     }

@@ -10,6 +10,8 @@
 //! words -> names               who a vehicle is, with probability                   naming, fleet
 //! ```
 //!
+//! Of cameras on one vehicle each has marker tracks of its own; vehicles and their names are those of all.
+//!
 //! ```no_run
 //! # use photinus::{locator::{self, Input, Locator}, lookout::{Glance, Lookout}, tracking, airframe::Airframe, camera::Camera, frame::FrameView};
 //! # fn see(camera: Camera, airframe: Airframe, frame: FrameView<'_>) -> Result<(), Box<dyn core::error::Error>> {
@@ -18,7 +20,7 @@
 //! let mut lookout = Lookout::new(camera, &airframe, &settings, tracking::Settings::default(), None)?;
 //! // and for every frame
 //! let located = locator.locate(Input::frame(&frame))?;
-//! let seen = lookout.look(&Glance { time_s: 0.0, exposure_s: 1e-3, turned: None, moving: None, gravity: None, located })?;
+//! let seen = lookout.look(&Glance::new(0.0, located))?;
 //! for track in &seen.tracks {
 //!     println!("{} at {}", track.id, track.position_m);
 //! }
@@ -40,7 +42,7 @@ use alloc::vec::Vec;
 use nalgebra::{Unit, Vector3};
 
 use crate::airframe::Airframe;
-use crate::camera::{Camera, Watched};
+use crate::camera::{Mounted, Rig, Watched};
 use crate::following::{self, Follower, Frame, MarkerTrack};
 use crate::frame::Mask;
 use crate::identity::decoder::{self, Decoder, DecoderError};
@@ -65,13 +67,17 @@ const SURE_STRANGER: f64 = 0.95;
 /// A frame that was located.
 #[derive(Clone, Copy, Debug)]
 pub struct Glance<'a> {
+    /// Which of the rig's cameras took it; 0 of one alone.
+    pub camera: usize,
     /// When its exposure began, s, on a clock of the caller's.
     pub time_s: f64,
     /// How long it lasted, s.
     pub exposure_s: f64,
-    /// How the camera turned since the frame before, where that is known.
+    /// How the camera turned since its own frame before, where that is known.
     pub turned: Option<Turned>,
-    /// How it moves over the ground, where that is known.
+    /// How it turned since the frame before in time of any camera of its rig, in its own axes, where that is known; of one camera alone nobody asks.
+    pub turned_since_any: Option<Turned>,
+    /// How the vehicle that it sits on moves over the ground, in the camera's axes, where that is known: of a camera alone its own movement.
     pub moving: Option<Moving>,
     /// Down in the camera frame, where it is known.
     pub gravity: Option<Unit<Vector3<f64>>>,
@@ -79,12 +85,26 @@ pub struct Glance<'a> {
     pub located: &'a Located,
 }
 
-/// Follows the vehicles that one camera sees, all with the same airframe, and says who they are. Keeps its room from frame to frame, so that a warm one
-/// allocates nothing.
+impl<'a> Glance<'a> {
+    /// A frame of a camera alone, exposed for 1 ms, of which nothing else is known.
+    pub fn new(time_s: f64, located: &'a Located) -> Self {
+        Self {
+            camera: 0,
+            time_s,
+            exposure_s: 1e-3,
+            turned: None,
+            turned_since_any: None,
+            moving: None,
+            gravity: None,
+            located,
+        }
+    }
+}
+
+/// Follows the vehicles that one camera sees, or the cameras of one rig, all with the same airframe, and says who they are. Keeps its room from frame to
+/// frame, so that a warm one allocates nothing.
 #[derive(Debug)]
 pub struct Lookout {
-    camera: Camera,
-    mask: Option<Mask>,
     tracker: Tracker,
     tracked: Tracked,
     blinking: Option<Blinking>,
@@ -93,7 +113,10 @@ pub struct Lookout {
 /// What following words takes.
 #[derive(Debug)]
 struct Blinking {
-    follower: Follower,
+    /// By camera.
+    followers: Vec<Follower>,
+    /// Whether the last frame was heard: a late one of its camera is not.
+    is_heard: bool,
     belongings: Belongings,
     naming: Naming,
     /// Where they are expected in a frame, and whether lit.
@@ -143,47 +166,52 @@ pub enum LookoutError {
 }
 
 impl Lookout {
-    /// A lookout for what a locator with these settings tells. Without a fleet LEDs shine steadily, and nobody has a name.
+    /// A lookout for what locators with these settings tell: of one camera, or of a rig. Without a fleet LEDs shine steadily, and nobody has a name.
     ///
     /// # Errors
     /// [`LookoutError`] when a setting has no meaning.
     pub fn new(
-        camera: Camera,
+        rig: impl Into<Rig>,
         airframe: &Airframe,
         locator: &locator::Settings,
         settings: tracking::Settings,
         fleet: Option<&Fleet>,
     ) -> Result<Self, LookoutError> {
-        let tracker = Tracker::new(camera.clone(), airframe, locator, settings)?;
-        let blinking = fleet.map(|fleet| Blinking::new(&camera, airframe, locator, fleet)).transpose()?;
-        Ok(Self { camera, mask: None, tracker, tracked: Tracked::default(), blinking })
+        let tracker = Tracker::new(rig, airframe, locator, settings)?;
+        let blinking =
+            fleet.map(|fleet| Blinking::new(tracker.rig(), airframe, locator, fleet)).transpose()?;
+        Ok(Self { tracker, tracked: Tracked::default(), blinking })
     }
 
-    /// Sets where the locator does not look.
+    /// Sets where the locator of a camera does not look.
     ///
     /// # Errors
     /// [`LookoutError`] when the mask is not of the camera's size.
-    pub fn set_mask(&mut self, mask: Option<Mask>) -> Result<(), LookoutError> {
-        self.tracker.set_mask(mask.clone())?;
-        self.mask = mask;
-        Ok(())
+    ///
+    /// # Panics
+    /// If there is no camera of this number.
+    pub fn set_mask(&mut self, camera: usize, mask: Option<Mask>) -> Result<(), LookoutError> {
+        Ok(self.tracker.set_mask(camera, mask)?)
     }
 
-    /// Takes a frame in, and tells the vehicles at the time of the newest frame: late frames and clocks that jump are as for [`Tracker::track`]; what
-    /// blinks in a late frame is not heard. Where signals tell which turn of a symmetric airframe is the true one, attitudes are turned by it.
+    /// Takes a frame in, and tells the vehicles at its time, in its camera's axes: late frames and clocks that jump are as for [`Tracker::track`]; what
+    /// blinks in a frame that is late for its own camera is not heard. Where signals tell which turn of a symmetric airframe is the true one, attitudes are
+    /// turned by it.
     ///
     /// # Errors
     /// As [`Tracker::track`]; nothing is changed then.
     pub fn look(&mut self, glance: &Glance<'_>) -> Result<&Tracked, TrackError> {
-        let Glance { time_s, turned, moving, gravity, located, .. } = *glance;
+        let Glance { camera, time_s, moving, gravity, located, .. } = *glance;
+        let is_alone = self.tracker.rig().cameras().len() == 1;
+        let turned = if is_alone { glance.turned } else { glance.turned_since_any };
         let (signals, lit) = (&[], &[]);
-        let mut look = Look { time_s, turned, moving, gravity, located, signals, lit, blinking: None };
-        look.check()?;
+        let mut look = Look { camera, time_s, turned, moving, gravity, located, signals, lit, blinking: None };
+        look.check(self.tracker.rig())?;
         if let Some(blinking) = &mut self.blinking {
-            let watched = Watched::new(&self.camera, self.mask.as_ref());
+            let power = self.tracker.power(camera);
+            let watched = self.tracker.rig().watched(camera);
             let faintest_light = located.faintest_light;
-            let before =
-                Before { watched, tracked: &self.tracked, faintest_light, power: self.tracker.power() };
+            let before = Before { watched, tracked: &self.tracked, faintest_light, power };
             (look.blinking, look.signals) = blinking.hear(glance, &before);
         }
         self.tracked.take_over(self.tracker.track(&look)?);
@@ -198,9 +226,10 @@ impl Lookout {
         &self.tracked
     }
 
-    /// The markers that were followed last, oldest first; none without a fleet.
-    pub fn markers(&self) -> &[MarkerTrack] {
-        self.blinking.as_ref().map_or(&[], |blinking| blinking.follower.tracks())
+    /// The markers that were followed last in a camera, oldest first; none without a fleet.
+    pub fn markers(&self, camera: usize) -> &[MarkerTrack] {
+        let followers = self.blinking.as_ref().map_or(&[][..], |blinking| &blinking.followers);
+        followers.get(camera).map_or(&[], Follower::tracks)
     }
 
     /// Who the tracks may be, one after the other, the likeliest first: those of the fleet that are likelier than a hundredth.
@@ -216,7 +245,7 @@ impl Lookout {
 
 impl Blinking {
     fn new(
-        camera: &Camera,
+        rig: &Rig,
         airframe: &Airframe,
         locator: &locator::Settings,
         fleet: &Fleet,
@@ -230,9 +259,11 @@ impl Blinking {
             }
             false => following::Settings::default(),
         };
-        let follower = Follower::new(camera, Some(decoder), of_markers)?;
+        let follower = |mounted: &Mounted| Follower::new(&mounted.camera, Some(decoder.clone()), of_markers);
+        let followers = rig.cameras().iter().map(follower).collect::<Result<_, _>>()?;
         let parts = fleet.has_several_signals().then(|| Parts::new(airframe, locator, fleet)).transpose()?;
-        Ok(Self { follower, belongings: Belongings::default(), naming, followed: Vec::new(), parts })
+        let (belongings, followed) = (Belongings::default(), Vec::new());
+        Ok(Self { followers, is_heard: false, belongings, naming, followed, parts })
     }
 
     /// Follows the markers, and says where each is and whether it must be lit in this frame, and what sightings blink.
@@ -243,7 +274,7 @@ impl Blinking {
     ) -> (Option<tracking::Blinking<'_>>, &[Option<Signalled>]) {
         let Before { watched, tracked, .. } = *before;
         if (glance.time_s - tracked.time_s).abs() > Tracker::JUMP_S {
-            self.follower.restart();
+            self.followers.iter_mut().for_each(Follower::restart);
         }
         let frame = Frame {
             time_s: glance.time_s,
@@ -254,9 +285,10 @@ impl Blinking {
             watched,
         };
         self.followed.clear();
-        // A late frame is not heard.
-        let markers = self.follower.follow(&frame).unwrap_or_default();
-        let signal = |number: u64| self.naming.signal(self.belongings.of_marker(number)?);
+        let markers = self.followers[glance.camera].follow(&frame);
+        self.is_heard = markers.is_ok();
+        let markers = markers.unwrap_or_default();
+        let signal = |number: u64| self.naming.signal(self.belongings.of_marker(glance.camera, number)?);
         self.followed.extend(markers.iter().map(|marker| Followed {
             bearing: marker.bearing,
             lit: marker.lit,
@@ -272,17 +304,21 @@ impl Blinking {
         (Some(tracking::Blinking { followed: &self.followed, others: ANY_BIT, appearing }), signals)
     }
 
-    /// Gives the markers to the vehicles, names these, and turns them as their signals say.
+    /// Gives the markers of the frame's camera to the vehicles, names these, and turns them as their signals say.
     fn conclude(&mut self, tracked: &mut Tracked) {
-        let Self { follower, belongings, naming, .. } = self;
+        let Self { followers, belongings, naming, .. } = self;
         if tracked.placed == Placed::Reset {
             belongings.forget();
             naming.forget();
         }
-        if tracked.placed != Placed::Late {
-            belongings.follow(follower, tracked, |over| naming.remember(over));
+        if self.is_heard {
+            let camera = tracked.camera;
+            belongings.follow(camera, &followers[camera], tracked, |over| naming.remember(over));
         }
-        naming.name(tracked, belongings);
+        // Who appeared after a late frame keeps its name.
+        if tracked.placed != Placed::Late {
+            naming.name(tracked, belongings);
+        }
         tracked.turn(|track| naming.turn(track));
     }
 }

@@ -104,7 +104,7 @@ impl World {
         let located =
             self.locator.locate(Input::spots(&spots).gravity(gravity.as_ref())).expect("spots have no size");
         let turned = Some(Turned { now_from_before: level, sigma_rad: 1e-5 });
-        let glance = Glance { time_s, exposure_s: EXPOSURE_S, turned, moving: None, gravity, located };
+        let glance = Glance { exposure_s: EXPOSURE_S, turned, gravity, ..Glance::new(time_s, located) };
         self.lookout.look(&glance).unwrap().clone()
     }
 
@@ -258,6 +258,8 @@ fn times_are_the_trackers() {
     }
     let nothing = world.locator.locate(Input::spots(&[])).expect("spots have no size");
     let glance = Glance {
+        camera: 0,
+        turned_since_any: None,
         time_s: 1.0,
         exposure_s: EXPOSURE_S,
         turned: None,
@@ -273,7 +275,7 @@ fn times_are_the_trackers() {
     assert!(world.lookout.names()[0].probability > SURE);
     let other = Glance { time_s: -100.0, ..glance };
     assert_eq!(world.lookout.look(&other).unwrap().placed, Placed::Reset);
-    assert!(world.lookout.names().is_empty() && world.lookout.markers().is_empty());
+    assert!(world.lookout.names().is_empty() && world.lookout.markers(0).is_empty());
     world.frame = 0;
     for _ in 0..60 {
         world.see(&mut blinkers);

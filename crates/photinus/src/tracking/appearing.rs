@@ -12,6 +12,7 @@ use super::look::Moment;
 use super::reduction::reduce;
 use super::state::{MOST_TARGETS, State, Target};
 use super::step::Model;
+use crate::camera::Rig;
 use crate::pose::{Mode, Pose};
 
 /// A neighbour less likely than this to be new and there is none.
@@ -66,8 +67,9 @@ pub(super) fn appear(
             existence,
             hidden: 0.0,
             seen_s: moment.time_s,
+            seen_by: moment.camera,
             is_predicted: members.is_empty(),
-            log_power: None,
+            log_power: [None; Rig::MOST],
             calibration_rad2: calibration / members.len().max(1) as f64,
             first_component,
             components: modes.len(),

@@ -33,11 +33,19 @@ pub enum TrackError {
         /// How far behind the newest.
         behind_s: f64,
     },
-    /// A second frame of the same time.
+    /// A second frame of the same camera and time.
     #[error("a second frame of {time_s} s: hand each frame on once")]
     Repeated {
         /// Its time.
         time_s: f64,
+    },
+    /// A camera that the rig does not have.
+    #[error("a frame of camera {number} of a rig of {of}: they are numbered from 0")]
+    Camera {
+        /// Its number.
+        number: usize,
+        /// How many there are.
+        of: usize,
     },
     /// The camera's turn is known to no sigma.
     #[error("a turn of the camera with a sigma of {0} rad: it must be 0 or more")]

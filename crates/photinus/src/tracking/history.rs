@@ -7,9 +7,9 @@ use super::error::TrackError;
 use super::look::{Look, Moment};
 use super::state::State;
 use super::step::{Model, Stepper};
-use crate::camera::Watched;
+use crate::camera::Rig;
 
-/// Frames that are kept: half a second at up to 120 a second.
+/// Frames that are kept of each camera: half a second at up to 120 a second.
 const MOST_FRAMES: usize = 64;
 
 /// A frame, and what was believed after it.
@@ -29,13 +29,17 @@ pub(super) struct History {
     nobody: State,
     /// Whether the first frame since the last reset is still kept.
     is_whole: bool,
+    most_frames: usize,
 }
 
 impl History {
-    pub(super) fn new() -> Self {
+    /// Of the frames of these cameras.
+    pub(super) fn of(rig: &Rig) -> Self {
+        let most_frames = MOST_FRAMES * rig.cameras().len();
         Self {
-            entries: Vec::with_capacity(MOST_FRAMES + 1),
-            spare: Vec::with_capacity(MOST_FRAMES + 1),
+            most_frames,
+            entries: Vec::with_capacity(most_frames + 1),
+            spare: Vec::with_capacity(most_frames + 1),
             nobody: State::empty(0.0, 0),
             is_whole: true,
         }
@@ -63,16 +67,16 @@ impl History {
         &mut self,
         stepper: &mut Stepper,
         model: &Model,
-        watched: Watched<'_>,
         look: &Look<'_>,
     ) -> Result<(), TrackError> {
-        let place = self.entries.partition_point(|entry| entry.moment.time_s < look.time_s);
-        self.check(place, look.time_s)?;
+        // Of frames of one time, the one that came last is the later one.
+        let place = self.entries.partition_point(|entry| entry.moment.time_s <= look.time_s);
+        self.check(place, look)?;
         let mut entry = self
             .spare
             .pop()
             .unwrap_or_else(|| Entry { moment: Moment::with_room(), state: State::empty(look.time_s, 0) });
-        entry.moment.keep(look, model.settings.kind);
+        entry.moment.keep(look, model.rig.mounting(look.camera), model.settings.kind);
         if place > 0 && place < self.entries.len() {
             let before_s = self.entries[place - 1].moment.time_s;
             self.entries[place].moment.follow(&mut entry.moment, before_s);
@@ -84,15 +88,17 @@ impl History {
             // Nobody was there a second before the first frame.
             self.nobody.time_s = moment.time_s - 1.0;
             let before = before.last().map_or(&self.nobody, |entry| &entry.state);
-            stepper.step(model, watched, before, moment, state);
+            stepper.step(model, before, moment, state);
         }
         self.forget_oldest();
         Ok(())
     }
 
-    fn check(&self, place: usize, time_s: f64) -> Result<(), TrackError> {
+    fn check(&self, place: usize, &Look { camera, time_s, .. }: &Look<'_>) -> Result<(), TrackError> {
         let Some(newest) = self.newest() else { return Ok(()) };
-        if self.entries.get(place).is_some_and(|entry| entry.moment.time_s <= time_s) {
+        let mut of_one_time = self.entries[..place].iter().rev().map(|entry| &entry.moment);
+        let mut of_one_time = of_one_time.by_ref().take_while(|moment| moment.time_s >= time_s);
+        if of_one_time.any(|moment| moment.camera == camera) {
             return Err(TrackError::Repeated { time_s });
         }
         let behind_s = newest.time_s - time_s;
@@ -105,7 +111,7 @@ impl History {
     /// Forgets what no late frame can come before.
     fn forget_oldest(&mut self) {
         let Some(newest_s) = self.newest().map(|state| state.time_s) else { return };
-        while self.entries.len() > MOST_FRAMES
+        while self.entries.len() > self.most_frames
             || self.entries.get(1).is_some_and(|next| next.moment.time_s < newest_s - Tracker::MOST_LATE_S)
         {
             let oldest = self.entries.remove(0);

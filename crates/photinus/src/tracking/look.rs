@@ -6,7 +6,7 @@ use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 
 use super::error::TrackError;
 use super::motion::{Faster, Turn};
-use crate::camera::Bearing;
+use crate::camera::{Bearing, Mounting, Rig};
 use crate::locator::{Located, Neighbour, Sighting};
 use crate::pose::{Mode, Observation, POWER_RANGE};
 
@@ -23,11 +23,13 @@ const SIGNAL_IS_RIGHT: f64 = 0.99;
 /// A frame, as the tracker takes it.
 #[derive(Clone, Copy, Debug)]
 pub struct Look<'a> {
+    /// Which of the rig's cameras took it; 0 of one alone.
+    pub camera: usize,
     /// When, s, on a clock of the caller's.
     pub time_s: f64,
-    /// How the camera turned since the frame before it in time, where that is known.
+    /// How it turned since the frame before in time, whichever camera of the rig took that one, in the axes of this camera; where that is known.
     pub turned: Option<Turned>,
-    /// How it moves over the ground, where that is known.
+    /// How the vehicle that it sits on moves over the ground, in the camera's axes, where that is known: of a camera alone its own movement.
     pub moving: Option<Moving>,
     /// Down in the camera frame, where it is known.
     pub gravity: Option<Unit<Vector3<f64>>>,
@@ -95,6 +97,15 @@ pub struct Turned {
     pub sigma_rad: f64,
 }
 
+impl Turned {
+    /// The same in the axes that a camera is mounted in.
+    pub(crate) fn of_body(&self, mounting: &Mounting) -> Self {
+        let body_from_camera = &mounting.body_from_camera;
+        let now_from_before = body_from_camera * self.now_from_before * body_from_camera.inverse();
+        Self { now_from_before, ..*self }
+    }
+}
+
 /// How the camera moves: what it gains in speed would else be taken for its neighbours'.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Moving {
@@ -135,7 +146,10 @@ impl Followed {
 
 impl Look<'_> {
     /// Refuses what has no meaning.
-    pub(crate) fn check(&self) -> Result<(), TrackError> {
+    pub(crate) fn check(&self, rig: &Rig) -> Result<(), TrackError> {
+        if self.camera >= rig.cameras().len() {
+            return Err(TrackError::Camera { number: self.camera, of: rig.cameras().len() });
+        }
         if !self.time_s.is_finite() {
             return Err(TrackError::Time(self.time_s));
         }
@@ -173,9 +187,12 @@ impl Appearance {
 /// A frame, kept.
 #[derive(Debug, Default)]
 pub(super) struct Moment {
+    pub(super) camera: usize,
     pub(super) time_s: f64,
+    /// In the body's axes.
     pub(super) turned: Option<Turned>,
     pub(super) moving: Option<Moving>,
+    /// In the camera's.
     pub(super) up: Option<Unit<Vector3<f64>>>,
     /// Light at which a marker is found half of the time.
     pub(super) faintest_light: f64,
@@ -206,9 +223,12 @@ impl Moment {
     }
 
     /// Takes over a frame.
-    pub(super) fn keep(&mut self, look: &Look<'_>, kind: usize) {
-        let Look { time_s, turned, moving, gravity, located, signals, lit, blinking } = *look;
-        (self.time_s, self.turned, self.moving) = (time_s, turned, moving);
+    pub(super) fn keep(&mut self, look: &Look<'_>, mounting: &Mounting, kind: usize) {
+        let Look { camera, time_s, turned, moving, gravity, located, signals, lit, blinking } = *look;
+        (self.camera, self.time_s) = (camera, time_s);
+        self.turned = turned.map(|turned| turned.of_body(mounting));
+        let of_body = |own: Moving| Moving { velocity_m_s: mounting.body_from_camera * own.velocity_m_s, ..own };
+        self.moving = moving.map(of_body);
         self.faintest_light = located.faintest_light;
         self.up = gravity.map(|down| -down);
         self.observations.clear();
@@ -277,19 +297,29 @@ impl Moment {
         &self.observations[sighting].bearing
     }
 
-    /// How the camera turned over the interval since the frame before; where nobody tells, anyhow.
-    pub(super) fn turn(&self, interval_s: f64, rate_sigma_rad_s: f64) -> Turn {
-        match self.turned {
-            Some(Turned { now_from_before, sigma_rad }) => Turn { now_from_before, sigma_rad },
-            None => Turn { now_from_before: Rotation3::identity(), sigma_rad: rate_sigma_rad_s * interval_s },
+    /// How the axes turned over the interval since the frame before, from those of its camera to those of this one; where nobody tells, the body turned
+    /// anyhow.
+    pub(super) fn turn(&self, rig: &Rig, before: usize, interval_s: f64, rate_sigma_rad_s: f64) -> Turn {
+        let [before, now] = [before, self.camera].map(|camera| rig.mounting(camera));
+        let told = self.turned.unwrap_or_else(|| Turned {
+            now_from_before: Rotation3::identity(),
+            sigma_rad: rate_sigma_rad_s * interval_s,
+        });
+        let now_from_body = now.body_from_camera.inverse();
+        Turn {
+            now_from_before: now_from_body * told.now_from_before * before.body_from_camera,
+            sigma_rad: told.sigma_rad,
+            before_m: before.lever_m(),
+            now_m: now.lever_m(),
         }
     }
 
-    /// How much faster the camera became since it moved so, where both are known, and how it turned meanwhile: its velocities are in its own axes.
-    pub(super) fn faster(&self, turn: &Turn, before: Option<&Moving>) -> Option<Faster> {
-        let (before, now) = (before?, self.moving.filter(|_| self.turned.is_some())?);
-        let by_m_s = now.velocity_m_s - turn.now_from_before * before.velocity_m_s;
-        Some(Faster { by_m_s, sigma_m_s: now.sigma_m_s })
+    /// How much faster the vehicle became since it moved so, where both are known, and how it turned meanwhile: its velocities are in its own axes.
+    pub(super) fn faster(&self, rig: &Rig, before: Option<&Moving>) -> Option<Faster> {
+        let (before, now, turned) = (before?, self.moving?, self.turned?);
+        let by_m_s = now.velocity_m_s - turned.now_from_before * before.velocity_m_s;
+        let camera_from_body = rig.mounting(self.camera).body_from_camera.inverse();
+        Some(Faster { by_m_s: camera_from_body * by_m_s, sigma_m_s: now.sigma_m_s })
     }
 
     /// Puts a late frame before this one: this one's turn is since the late one from now on. Where the late one's own turn is not told, the camera is taken

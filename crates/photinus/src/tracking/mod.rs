@@ -14,6 +14,9 @@
 //!
 //! A vehicle is a small sum of normal distributions of position, velocity and attitude, so that what one frame leaves open (two spots fit two poses) is
 //! settled by the next ones. Every spot updates it, also one marker alone. `step` has the flow of a frame.
+//!
+//! Cameras that are mounted on one vehicle share the tracks: what is believed stands in the axes of the camera of the last frame, and is turned and moved into
+//! those of the next. A camera that does not look where a vehicle is tells nothing of it.
 
 mod appearing;
 mod branches;
@@ -36,10 +39,8 @@ mod track;
 mod update;
 mod ways;
 
-use nalgebra::Rotation3;
-
 use crate::airframe::Airframe;
-use crate::camera::{Camera, Watched};
+use crate::camera::Rig;
 use crate::frame::Mask;
 use crate::locator;
 use crate::pose::{LogLight, Symmetry};
@@ -52,11 +53,10 @@ pub use settings::{Association, Settings};
 use step::{Model, Stepper};
 pub use track::{Placed, Track, Tracked};
 
-/// Follows the vehicles that one camera sees, all with the same airframe. Keeps its room from frame to frame, so that a warm tracker allocates nothing.
+/// Follows the vehicles that one camera sees, or the cameras of one rig, all with the same airframe. Keeps its room from frame to frame, so that a warm
+/// tracker allocates nothing.
 #[derive(Debug)]
 pub struct Tracker {
-    camera: Camera,
-    mask: Option<Mask>,
     model: Model,
     stepper: Stepper,
     history: History,
@@ -69,12 +69,12 @@ impl Tracker {
     /// A time this much before or after the newest is another clock, s.
     pub const JUMP_S: f64 = 5.0;
 
-    /// A tracker of what a locator with these settings tells.
+    /// A tracker of what locators with these settings tell: of one camera, or of a rig.
     ///
     /// # Errors
     /// [`TrackerError`] when a setting has no meaning.
     pub fn new(
-        camera: Camera,
+        rig: impl Into<Rig>,
         airframe: &Airframe,
         locator: &locator::Settings,
         settings: Settings,
@@ -82,25 +82,31 @@ impl Tracker {
         locator.pose.check()?;
         settings.check()?;
         let model = Model {
+            rig: rig.into(),
             airframe: airframe.clone(),
             symmetry: Symmetry::of(airframe),
             pose: locator.pose,
             settings,
         };
         let stepper = Stepper::new(airframe);
-        Ok(Self { camera, mask: None, model, stepper, history: History::new(), tracked: Tracked::default() })
+        let history = History::of(&model.rig);
+        Ok(Self { model, stepper, history, tracked: Tracked::default() })
     }
 
-    /// Sets where the locator does not look.
+    /// The cameras.
+    pub fn rig(&self) -> &Rig {
+        &self.model.rig
+    }
+
+    /// Sets where the locator of a camera does not look.
     ///
     /// # Errors
     /// [`TrackerError::Mask`] when the mask is not of the camera's size.
-    pub fn set_mask(&mut self, mask: Option<Mask>) -> Result<(), TrackerError> {
-        if let Some(mask) = &mask {
-            mask.check_size(self.camera.width(), self.camera.height())?;
-        }
-        self.mask = mask;
-        Ok(())
+    ///
+    /// # Panics
+    /// If there is no camera of this number.
+    pub fn set_mask(&mut self, camera: usize, mask: Option<Mask>) -> Result<(), TrackerError> {
+        Ok(self.model.rig.set_mask(camera, mask)?)
     }
 
     /// Forgets all tracks. Their ids are not given again.
@@ -108,18 +114,18 @@ impl Tracker {
         self.history.forget();
     }
 
-    /// The light of an LED of intensity 1 at 1 m, where several tracks tell it.
-    pub(crate) fn power(&mut self) -> Option<LogLight> {
-        self.stepper.power(self.history.newest()?)
+    /// The light of an LED of intensity 1 at 1 m in a camera, where several tracks tell it.
+    pub(crate) fn power(&mut self, camera: usize) -> Option<LogLight> {
+        self.stepper.power(camera, self.history.newest()?)
     }
 
-    /// Takes a frame in, and tells the tracks at the time of the newest frame, in its camera's axes. Frames up to [`Self::MOST_LATE_S`] behind the newest
+    /// Takes a frame in, and tells the tracks at its time, in its camera's axes; [`Self::at`] tells those of the newest frame's after a late one. Frames up to [`Self::MOST_LATE_S`] behind the newest
     /// take their place; one that is more than [`Self::JUMP_S`] off is of another clock: all tracks are forgotten first, and [`Tracked::placed`] says so.
     ///
     /// # Errors
     /// [`TrackError`] for a time or a turn without meaning, a frame that is too late, and a second one of the same time; nothing is changed then.
     pub fn track(&mut self, look: &Look<'_>) -> Result<&Tracked, TrackError> {
-        look.check()?;
+        look.check(&self.model.rig)?;
         let off_s = self.history.newest().map_or(0.0, |newest| look.time_s - newest.time_s);
         let placed = match off_s {
             _ if off_s.abs() > Self::JUMP_S => Placed::Reset,
@@ -129,9 +135,8 @@ impl Tracker {
         if placed == Placed::Reset {
             self.history.forget();
         }
-        let watched = Watched::new(&self.camera, self.mask.as_ref());
-        self.history.take_in(&mut self.stepper, &self.model, watched, look)?;
-        if let Some(state) = self.history.newest() {
+        self.history.take_in(&mut self.stepper, &self.model, look)?;
+        if let Some(state) = self.history.at(look.time_s) {
             self.tracked.tell(&self.model, state, None);
         }
         self.tracked.placed = placed;
@@ -152,7 +157,7 @@ impl Tracker {
         };
         let motion = Motion {
             interval_s: time_s - state.time_s,
-            turn: Turn { now_from_before: Rotation3::identity(), sigma_rad: 0.0 },
+            turn: Turn::none(self.model.rig.mounting(state.camera).lever_m()),
             faster: None,
             up: state.up,
             tilt_sigma_rad: self.model.pose.tilt_sigma_rad,

@@ -17,15 +17,25 @@ const IMAGE_TILT_SIGMA_RAD: f64 = 1.0;
 /// A yaw is no less sure than this, rad: that of one who knows nothing.
 const MOST_YAW_RAD: f64 = 1.8;
 
-/// How the camera turned over an interval.
+/// How the axes turned over an interval, from those of the camera before to those of the one now.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Turn {
     pub(super) now_from_before: Rotation3<f64>,
     /// Standard deviation per axis, rad.
     pub(super) sigma_rad: f64,
+    /// From the body's origin, about which they turn, to the camera before and to the one now, each in its own axes, m.
+    pub(super) before_m: Vector3<f64>,
+    pub(super) now_m: Vector3<f64>,
 }
 
-/// How the camera's velocity changed over an interval, evenly.
+impl Turn {
+    /// A camera that stays as it is, mounted so.
+    pub(super) fn none(lever_m: Vector3<f64>) -> Self {
+        Self { now_from_before: Rotation3::identity(), sigma_rad: 0.0, before_m: lever_m, now_m: lever_m }
+    }
+}
+
+/// How the velocity of what carries the camera changed over an interval, evenly.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Faster {
     /// In the axes afterwards, m/s.
@@ -83,8 +93,10 @@ impl Motion {
         let interval_s = self.interval_s;
         let turn = &self.turn.now_from_before;
         let faster = self.faster.unwrap_or(Faster { by_m_s: Vector3::zeros(), sigma_m_s: 0.0 });
-        let carried_m = turn * (before.pose.position_m + before.velocity_m_s * interval_s);
-        let position_m = carried_m - faster.by_m_s * (0.5 * interval_s);
+        let from_origin_m = before.pose.position_m + self.turn.before_m;
+        let carried_m = turn * (from_origin_m + before.velocity_m_s * interval_s);
+        let from_origin_m = carried_m - faster.by_m_s * (0.5 * interval_s);
+        let position_m = from_origin_m - self.turn.now_m;
         let velocity_m_s = turn * before.velocity_m_s - faster.by_m_s;
         let turning = Turning::over(interval_s, settings);
         let turned = Rotation3::from_axis_angle(&Vector3::z_axis(), turning.by_rate * before.yaw_rate_rad_s);
@@ -123,12 +135,22 @@ impl Motion {
             covariance.row_mut(YAW).unscale_mut(too_wide);
             covariance.column_mut(YAW).unscale_mut(too_wide);
         }
-        let by_turn = by_turn(&position_m, &velocity_m_s, &camera_from_body);
+        let by_turn = by_turn(&from_origin_m, &velocity_m_s, &camera_from_body);
         covariance += by_turn * by_turn.transpose() * (self.turn.sigma_rad * self.turn.sigma_rad);
         let pose =
             Pose { position_m, camera_from_body: camera_from_body * Rotation3::new(upright * (1.0 - keeps)) };
         let yaw_rate_rad_s = turning.keeps * before.yaw_rate_rad_s;
         Component { weight: before.weight, pose, velocity_m_s, yaw_rate_rad_s, covariance }
+    }
+
+    /// Makes a vehicle that another camera showed less sure, by how far this one may see it elsewhere: about each axis, rad^2, and along each, m^2.
+    pub(super) fn loosen(component: &mut Component, rotation_rad2: f64, position_m2: f64) {
+        let Component { pose, velocity_m_s, .. } = component;
+        let by_turn = by_turn(&pose.position_m, velocity_m_s, &pose.camera_from_body);
+        component.covariance += by_turn * by_turn.transpose() * rotation_rad2;
+        for axis in 0..3 {
+            component.covariance[(axis, axis)] += position_m2;
+        }
     }
 
     /// The share of a tilt that is left, and the variance that is new.
@@ -155,7 +177,7 @@ impl Motion {
     }
 }
 
-/// How the state changes with a small rotation of the camera's axes.
+/// How the state changes with a small rotation of the camera's axes about what the position is told from.
 fn by_turn(
     position_m: &Vector3<f64>,
     velocity_m_s: &Vector3<f64>,

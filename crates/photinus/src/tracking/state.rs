@@ -7,6 +7,7 @@ use nalgebra::{Matrix3, Unit, Vector3};
 use super::appearing::LOST_S;
 use super::component::Component;
 use super::look::Moving;
+use crate::camera::Rig;
 
 /// Most vehicles that are followed at once.
 pub(super) const MOST_TARGETS: usize = 64;
@@ -27,12 +28,13 @@ pub(super) struct Target {
     pub(super) existence: f64,
     /// How likely it is hidden, if it exists.
     pub(super) hidden: f64,
-    /// When it was seen last, s.
+    /// When it was seen last, s, and by which camera.
     pub(super) seen_s: f64,
-    /// Whether it is not seen in this frame.
+    pub(super) seen_by: usize,
+    /// Whether it is not seen in this frame, nor was in the last one of another camera.
     pub(super) is_predicted: bool,
-    /// Logarithm of the light of an LED of intensity 1 at 1 m, where it was told.
-    pub(super) log_power: Option<f64>,
+    /// Logarithm of the light of an LED of intensity 1 at 1 m, by camera, where it was told.
+    pub(super) log_power: [Option<f64>; Rig::MOST],
     /// What the camera's calibration leaves open of its direction, rad^2.
     pub(super) calibration_rad2: Matrix3<f64>,
     pub(super) first_component: usize,
@@ -44,14 +46,16 @@ pub(super) struct Target {
 /// All that is believed at a time.
 #[derive(Debug)]
 pub(super) struct State {
+    /// Whose axes all is told in.
+    pub(super) camera: usize,
     pub(super) time_s: f64,
     pub(super) next_id: u64,
     /// Away from the ground, camera frame, where it is known.
     pub(super) up: Option<Unit<Vector3<f64>>>,
-    /// How the camera moves, where it is known.
+    /// How what carries the camera moves, body axes, where it is known.
     pub(super) moving: Option<Moving>,
-    /// Points of clutter in a frame, on average.
-    pub(super) clutter: f64,
+    /// Points of clutter in a frame, on average, by camera.
+    pub(super) clutter: [f64; Rig::MOST],
     pub(super) targets: Vec<Target>,
     pub(super) components: Vec<Component>,
     /// Sightings that updated a vehicle.
@@ -64,11 +68,12 @@ impl State {
     /// Nobody yet.
     pub(super) fn empty(time_s: f64, next_id: u64) -> Self {
         Self {
+            camera: 0,
             time_s,
             next_id,
             up: None,
             moving: None,
-            clutter: CLUTTER_BEFOREHAND,
+            clutter: [CLUTTER_BEFOREHAND; Rig::MOST],
             targets: Vec::with_capacity(MOST_TARGETS),
             components: Vec::with_capacity(2 * MOST_TARGETS),
             members: Vec::with_capacity(128),
@@ -77,10 +82,10 @@ impl State {
     }
 
     /// Forgets everybody.
-    pub(super) fn clear(&mut self, time_s: f64, next_id: u64) {
-        (self.time_s, self.next_id) = (time_s, next_id);
+    pub(super) fn clear(&mut self, camera: usize, time_s: f64, next_id: u64) {
+        (self.camera, self.time_s, self.next_id) = (camera, time_s, next_id);
         (self.up, self.moving) = (None, None);
-        self.clutter = CLUTTER_BEFOREHAND;
+        self.clutter = [CLUTTER_BEFOREHAND; Rig::MOST];
         self.targets.clear();
         self.components.clear();
         self.members.clear();
@@ -92,11 +97,11 @@ impl State {
         self.time_s - target.seen_s > LOST_S
     }
 
-    /// The light of an LED of intensity 1 at 1 m, as a logarithm: what half of the vehicles say at most, so that one that is taken to be too near or too far
+    /// The light of an LED of intensity 1 at 1 m in a camera, as a logarithm: what half of the vehicles say at most, so that one that is taken to be too near or too far
     /// does not bend it. `None` of too few.
-    pub(super) fn log_power(&self, powers: &mut Vec<f64>) -> Option<f64> {
+    pub(super) fn log_power(&self, camera: usize, powers: &mut Vec<f64>) -> Option<f64> {
         powers.clear();
-        powers.extend(self.targets.iter().filter_map(|target| target.log_power));
+        powers.extend(self.targets.iter().filter_map(|target| target.log_power[camera]));
         powers.sort_unstable_by(f64::total_cmp);
         powers.get(powers.len() / 2).copied().filter(|_| powers.len() >= FEWEST_POWERS)
     }

@@ -13,7 +13,7 @@ use alloc::vec::Vec;
 use nalgebra::Matrix3;
 
 use super::Settings;
-use super::appearing;
+use super::appearing::{self, LOST_S};
 use super::component::Component;
 use super::existence::Existence;
 use super::joint::Joint;
@@ -24,7 +24,7 @@ use super::splitting::{split, straight_rad};
 use super::state::{MOST_TARGETS, State, Target};
 use super::ways::{POWER_SIGMA, Scene, Way, Ways};
 use crate::airframe::Airframe;
-use crate::camera::Watched;
+use crate::camera::{Bearing, Rig};
 #[cfg(not(feature = "std"))]
 use crate::float::Float as _;
 use crate::pose::{self, LogLight, Symmetry};
@@ -36,10 +36,13 @@ const LEAST_CLUTTER: f64 = 0.05;
 const GONE: f64 = 0.02;
 /// The power of LEDs is the mean of this many frames.
 const POWER_FRAMES: f64 = 16.0;
+/// Two cameras of a rig are no nearer in time than this, s, for what their frames repeat.
+const LEAST_INTERVAL_S: f64 = 1e-4;
 
 /// What does not change from frame to frame.
 #[derive(Clone, Debug)]
 pub(super) struct Model {
+    pub(super) rig: Rig,
     pub(super) airframe: Airframe,
     pub(super) symmetry: Symmetry,
     pub(super) pose: pose::Settings,
@@ -50,13 +53,25 @@ impl Model {
     /// In so many frames at such intervals errors of markers, lobes and powers are the same: one that lasts for a time is as white noise of the density
     /// 2 time sigma^2.
     pub(super) fn repeats(&self, interval_s: f64) -> f64 {
-        (2.0 * self.settings.correlation_s / interval_s).max(1.0)
+        (2.0 * self.settings.correlation_s / interval_s.max(LEAST_INTERVAL_S)).max(1.0)
     }
 
     /// Over so wide a yaw, one standard deviation, rad, a frame after such an interval takes the vehicle's distance for a straight line.
     fn straight_rad(&self, interval_s: f64) -> f64 {
         let sigma_m = self.repeats(interval_s).sqrt() * self.pose.marker_sigma_m;
         straight_rad(self.airframe.max_radius_m(), sigma_m)
+    }
+
+    /// By how much a camera may see a vehicle elsewhere than the one that showed it last: about each axis, rad^2, and along each, m^2.
+    fn apart(&self, target: &Target, moment: &Moment) -> (f64, f64) {
+        let [last, now] = [target.seen_by, moment.camera].map(|camera| self.rig.mounting(camera));
+        let of_mountings = last.rotation_covariance_rad2 + now.rotation_covariance_rad2;
+        let of_places = last.position_covariance_m2 + now.position_covariance_m2;
+        // A calibration errs across the line of sight only, along two axes.
+        let here = moment.calibrations.iter().map(Matrix3::trace).sum::<f64>();
+        let here = here / moment.calibrations.len().max(1) as f64;
+        let of_calibrations = 0.5 * (target.calibration_rad2.trace() + here);
+        (of_mountings.trace() / 3.0 + of_calibrations, of_places.trace() / 3.0)
     }
 
     /// Whether a marker blinks a signal: LEDs without one blink the first.
@@ -93,26 +108,19 @@ impl Stepper {
         }
     }
 
-    /// The light of an LED of intensity 1 at 1 m, as far as the vehicles of a state tell it.
-    pub(super) fn power(&mut self, state: &State) -> Option<LogLight> {
-        state.log_power(&mut self.powers).map(|value| LogLight { value, sigma: POWER_SIGMA })
+    /// The light of an LED of intensity 1 at 1 m in a camera, as far as the vehicles of a state tell it.
+    pub(super) fn power(&mut self, camera: usize, state: &State) -> Option<LogLight> {
+        state.log_power(camera, &mut self.powers).map(|value| LogLight { value, sigma: POWER_SIGMA })
     }
 
     /// Fills `after` with what is believed after a frame.
-    pub(super) fn step(
-        &mut self,
-        model: &Model,
-        watched: Watched<'_>,
-        before: &State,
-        moment: &Moment,
-        after: &mut State,
-    ) {
+    pub(super) fn step(&mut self, model: &Model, before: &State, moment: &Moment, after: &mut State) {
         let interval_s = moment.time_s - before.time_s;
-        let turn = moment.turn(interval_s, model.settings.turn_sigma_rad_s);
+        let watched = model.rig.watched(moment.camera);
         let motion = Motion {
             interval_s,
-            turn,
-            faster: moment.faster(&turn, before.moving.as_ref()),
+            turn: moment.turn(&model.rig, before.camera, interval_s, model.settings.turn_sigma_rad_s),
+            faster: moment.faster(&model.rig, before.moving.as_ref()),
             up: moment.up,
             tilt_sigma_rad: model.pose.tilt_sigma_rad,
         };
@@ -121,13 +129,21 @@ impl Stepper {
         self.first_predicted.clear();
         for target in &before.targets {
             self.first_predicted.push(self.predicted.len());
+            let apart = (target.seen_by != moment.camera).then(|| model.apart(target, moment));
             for component in before.components(target) {
-                split(&motion.predict(component, &model.settings), straight_rad, &mut self.predicted);
+                let mut here = motion.predict(component, &model.settings);
+                // Where this camera cannot see it, nothing compares the two.
+                let is_in_view = || Bearing::new(here.pose.position_m).is_some_and(|ahead| watched.sees(&ahead));
+                if let Some((rotation_rad2, position_m2)) = apart.filter(|_| is_in_view()) {
+                    Motion::loosen(&mut here, rotation_rad2, position_m2);
+                }
+                split(&here, straight_rad, &mut self.predicted);
             }
         }
         self.first_predicted.push(self.predicted.len());
         let scene = Scene { model, watched, moment, interval_s };
-        self.ways.begin(&scene, before.clutter, before.log_power(&mut self.powers));
+        let clutter = before.clutter[moment.camera];
+        self.ways.begin(&scene, clutter, before.log_power(moment.camera, &mut self.powers));
         for (vehicle, range) in self.first_predicted.windows(2).enumerate() {
             self.ways.may_screen(vehicle, &self.predicted[range[0]..range[1]]);
         }
@@ -142,8 +158,8 @@ impl Stepper {
         }
         ways.try_vehicles(&scene, vehicle_at);
         self.joint.explain(&self.ways.choices, &self.ways.log_unseen, model.settings.association);
-        after.clear(moment.time_s, before.next_id);
-        (after.up, after.moving) = (moment.up, moment.moving);
+        after.clear(moment.camera, moment.time_s, before.next_id);
+        (after.up, after.moving, after.clutter) = (moment.up, moment.moving, before.clutter);
         self.claimed.clear();
         self.claimed.resize(moment.observations.len(), 0.0);
         for (vehicle, target) in before.targets.iter().enumerate() {
@@ -151,8 +167,8 @@ impl Stepper {
         }
         let unexplained =
             appearing::appear(model, moment, straight_rad, &self.claimed, &mut self.reduced, after);
-        let clutter = before.clutter + (unexplained - before.clutter) / CLUTTER_FRAMES;
-        after.clutter = clutter.max(LEAST_CLUTTER);
+        let clutter = clutter + (unexplained - clutter) / CLUTTER_FRAMES;
+        after.clutter[moment.camera] = clutter.max(LEAST_CLUTTER);
     }
 
     /// Adds a vehicle as it is with the frame, unless it is gone.
@@ -179,7 +195,7 @@ impl Stepper {
             }
             if probability > best {
                 best = probability;
-                log_power = averaged(before.log_power, way.log_power);
+                log_power[moment.camera] = averaged(before.log_power[moment.camera], way.log_power);
             }
         }
         let own = &predicted[first_predicted[vehicle]..first_predicted[vehicle + 1]];
@@ -191,7 +207,11 @@ impl Stepper {
         }
         reduce(reduced, model.straight_rad(interval_s));
         let is_seen = unseen < 0.5;
-        let seen_s = if is_seen { moment.time_s } else { before.seen_s };
+        let (seen_s, seen_by) =
+            if is_seen { (moment.time_s, moment.camera) } else { (before.seen_s, before.seen_by) };
+        // What another camera shows is not missed until that one misses it.
+        let is_missed =
+            before.is_predicted || moment.camera == before.seen_by || moment.time_s - seen_s > LOST_S;
         let is_lost = moment.time_s - seen_s > model.settings.coast_s;
         if with.total() < GONE || is_lost || reduced.is_empty() {
             return;
@@ -218,7 +238,8 @@ impl Stepper {
             existence: with.total().min(1.0),
             hidden: with.hidden / with.total(),
             seen_s,
-            is_predicted: !is_seen,
+            seen_by,
+            is_predicted: !is_seen && is_missed,
             log_power,
             calibration_rad2,
             first_component,

@@ -19,7 +19,7 @@ pub struct Track {
     pub id: u64,
     /// Where its airframe's origin is relative to the camera, m, in axes that do not rotate and are the camera's at the stamp.
     pub position_m: Vector3<f64>,
-    /// How that changes, m/s.
+    /// How that changes, m/s; of a camera of a rig, relative to the origin of the body that carries it: what swings the camera beside it is none of it.
     pub velocity_m_s: Vector3<f64>,
     /// Its attitude: maps the body's coordinates to the camera's, yaw as for [`crate::locator::Orientation`].
     pub camera_from_body: Rotation3<f64>,
@@ -35,7 +35,7 @@ pub struct Track {
     pub position_orientation_covariance_m_rad: Matrix3<f64>,
     /// How likely it exists, 0 to 1.
     pub existence: f64,
-    /// Whether nothing of it was seen at the stamp: it coasts.
+    /// Whether nothing of it was seen at the stamp: it coasts. Of a rig: nor in the last frame of another camera.
     pub is_predicted: bool,
     /// Who it was heard to be when it appeared.
     pub(crate) vehicle: Option<u32>,
@@ -62,6 +62,8 @@ pub enum Placed {
 pub struct Tracked {
     /// The stamp, s.
     pub time_s: f64,
+    /// Which camera's axes all is told in.
+    pub camera: usize,
     /// Where the frame that was handed in last came in.
     pub placed: Placed,
     /// The vehicles that are followed, in the order in which they appeared.
@@ -71,7 +73,7 @@ pub struct Tracked {
 }
 
 impl Tracked {
-    /// Which sightings of the newest frame updated a track, ascending; none where a time between frames was asked for.
+    /// Which sightings of the frame updated a track, ascending; none where a time between frames was asked for.
     pub fn members(&self, track: &Track) -> &[usize] {
         own(&self.members, track)
     }
@@ -89,7 +91,7 @@ impl Tracked {
 
     /// The same as another, in the room that it has.
     pub(crate) fn take_over(&mut self, other: &Self) {
-        (self.time_s, self.placed) = (other.time_s, other.placed);
+        (self.time_s, self.camera, self.placed) = (other.time_s, other.camera, other.placed);
         self.tracks.clone_from(&other.tracks);
         self.members.clone_from(&other.members);
         self.markers.clone_from(&other.markers);
@@ -114,7 +116,7 @@ impl Tracked {
     /// Tells what is believed, carried on by a motion.
     pub(super) fn tell(&mut self, model: &Model, state: &State, motion: Option<&Motion>) {
         let interval_s = motion.map_or(0.0, |motion| motion.interval_s);
-        self.time_s = state.time_s + interval_s;
+        (self.time_s, self.camera) = (state.time_s + interval_s, state.camera);
         self.tracks.clear();
         self.members.clear();
         self.markers.clear();

@@ -116,6 +116,8 @@ impl Eye {
         let input = Input::frame(&view).gravity(&gravity).exposure(exposure_s);
         let Ok(located) = self.locator.locate(input) else { return };
         let glance = Glance {
+            camera: 0,
+            turned_since_any: None,
             time_s: moment.time_s,
             exposure_s,
             turned: (moment.number > 0)

@@ -4,5 +4,6 @@ mod accuracy;
 mod manoeuvres;
 mod order;
 mod parts;
+mod rig;
 pub(crate) mod simulator;
 mod told;

@@ -41,6 +41,7 @@ fn track(
     (time_s, turned, located): &(f64, Turned, Located),
 ) -> Result<Tracked, TrackError> {
     let look = Look {
+        camera: 0,
         time_s: *time_s,
         turned: Some(*turned),
         moving: None,
@@ -77,11 +78,17 @@ fn a_late_frame_is_the_same_as_in_order() {
     }
     let told = track(&mut tracker, &frames[late]).unwrap();
     assert_eq!(told.placed, Placed::Late);
-    for (track, expected) in told.tracks.iter().zip(&expected.tracks) {
-        assert_eq!(track.id, expected.id);
-        assert!((track.position_m - expected.position_m).norm() < 1e-9);
-        assert!((track.velocity_m_s - expected.velocity_m_s).norm() < 1e-8);
-        assert!((track.position_covariance_m2 - expected.position_covariance_m2).norm() < 1e-10);
+    // It tells its own time, as in order; and what is believed now is as in order, too.
+    for (told, expected) in
+        [(&told, &in_order(&frames[..=late])), (tracker.at(expected.time_s).unwrap(), &expected)]
+    {
+        assert_eq!((told.time_s.to_bits(), told.tracks.len()), (expected.time_s.to_bits(), 2));
+        for (track, expected) in told.tracks.iter().zip(&expected.tracks) {
+            assert_eq!(track.id, expected.id);
+            assert!((track.position_m - expected.position_m).norm() < 1e-9);
+            assert!((track.velocity_m_s - expected.velocity_m_s).norm() < 1e-8);
+            assert!((track.position_covariance_m2 - expected.position_covariance_m2).norm() < 1e-10);
+        }
     }
 }
 
@@ -163,6 +170,7 @@ fn one_lit_marker_keeps_a_track() {
         });
         let spots: Vec<_> = seen.iter().map(|seen| seen.spot.clone()).collect();
         let look = Look {
+            camera: 0,
             time_s,
             turned: Some(Turned { now_from_before: still, sigma_rad: 0.0 }),
             moving: None,

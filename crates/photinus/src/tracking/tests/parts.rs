@@ -62,7 +62,7 @@ fn a_prediction_spreads_as_its_draws_do() {
     let by_m_s = Vector3::new(0.5, -0.2, 0.9);
     let motion = |turn: Rotation3<f64>, by_m_s: Vector3<f64>, [sigma_rad, sigma_m_s]: [f64; 2]| Motion {
         interval_s: 0.4,
-        turn: Turn { now_from_before: turn, sigma_rad },
+        turn: Turn { now_from_before: turn, sigma_rad, ..Turn::none(Vector3::zeros()) },
         faster: Some(Faster { by_m_s, sigma_m_s }),
         up: None,
         tilt_sigma_rad: 0.01,

@@ -92,6 +92,7 @@ impl Observer {
         let now_from_before = noise * camera_from_world * self.before.inverse();
         self.before = *camera_from_world;
         let look = Look {
+            camera: 0,
             time_s,
             turned: Some(Turned { now_from_before, sigma_rad: self.gyro_sigma_rad }),
             moving: self.moving,

@@ -337,7 +337,7 @@ impl Ways {
         self.markers.resize(self.observations.len(), None);
         self.gather_others(scene, &component.pose);
         let nats = self.measured(scene, &component.pose, |measurement| {
-            measurement.visibility_nats(&component.pose, target.log_power)
+            measurement.visibility_nats(&component.pose, target.log_power[scene.moment.camera])
         });
         libm::exp(-nats)
     }

@@ -83,6 +83,12 @@ impl Component {
         Self { velocity_m_s, yaw_rate_rad_s: self.yaw_rate_rad_s + off[3], ..*self }
     }
 
+    /// The variance of the position across a line of sight, m^2, over both axes.
+    pub(super) fn aside_m2(&self, ahead: &Vector3<f64>) -> f64 {
+        let covariance_m2 = self.block(0);
+        covariance_m2.trace() - ahead.dot(&(covariance_m2 * ahead))
+    }
+
     /// The covariance of a part of the state: 0 position, 1 velocity, 2 attitude.
     pub(super) fn block(&self, part: usize) -> Matrix3<f64> {
         self.covariance.fixed_view::<3, 3>(3 * part, 3 * part).into_owned()

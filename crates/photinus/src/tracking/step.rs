@@ -24,10 +24,10 @@ use super::splitting::{split, straight_rad};
 use super::state::{MOST_TARGETS, State, Target};
 use super::ways::{POWER_SIGMA, Scene, Way, Ways};
 use crate::airframe::Airframe;
-use crate::camera::{Bearing, Rig};
+use crate::camera::Rig;
 #[cfg(not(feature = "std"))]
 use crate::float::Float as _;
-use crate::pose::{self, LogLight, Symmetry};
+use crate::pose::{self, LogLight, Observation, Symmetry};
 
 /// Clutter is counted over this many frames, and is at least this many points.
 const CLUTTER_FRAMES: f64 = 32.0;
@@ -36,6 +36,8 @@ const LEAST_CLUTTER: f64 = 0.05;
 const GONE: f64 = 0.02;
 /// The power of LEDs is the mean of this many frames.
 const POWER_FRAMES: f64 = 16.0;
+/// So many standard deviations off, a vehicle is not.
+const SURELY_SIGMA: f64 = 5.0;
 /// Two cameras of a rig are no nearer in time than this, s, for what their frames repeat.
 const LEAST_INTERVAL_S: f64 = 1e-4;
 
@@ -72,6 +74,15 @@ impl Model {
         let here = here / moment.calibrations.len().max(1) as f64;
         let of_calibrations = 0.5 * (target.calibration_rad2.trace() + here);
         (of_mountings.trace() / 3.0 + of_calibrations, of_places.trace() / 3.0)
+    }
+
+    /// Whether a frame shows anything where a vehicle may be.
+    fn shows_any(&self, component: &Component, moment: &Moment) -> bool {
+        let distance_m = component.pose.position_m.norm();
+        let ahead = component.pose.position_m / distance_m;
+        let reach_m = self.airframe.max_radius_m() + SURELY_SIGMA * component.aside_m2(&ahead).sqrt();
+        let is_near = |seen: &Observation| (seen.bearing.vector() - ahead).norm() * distance_m < reach_m;
+        moment.observations.iter().any(is_near)
     }
 
     /// Whether a marker blinks a signal: LEDs without one blink the first.
@@ -132,10 +143,13 @@ impl Stepper {
             let apart = (target.seen_by != moment.camera).then(|| model.apart(target, moment));
             for component in before.components(target) {
                 let mut here = motion.predict(component, &model.settings);
-                // Where this camera cannot see it, nothing compares the two.
-                let is_in_view = || Bearing::new(here.pose.position_m).is_some_and(|ahead| watched.sees(&ahead));
-                if let Some((rotation_rad2, position_m2)) = apart.filter(|_| is_in_view()) {
-                    Motion::loosen(&mut here, rotation_rad2, position_m2);
+                if let Some((rotation_rad2, position_m2)) = apart {
+                    let mut loose = here;
+                    Motion::loosen(&mut loose, rotation_rad2, position_m2);
+                    // Where this camera shows nothing, nothing compares the two.
+                    if model.shows_any(&loose, moment) {
+                        here = loose;
+                    }
                 }
                 split(&here, straight_rad, &mut self.predicted);
             }

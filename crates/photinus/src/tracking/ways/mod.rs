@@ -382,10 +382,7 @@ impl Ways {
 /// Whether a vehicle is known across the line of sight to less than its radius: else it may be beside what stands before it as well as behind, and a
 /// marker alone would be any.
 fn is_known_aside(component: &Component, radius_m: f64) -> bool {
-    let ahead = component.pose.position_m.normalize();
-    let covariance_m2 = component.block(0);
-    let across_m2 = covariance_m2.trace() - ahead.dot(&(covariance_m2 * ahead));
-    across_m2 < radius_m * radius_m
+    component.aside_m2(&component.pose.position_m.normalize()) < radius_m * radius_m
 }
 
 /// What it costs that a spot is a marker of `who`, for what it blinks.

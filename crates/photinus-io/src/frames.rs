@@ -39,8 +39,19 @@ pub struct Frame {
 pub struct Moved {
     /// How it turned since the frame before.
     pub turned: Option<Turned>,
-    /// How fast it moves over the ground.
+    /// How fast it moves over the ground: where cameras are followed together, the vehicle that carries them.
     pub moving: Option<Moving>,
+    /// Where it was followed together with other cameras of its vehicle.
+    pub together: Option<Together>,
+}
+
+/// What is known of a frame that is followed together with those of other cameras.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Together {
+    /// How many frames of all of them were taken in before it.
+    pub order: u64,
+    /// How it turned since the frame before in time, of any of them.
+    pub turned: Option<Turned>,
 }
 
 /// Frames of one source, in order.

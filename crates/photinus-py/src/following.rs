@@ -10,7 +10,7 @@ use photinus_io::calibration::MountingFile;
 use photinus_io::results::FrameRecord;
 use photinus_run::Entry;
 use photinus_run::course::Course;
-use photinus_run::watch::{self, Watch};
+use photinus_run::watch::{self, Looking, Watch};
 use pyo3::prelude::*;
 
 use crate::error::{self, ImageError};
@@ -58,8 +58,10 @@ impl Beside {
         settings: &Settings,
         mask: Option<&Mask>,
     ) -> PyResult<Watch> {
-        let beside = (self.fleets.as_slice(), self.course, self.exposure_us);
-        Watch::new(camera, kinds, settings, mask, beside).map_err(error::setting)
+        let Self { fleets, course, exposure_us } = self;
+        let (camera, mask) = (camera.clone(), mask.cloned());
+        let looking = Looking { camera, mask, mounting: None, course, exposure_us };
+        Watch::alone(looking, kinds, settings, &fleets).map_err(error::setting)
     }
 }
 
@@ -95,7 +97,7 @@ impl State {
         let mut entry = Entry::from_spots(record);
         entry.gravity = gravity;
         entry.record.put_located(located, airframes);
-        let Some(watch) = &mut self.watch else { return Ok((entry.record, Vec::new())) };
+        let Some(watch) = &self.watch else { return Ok((entry.record, Vec::new())) };
         watch.follow(&mut entry, located);
         Ok((entry.record, watch.remarks()))
     }

@@ -82,6 +82,16 @@ impl Course {
         Ok(Self::Told(told))
     }
 
+    /// The same of the middle of the vehicle, in the camera's axes.
+    pub(crate) fn of_middle(self) -> Self {
+        match self {
+            Self::Told(told) => Self::Told(Told { lever_m: Vector3::zeros(), ..told }),
+            Self::Live { motion, mounting } => {
+                Self::Live { motion, mounting: MountingFile { position_m: None, ..mounting } }
+            }
+        }
+    }
+
     /// How the camera turned between two times.
     pub(crate) fn turned(&self, from_s: f64, to_s: f64) -> Option<Turned> {
         tracking::turned(&self.rates(), from_s, to_s).or_else(|| turned_by(&self.attitudes(), from_s, to_s))

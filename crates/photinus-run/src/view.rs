@@ -112,7 +112,7 @@ impl Work for View {
         entry.gravity = self.gravity.or(entry.gravity).or_else(live);
         entry.sun = self.sun(entry);
         locate(entry, &mut self.locator, &self.airframes, clock)?;
-        if let Some(watch) = &mut self.watch {
+        if let Some(watch) = &self.watch {
             watch.follow(entry, self.locator.located());
             clock.lap("following");
         }
@@ -133,7 +133,7 @@ impl Work for View {
     }
 
     fn remarks(&mut self) -> Vec<String> {
-        self.watch.as_mut().map_or_else(Vec::new, Watch::remarks)
+        self.watch.as_ref().map_or_else(Vec::new, Watch::remarks)
     }
 }
 

@@ -1,20 +1,23 @@
 //! What frames with times allow: vehicles are followed from one to the next, and named where they blink.
 //!
-//! In: the dataset's book of words, its vehicles, and how the camera moved. Out: [`Watch`], which completes the record of each frame.
+//! In: the dataset's book of words, its vehicles, and how the cameras moved. Out: [`Watch`], which completes the record of each frame. Cameras on one vehicle
+//! share what is followed, whichever thread hands their frames in: one after the other, in whatever order they come.
 
 use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use nalgebra::{Unit, Vector3};
 use photinus::airframe::Airframe;
-use photinus::camera::Camera;
+use photinus::camera::{Camera, Mounted, Mounting, Rig};
 use photinus::frame::Mask;
 use photinus::identity::CodeBook;
 use photinus::locator::{Kind, Located, Settings};
 use photinus::lookout::{Fleet, FleetError, Glance, Lookout, LookoutError, Name, Vehicle};
-use photinus::tracking::{self, Placed};
+use photinus::tracking::{self, Placed, Tracker};
 use photinus_io::airframe::AirframeFile;
+use photinus_io::calibration::MountingFile;
 use photinus_io::dataset::{self, Dataset};
-use photinus_io::frames::Moved;
+use photinus_io::frames::{self, Moved};
 use photinus_io::{Error, Result};
 
 use crate::Entry;
@@ -106,75 +109,173 @@ fn is_built_like(one: &Airframe, other: &Airframe) -> bool {
     one.leds() == other.leds()
 }
 
-/// What follows the vehicles that one camera sees.
+/// A camera whose frames are followed, and what is known beside them.
+pub struct Looking {
+    /// The camera.
+    pub camera: Camera,
+    /// Where nobody looks in its image.
+    pub mask: Option<Mask>,
+    /// How it sits on its vehicle, where that is known.
+    pub mounting: Option<MountingFile>,
+    /// How it moves.
+    pub course: Course,
+    /// How long its frames are exposed, us, where somebody says it.
+    pub exposure_us: Option<f64>,
+}
+
+/// What follows the vehicles that a camera sees, or cameras together, as one of these cameras reaches it.
+#[derive(Clone)]
 pub struct Watch {
+    all: Arc<Mutex<Together>>,
+    camera: usize,
+}
+
+impl Watch {
+    /// For the frames of each of these cameras: those whose places on the vehicle are known are followed together, any other by itself.
+    ///
+    /// # Errors
+    /// [`LookoutError`] when a setting has no meaning.
+    pub fn of(
+        cameras: Vec<Looking>,
+        kinds: &[Kind],
+        settings: &Settings,
+        fleets: &[Option<Fleet>],
+    ) -> std::result::Result<Vec<Self>, LookoutError> {
+        let is_placed = |looking: &Looking| looking.mounting.is_some_and(|own| own.position_m.is_some());
+        let placed = cameras.iter().filter(|looking| is_placed(looking)).count();
+        let are_together = (2..=Rig::MOST).contains(&placed);
+        let watch = |together: Vec<Looking>| {
+            Together::new(together, kinds, settings, fleets).map(|all| Arc::new(Mutex::new(all)))
+        };
+        let (mut rig, mut places, mut watches) = (Vec::new(), Vec::new(), Vec::new());
+        for (place, looking) in cameras.into_iter().enumerate() {
+            if are_together && is_placed(&looking) {
+                rig.push(looking);
+                places.push(place);
+            } else {
+                watches.push((place, Self { all: watch(vec![looking])?, camera: 0 }));
+            }
+        }
+        if are_together {
+            let all = watch(rig)?;
+            let own = |(camera, place)| (place, Self { all: all.clone(), camera });
+            watches.extend(places.into_iter().enumerate().map(own));
+        }
+        watches.sort_by_key(|watch| watch.0);
+        Ok(watches.into_iter().map(|(_, watch)| watch).collect())
+    }
+
+    /// For the frames of one camera.
+    ///
+    /// # Errors
+    /// As [`Self::of`].
+    pub fn alone(
+        looking: Looking,
+        kinds: &[Kind],
+        settings: &Settings,
+        fleets: &[Option<Fleet>],
+    ) -> std::result::Result<Self, LookoutError> {
+        let all = Together::new(vec![looking], kinds, settings, fleets)?;
+        Ok(Self { all: Arc::new(Mutex::new(all)), camera: 0 })
+    }
+
+    /// Down in the camera frame in the middle of a frame's exposure, where the vehicle says so.
+    pub fn down(&self, entry: &Entry) -> Option<Unit<Vector3<f64>>> {
+        let time_s = entry.record.time_s?;
+        let own = &self.all().cameras[self.camera];
+        let exposure_s = entry.exposure_s.unwrap_or(own.exposure_s);
+        own.course.down(time_s + 0.5 * exposure_s)
+    }
+
+    /// Completes the record of a frame that was located, if it has a time that comes after the one before.
+    pub fn follow(&self, entry: &mut Entry, located: &Located) {
+        self.all().follow(self.camera, entry, located);
+    }
+
+    /// What a user should know, since it was asked for last.
+    pub fn remarks(&self) -> Vec<String> {
+        std::mem::take(&mut self.all().remarks)
+    }
+
+    fn all(&self) -> MutexGuard<'_, Together> {
+        // A frame on which the method panics is an error of that frame; the next ones are followed all the same.
+        self.all.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// What follows the vehicles that cameras see together.
+struct Together {
+    cameras: Vec<Own>,
     /// By kind.
     lookouts: Vec<(Lookout, bool)>,
     airframes: Vec<String>,
     disputes: Disputes,
-    exposure_s: f64,
-    course: Course,
-    last_s: Option<f64>,
+    /// How many frames were taken in, and the times of the last ones, ascending.
+    order: u64,
+    taken_s: Vec<f64>,
     /// Said once of each kind.
     told: Vec<&'static str>,
     contested: Vec<u32>,
     remarks: Vec<String>,
 }
 
-impl Watch {
-    /// For frames of a camera that are exposed so long.
-    ///
-    /// # Errors
-    /// [`LookoutError`] when a setting has no meaning.
-    pub fn new(
-        camera: &Camera,
+/// What is known of one of the cameras.
+struct Own {
+    course: Course,
+    exposure_s: f64,
+    last_s: Option<f64>,
+}
+
+impl Together {
+    fn new(
+        cameras: Vec<Looking>,
         kinds: &[Kind],
         settings: &Settings,
-        mask: Option<&Mask>,
-        (fleets, course, exposure_us): (&[Option<Fleet>], Course, Option<f64>),
+        fleets: &[Option<Fleet>],
     ) -> std::result::Result<Self, LookoutError> {
+        let is_rig = cameras.len() > 1;
+        let mounted = |looking: &Looking| Mounted {
+            camera: looking.camera.clone(),
+            mask: looking.mask.clone(),
+            mounting: looking.mounting.filter(|_| is_rig).map(Mounting::from).unwrap_or_default(),
+        };
+        let rig = Rig::new(cameras.iter().map(mounted).collect())?;
         let lookout = |(number, (kind, fleet)): (usize, (&Kind, &Option<Fleet>))| {
             let followed = tracking::Settings { kind: number, ..Default::default() };
             let settings = Settings { pose: kind.believed(&settings.pose), ..*settings };
-            let mut lookout =
-                Lookout::new(camera.clone(), &kind.airframe, &settings, followed, fleet.as_ref())?;
-            lookout.set_mask(mask.cloned())?;
+            let lookout = Lookout::new(rig.clone(), &kind.airframe, &settings, followed, fleet.as_ref())?;
             Ok((lookout, fleet.is_some()))
         };
-        Ok(Self {
-            lookouts: kinds
-                .iter()
-                .zip(fleets)
-                .enumerate()
-                .map(lookout)
-                .collect::<std::result::Result<_, LookoutError>>()?,
-            disputes: Disputes::default(),
-            airframes: kinds.iter().map(|kind| kind.airframe.name().to_owned()).collect(),
-            exposure_s: exposure_us.map_or(EXPOSURE_S, |us| us * 1e-6),
-            course,
+        let lookouts = kinds.iter().zip(fleets).enumerate().map(lookout);
+        let lookouts = lookouts.collect::<std::result::Result<_, LookoutError>>()?;
+        let own = |looking: Looking| Own {
+            // The tracker of a rig swings its cameras about the vehicle itself.
+            course: if is_rig { looking.course.of_middle() } else { looking.course },
+            exposure_s: looking.exposure_us.map_or(EXPOSURE_S, |us| us * 1e-6),
             last_s: None,
+        };
+        Ok(Self {
+            cameras: cameras.into_iter().map(own).collect(),
+            lookouts,
+            airframes: kinds.iter().map(|kind| kind.airframe.name().to_owned()).collect(),
+            disputes: Disputes::default(),
+            order: 0,
+            taken_s: Vec::new(),
             told: Vec::new(),
             contested: Vec::new(),
             remarks: Vec::new(),
         })
     }
 
-    /// Down in the camera frame in the middle of a frame's exposure, where the vehicle says so.
-    pub fn down(&self, entry: &Entry) -> Option<Unit<Vector3<f64>>> {
-        let exposure_s = entry.exposure_s.unwrap_or(self.exposure_s);
-        self.course.down(entry.record.time_s? + 0.5 * exposure_s)
-    }
-
-    /// Completes the record of a frame that was located, if it has a time that comes after the one before.
-    pub fn follow(&mut self, entry: &mut Entry, located: &Located) {
+    fn follow(&mut self, camera: usize, entry: &mut Entry, located: &Located) {
         let Some(time_s) = entry.record.time_s else { return };
-        // What a recording of a run says goes before: it was told then.
-        let Moved { turned, moving } = &mut entry.moved;
-        *turned = turned.or_else(|| self.course.turned(self.last_s?, time_s));
-        *moving = moving.or_else(|| self.course.moving(time_s));
-        let (turned, moving) = (*turned, *moving);
-        let exposure_s = entry.exposure_s.unwrap_or(self.exposure_s);
-        let glance = Glance { time_s, exposure_s, turned, moving, gravity: entry.gravity, located };
+        self.complete(camera, entry, time_s);
+        let Moved { turned, moving, together } = entry.moved;
+        let turned_since_any = together.and_then(|together| together.turned);
+        let exposure_s = entry.exposure_s.unwrap_or(self.cameras[camera].exposure_s);
+        let gravity = entry.gravity;
+        let glance =
+            Glance { camera, time_s, exposure_s, turned, turned_since_any, moving, gravity, located };
         let frame = entry.record.frame.unwrap_or_default();
         let mut placed = Placed::Newest;
         for kind in 0..self.lookouts.len() {
@@ -189,9 +290,7 @@ impl Watch {
         }
         self.disputes.settle(&mut entry.record.tracks);
         entry.record.name_neighbours();
-        if placed != Placed::Late {
-            self.last_s = Some(time_s);
-        }
+        self.took(camera, time_s, placed);
         if placed == Placed::Reset {
             self.remark("reset", || {
                 format!("frame {frame}: its time is of another clock, all tracks begin anew")
@@ -200,9 +299,42 @@ impl Watch {
         self.tell_contested(frame);
     }
 
-    /// What a user should know, since it was asked for last.
-    pub fn remarks(&mut self) -> Vec<String> {
-        std::mem::take(&mut self.remarks)
+    /// Adds how the camera moved. What a recording of a run says goes before: it was told then.
+    fn complete(&mut self, camera: usize, entry: &mut Entry, time_s: f64) {
+        let own = &self.cameras[camera];
+        let Moved { turned, moving, together } = &mut entry.moved;
+        *turned = turned.or_else(|| own.course.turned(own.last_s?, time_s));
+        *moving = moving.or_else(|| own.course.moving(time_s));
+        if self.cameras.len() == 1 {
+            *together = None;
+            return;
+        }
+        // After a frame that a recording lost, its turns are since another frame than the one that is known.
+        let recorded = together.filter(|recorded| recorded.order == self.order);
+        self.order = together.map_or(self.order, |recorded| recorded.order);
+        let place = self.taken_s.partition_point(|taken_s| *taken_s <= time_s);
+        let before_s = place.checked_sub(1).map(|before| self.taken_s[before]);
+        let turned = match recorded {
+            Some(recorded) => recorded.turned,
+            None => before_s.and_then(|before_s| own.course.turned(before_s, time_s)),
+        };
+        *together = Some(frames::Together { order: self.order, turned });
+    }
+
+    /// Remembers when frames were taken that others may come before or after.
+    fn took(&mut self, camera: usize, time_s: f64, placed: Placed) {
+        if placed == Placed::Reset {
+            self.taken_s.clear();
+            self.cameras.iter_mut().for_each(|own| own.last_s = None);
+        }
+        let last_s = &mut self.cameras[camera].last_s;
+        *last_s = Some(last_s.map_or(time_s, |last_s| last_s.max(time_s)));
+        self.order += 1;
+        self.taken_s.insert(self.taken_s.partition_point(|taken_s| *taken_s <= time_s), time_s);
+        let oldest_s = self.taken_s.last().map_or(time_s, |newest_s| newest_s - 2.0 * Tracker::MOST_LATE_S);
+        // One before all that may still come.
+        let old = self.taken_s.partition_point(|taken_s| *taken_s < oldest_s).saturating_sub(1);
+        self.taken_s.drain(..old);
     }
 
     fn remark(&mut self, kind: &'static str, text: impl FnOnce() -> String) {

@@ -19,7 +19,7 @@ use photinus_io::sky::Sky;
 use photinus_link::recording::Motions;
 use photinus_run::View;
 use photinus_run::course::{Course, Told, lever_m};
-use photinus_run::watch::{self, Watch};
+use photinus_run::watch::{self, Looking, Watch};
 
 use crate::beforehand::{self, Conditions};
 use crate::failure::Failure;
@@ -199,19 +199,25 @@ impl Args {
                 .level(self.gravity)
                 .under(self.sky.or_else(|| input.dataset.as_ref()?.sky()));
             if self.no_time {
-                return Ok(view);
+                return Ok((view, None));
             }
             let is_rig = of_dataset.is_some_and(|camera| camera.name.is_some());
             let course = match dataset {
                 Some(dataset) => Course::of(dataset, is_rig, mounting.as_ref()).map_err(Failure::input)?,
                 None => recorded(input, mounting.as_ref(), terminal).map_err(Failure::input)?,
             };
-            let beside = (fleets.as_slice(), course, of_dataset.map(|camera| camera.exposure_us));
-            let watch = Watch::new(&camera, kinds, &self.settings(), mask, beside)
-                .map_err(|error| Failure::Input(error.to_string()))?;
-            Ok(view.following(watch))
+            let (mask, exposure_us) = (mask.cloned(), of_dataset.map(|camera| camera.exposure_us));
+            Ok((view, Some(Looking { camera, mask, mounting, course, exposure_us })))
         };
-        cameras.into_iter().zip(masks).map(view).collect()
+        let views = cameras.into_iter().zip(masks).map(view).collect::<std::result::Result<Vec<_>, _>>()?;
+        let (views, looking): (Vec<_>, Vec<_>) = views.into_iter().unzip();
+        let looking: Vec<Looking> = looking.into_iter().flatten().collect();
+        if looking.is_empty() {
+            return Ok(views);
+        }
+        let watches = Watch::of(looking, kinds, &self.settings(), &fleets)
+            .map_err(|error| Failure::Input(error.to_string()))?;
+        Ok(views.into_iter().zip(watches).map(|(view, watch)| view.following(watch)).collect())
     }
 
     fn spot_curve(

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
+use photinus::camera::Mounting;
 use serde::{Deserialize, Serialize};
 
 use crate::kind::Kind;
@@ -19,6 +20,18 @@ pub struct MountingFile {
     pub position_m: Option<Vector3<f64>>,
     /// Covariance of that position, m^2, where it is known.
     pub position_covariance_m2: Option<Matrix3<f64>>,
+}
+
+impl From<MountingFile> for Mounting {
+    /// A place that nobody measured is the body's origin.
+    fn from(file: MountingFile) -> Self {
+        Self {
+            body_from_camera: file.body_from_camera.to_rotation_matrix(),
+            rotation_covariance_rad2: file.rotation_covariance_rad2,
+            position_m: file.position_m.unwrap_or_default(),
+            position_covariance_m2: file.position_covariance_m2.unwrap_or_default(),
+        }
+    }
 }
 
 #[derive(Serialize, Deserialize)]

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 use photinus::tracking::{Moving, Turned};
-use photinus_io::frames::{Frame, Moved};
+use photinus_io::frames::{Frame, Moved, Together};
 use photinus_io::image::{GreyImage, decode_image};
 use photinus_io::{Error, Place, Result};
 use serde::Deserialize;
@@ -163,14 +163,16 @@ fn image(bytes: &[u8], path: &Path) -> Result<(ros::Header, GreyImage)> {
     Ok((message.header, file.image))
 }
 
-/// What is known of a frame, also as it stood in recordings before motions were kept.
+/// What is known of a frame, also as it stood in recordings of before motions were kept, and of before cameras were followed together.
 fn known_of(bytes: &[u8]) -> std::result::Result<ros::Frame, CdrError> {
-    cdr::decode(bytes).or_else(|error| cdr::decode(bytes).map(WithoutMotion::whole).map_err(|_| error))
+    cdr::decode(bytes)
+        .or_else(|error| cdr::decode(bytes).map(WithMotion::whole).map_err(|_| error))
+        .or_else(|error| cdr::decode(bytes).map(Beside::whole).map_err(|_| error))
 }
 
 /// photinus_msgs/Frame without motions.
 #[derive(Deserialize)]
-struct WithoutMotion {
+struct Beside {
     header: ros::Header,
     camera: String,
     frame: u64,
@@ -180,34 +182,48 @@ struct WithoutMotion {
     gravity: Vec<f64>,
 }
 
-impl WithoutMotion {
+/// photinus_msgs/Frame of a camera that is followed by itself.
+#[derive(Deserialize)]
+struct WithMotion {
+    beside: Beside,
+    turned: Vec<f64>,
+    moving: Vec<f64>,
+}
+
+impl Beside {
     fn whole(self) -> ros::Frame {
         let Self { header, camera, frame, time, exposure, source, gravity } = self;
-        let (turned, moving) = (Vec::new(), Vec::new());
-        ros::Frame { header, camera, frame, time, exposure, source, gravity, turned, moving }
+        ros::Frame { header, camera, frame, time, exposure, source, gravity, ..ros::Frame::default() }
+    }
+}
+
+impl WithMotion {
+    fn whole(self) -> ros::Frame {
+        ros::Frame { turned: self.turned, moving: self.moving, ..self.beside.whole() }
     }
 }
 
 /// How the camera moved, to the bit.
 fn moved(known: &ros::Frame) -> Moved {
-    let turned = match *known.turned {
-        [a, b, c, d, e, f, g, h, i, sigma_rad] => {
-            let matrix = Matrix3::new(a, b, c, d, e, f, g, h, i);
-            let is_rotation = (matrix * matrix.transpose() - Matrix3::identity()).norm() < 1e-6;
-            let now_from_before = Rotation3::from_matrix_unchecked(matrix);
-            is_rotation.then_some(Turned { now_from_before, sigma_rad })
-        }
-        _ => None,
-    };
+    let is_sigma = |sigma: f64| sigma.is_finite() && sigma >= 0.0;
     let moving = match *known.moving {
         [x, y, z, sigma_m_s] => Some(Moving { velocity_m_s: Vector3::new(x, y, z), sigma_m_s }),
         _ => None,
     };
-    let is_sigma = |sigma: f64| sigma.is_finite() && sigma >= 0.0;
+    let together = |&order: &u64| Together { order, turned: turned(&known.turned_since_any) };
     Moved {
-        turned: turned.filter(|turned| is_sigma(turned.sigma_rad)),
+        turned: turned(&known.turned),
         moving: moving.filter(|own| is_sigma(own.sigma_m_s) && own.velocity_m_s.norm().is_finite()),
+        together: known.order.first().map(together),
     }
+}
+
+fn turned(numbers: &[f64]) -> Option<Turned> {
+    let [a, b, c, d, e, f, g, h, i, sigma_rad] = *numbers else { return None };
+    let matrix = Matrix3::new(a, b, c, d, e, f, g, h, i);
+    let is_rotation = (matrix * matrix.transpose() - Matrix3::identity()).norm() < 1e-6;
+    let is_known = is_rotation && sigma_rad.is_finite() && sigma_rad >= 0.0;
+    is_known.then_some(Turned { now_from_before: Rotation3::from_matrix_unchecked(matrix), sigma_rad })
 }
 
 fn down(gravity: &[f64]) -> Option<Unit<Vector3<f64>>> {
@@ -227,9 +243,10 @@ mod tests {
             let frame =
                 ros::Frame { frame: 7, time: 0.5, source: "a".to_owned(), gravity, ..ros::Frame::default() };
             let now = cdr::encode(&frame).unwrap();
-            // Two lists without an entry are their two lengths.
-            let before = &now[..now.len() - 8];
+            // Lists without an entry are their lengths.
+            let [before, with_motion] = [16, 8].map(|lists| &now[..now.len() - lists]);
             assert_eq!(known_of(before).unwrap(), frame);
+            assert_eq!(known_of(with_motion).unwrap(), frame);
             assert_eq!(known_of(&now).unwrap(), frame);
             assert!(known_of(&before[..before.len() - 5]).is_err());
             assert_eq!(moved(&frame), Moved::default());

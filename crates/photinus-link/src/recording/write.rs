@@ -107,6 +107,7 @@ impl Recorder {
         let record = frame.record;
         let header = view.header(record.time_s);
         let at = (header.stamp.nanoseconds(), arrived_ns);
+        let together = frame.moved.together;
         let known = ros::Frame {
             header: header.clone(),
             camera: view.camera.clone(),
@@ -117,6 +118,8 @@ impl Recorder {
             gravity: frame.gravity.map(|down| down.as_slice().to_vec()).unwrap_or_default(),
             turned: frame.moved.turned.as_ref().map(turned).unwrap_or_default(),
             moving: frame.moved.moving.as_ref().map(moving).unwrap_or_default(),
+            order: together.iter().map(|own| own.order).collect(),
+            turned_since_any: together.and_then(|own| own.turned).as_ref().map(turned).unwrap_or_default(),
         };
         self.put(&topics::of_camera(&view.camera, "frame"), &known, at)?;
         match &frame.image {

@@ -62,4 +62,6 @@ pub struct Frame {
     pub gravity: Vec<f64>,
     pub turned: Vec<f64>,
     pub moving: Vec<f64>,
+    pub order: Vec<u64>,
+    pub turned_since_any: Vec<f64>,
 }

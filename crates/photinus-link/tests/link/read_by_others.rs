@@ -119,6 +119,8 @@ fn every_field_of_every_message_is_read_by_others() {
         gravity: vec![],
         turned: vec![],
         moving: vec![],
+        order: vec![],
+        turned_since_any: vec![],
     };
     let mut line = Vec::new();
     photinus_io::results::ResultsWriter::new(&mut line, "t").write(&record).expect("it is written");

@@ -2,7 +2,7 @@
 
 use nalgebra::{Rotation3, Unit, Vector3};
 use photinus::tracking::{Moving, Turned};
-use photinus_io::frames::{Frame, Moved};
+use photinus_io::frames::{Frame, Moved, Together};
 use photinus_io::image::GreyImage;
 use photinus_io::results::FrameRecord;
 use photinus_link::messages::Viewpoint;
@@ -73,7 +73,12 @@ fn moved(index: usize, by: &[f64; 3]) -> Moved {
     let vector = Vector3::from(*by);
     let turned = Turned { now_from_before: Rotation3::new(vector), sigma_rad: 1e-3 * by[0].abs() };
     let moving = Moving { velocity_m_s: vector / 3.0, sigma_m_s: 0.1 };
-    Moved { turned: (index != 1).then_some(turned), moving: (!index.is_multiple_of(3)).then_some(moving) }
+    let together = Together { order: index as u64, turned: (index != 2).then_some(turned) };
+    Moved {
+        turned: (index != 1).then_some(turned),
+        moving: (!index.is_multiple_of(3)).then_some(moving),
+        together: (!index.is_multiple_of(2)).then_some(together),
+    }
 }
 
 fn frame(index: u64) -> Frame {

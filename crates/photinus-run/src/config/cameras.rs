@@ -23,7 +23,7 @@ use crate::exposure::Exposure;
 use crate::live::{Camera, Pace};
 use crate::motion::Motion;
 use crate::source::{Carrier, Opener, Recorded, Source, Stream, StreamFormat, Takeoff, Times};
-use crate::watch::{self, Watch};
+use crate::watch::{self, Looking, Watch};
 use crate::{HostClock, View};
 
 /// The exposure of frames of which nobody says it, us.
@@ -150,9 +150,21 @@ impl Config {
             .map(|row| row.time_s);
         // All recordings begin together, in the order of their own times.
         let start_s = start_s.reduce(f64::min).unwrap_or(0.0);
-        let camera =
-            |camera| self.camera(camera, (&kinds, &fleets), (motion, linked), (&begun, start_s), note);
-        named.iter().map(camera).collect()
+        let camera = |camera| self.camera(camera, &kinds, (motion, linked), (&begun, start_s), note);
+        let cameras = named.iter().map(camera).collect::<Result<Vec<_>>>()?;
+        if !self.keys.locate.time.unwrap_or(true) {
+            return Ok(cameras.into_iter().map(|(camera, _)| camera).collect());
+        }
+        let (cameras, looking): (Vec<_>, Vec<_>) = cameras.into_iter().unzip();
+        let watches = Watch::of(looking, &kinds, &self.keys.locate.settings(), &fleets)
+            .map_err(|error| self.refuse_settings(error.to_string()))?;
+        let following =
+            |(camera, watch): (Camera, Watch)| Camera { view: camera.view.following(watch), ..camera };
+        Ok(cameras.into_iter().zip(watches).map(following).collect())
+    }
+
+    fn refuse_settings(&self, error: String) -> Error {
+        Error::format(&self.path, error).at(Place::Key("locate".to_owned()))
     }
 
     fn named<'a>(&self, number: usize, keys: &'a CameraKeys) -> Result<Named<'a>> {
@@ -215,11 +227,11 @@ impl Config {
     fn camera(
         &self,
         named: &Named<'_>,
-        (kinds, fleets): (&[Kind], &[Option<Fleet>]),
+        kinds: &[Kind],
         (motion, linked): (&Motion, Linked<'_>),
         ((clock, takeoff), start_s): (&(HostClock, Takeoff), f64),
         note: &mut dyn FnMut(String),
-    ) -> Result<Camera> {
+    ) -> Result<(Camera, Looking)> {
         let keys = named.keys;
         let path =
             named.file(self, keys.camera.as_ref(), |camera| Some(&camera.camera)).ok_or_else(|| {
@@ -255,27 +267,20 @@ impl Config {
             None => None,
         };
         let settings = self.keys.locate.settings();
-        let refuse = |error: String| Error::format(&self.path, error).at(Place::Key("locate".to_owned()));
-        let mut view = View::new(camera.clone(), kinds, curve, settings, mask.as_ref())
-            .map_err(|error| refuse(error.to_string()))?
+        let view = View::new(camera.clone(), kinds, curve, settings, mask.as_ref())
+            .map_err(|error| self.refuse_settings(error.to_string()))?
             .mounted(mounting)
             .level(self.gravity()?)
             .under(self.sky()?.or_else(|| named.of_dataset()?.0.sky()));
         let exposure_us =
             keys.exposure_us.or_else(|| named.of_dataset().map(|(_, camera)| camera.exposure_us));
-        if self.keys.locate.time.unwrap_or(true) {
-            let course = match named.of_dataset() {
-                Some((dataset, camera)) => Course::of(dataset, camera.name.is_some(), mounting.as_ref())?,
-                None => mounting.map_or_else(Course::default, |mounting| Course::Live {
-                    motion: motion.clone(),
-                    mounting,
-                }),
-            };
-            let beside = (fleets, course, exposure_us);
-            let watch = Watch::new(&camera, kinds, &settings, mask.as_ref(), beside)
-                .map_err(|error| refuse(error.to_string()))?;
-            view = view.following(watch);
-        }
+        let course = match named.of_dataset() {
+            Some((dataset, camera)) => Course::of(dataset, camera.name.is_some(), mounting.as_ref())?,
+            None => mounting.map_or_else(Course::default, |mounting| Course::Live {
+                motion: motion.clone(),
+                mounting,
+            }),
+        };
         let source = match (&keys.source.v4l2, self.origin(keys, takeoff)) {
             (Some(path), _) => self.v4l2(named, path, [camera.width(), camera.height()], *clock)?,
             (_, Some(origin)) => linked(origin.clone(), keys.source.spots)
@@ -287,7 +292,8 @@ impl Config {
             _ => self.opener(named, exposure_us, (*clock, takeoff.clone(), start_s)),
         };
         let exposure = self.wanted_exposure().map(Exposure::new);
-        Ok(Camera { name: keys.name.clone(), source, view, exposure })
+        let looking = Looking { camera, mask, mounting, course, exposure_us };
+        Ok((Camera { name: keys.name.clone(), source, view, exposure }, looking))
     }
 
     /// Where its frames come from, where others open it.

@@ -9,7 +9,7 @@ use super::lane::Lane;
 use crate::Entry;
 use crate::source::{Next, Source};
 
-/// Frames of several sources, the earliest first; of the same time, in the order of the sources.
+/// Frames of several sources, the earliest first; of the same time, in the order of the sources. Those that a run followed together come as it took them in.
 pub(super) struct Merged {
     sources: Vec<Box<dyn Source>>,
     lanes: Vec<Arc<Lane>>,
@@ -41,7 +41,10 @@ impl Iterator for Merged {
         };
         let there =
             self.heads.iter().enumerate().filter_map(|(number, head)| Some((number, time_s(head.as_ref()?))));
-        let (number, _) = there.min_by(|a, b| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0)))?;
+        let (earliest, _) = there.min_by(|a, b| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0)))?;
+        let order = |number: usize| self.heads[number].as_ref()?.as_ref().ok()?.moved.together;
+        let of_run = (0..self.heads.len()).filter_map(|number| Some((order(number)?.order, number))).min();
+        let number = order(earliest).and(of_run).map_or(earliest, |(_, number)| number);
         // The frame that is given now was exposed before this was wished for.
         if let Some(exposure_us) = self.lanes[number].slot.take_wish() {
             let _ = self.sources[number].expose(exposure_us);

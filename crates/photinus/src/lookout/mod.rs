@@ -42,7 +42,7 @@ use alloc::vec::Vec;
 use nalgebra::{Unit, Vector3};
 
 use crate::airframe::Airframe;
-use crate::camera::{Mounted, Rig, Watched};
+use crate::camera::{Mounted, Rig, RigError, Watched};
 use crate::following::{self, Follower, Frame, MarkerTrack};
 use crate::frame::Mask;
 use crate::identity::decoder::{self, Decoder, DecoderError};
@@ -151,6 +151,9 @@ struct Before<'a> {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum LookoutError {
+    /// The cameras are no rig.
+    #[error("{0}")]
+    Rig(#[from] RigError),
     /// The tracker's settings.
     #[error("{0}")]
     Tracker(#[from] TrackerError),

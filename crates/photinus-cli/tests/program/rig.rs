@@ -104,11 +104,37 @@ fn every_line_says_its_camera_and_places_in_the_body_frame() {
     assert!(stage.read("t.csv").lines().nth(2).unwrap().contains(",back,-2."));
 }
 
+/// Each camera sees its own vehicle, ahead of it, and none behind.
+#[test]
+fn cameras_share_their_tracks() {
+    let stage = stage("rig-tracks");
+    assert_eq!(stage.run("locate rig -q --out r.jsonl").code, 0);
+    let records = lines(&stage.read("r.jsonl"));
+    let tracks = |record: &Value| -> Vec<(u64, bool, Vec<f64>)> {
+        let track = |track: &Value| {
+            let seen = !track["spots"].as_array().unwrap().is_empty();
+            (track["track"].as_u64().unwrap(), seen, numbers(&track["position_body_m"]))
+        };
+        record["tracks"].as_array().unwrap().iter().map(track).collect()
+    };
+    let (front, back) = (tracks(&records[4]), tracks(&records[5]));
+    let numbers = |tracks: &[(u64, bool, Vec<f64>)]| tracks.iter().map(|track| track.0).collect::<Vec<_>>();
+    assert_eq!((numbers(&front), numbers(&back)), (vec![0, 1], vec![0, 1]));
+    for (place, (ahead, behind)) in front.iter().zip(&back).enumerate() {
+        assert_eq!((ahead.1, behind.1), (place == 0, place == 1), "one camera sees it, the other does not");
+        let apart_m = (ahead.2[0] - behind.2[0]).abs() + (ahead.2[1] - behind.2[1]).abs();
+        assert!(apart_m < 0.05 && (ahead.2[0] > 0.0) == (place == 0), "{ahead:?} {behind:?}");
+    }
+    assert_eq!(records[4]["tracks"][0]["predicted"], false);
+    assert_eq!(records[5]["tracks"][0]["predicted"], false, "who is behind this camera does not coast");
+}
+
 #[test]
 fn one_camera_of_several_can_be_chosen() {
     let stage = stage("rig-only");
-    assert_eq!(stage.run("locate rig -q --out all.jsonl").code, 0);
-    assert_eq!(stage.run("locate rig -q --only back --out back.jsonl").code, 0);
+    // What is followed is followed by all cameras together.
+    assert_eq!(stage.run("locate rig -q --no-time --out all.jsonl").code, 0);
+    assert_eq!(stage.run("locate rig -q --no-time --only back --out back.jsonl").code, 0);
     let of_back: String = stage
         .read("all.jsonl")
         .lines()

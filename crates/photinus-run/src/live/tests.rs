@@ -7,7 +7,7 @@ use photinus::airframe::{Airframe, Ring};
 use photinus::camera::{Ideal, IdealLaw, Model, Pixel};
 use photinus::locator::{Kind, Settings};
 use photinus_io::Error;
-use photinus_io::frames::{Frame, Moved};
+use photinus_io::frames::{Frame, Moved, Together};
 use photinus_io::image::GreyImage;
 
 use super::slot::Slot;
@@ -222,6 +222,36 @@ fn fast_drops_nothing_and_takes_all_cameras_in_the_order_of_time() {
         (0..200).flat_map(|index| [("b".to_owned(), index), ("a".to_owned(), index)]).collect();
     assert_eq!(*given.lock().unwrap(), expected);
     assert!(report.health.cameras.iter().all(|camera| camera.dropped == 0 && camera.frames == 200));
+}
+
+/// Frames whose times and places in a run are given.
+struct Taken(VecDeque<(f64, u64)>);
+
+impl Source for Taken {
+    fn next(&mut self) -> Next {
+        let Some((time_s, order)) = self.0.pop_front() else { return Next::End };
+        let mut entry = frame(order, time_s);
+        entry.moved.together = Some(Together { order, turned: None });
+        Next::Frame(entry)
+    }
+}
+
+#[test]
+fn frames_that_a_run_followed_together_come_as_it_took_them_in() {
+    let taken = |name: &str, frames: &[(f64, u64)]| {
+        let frames: VecDeque<(f64, u64)> = frames.iter().copied().collect();
+        Camera { source: Box::new(move || Ok(Box::new(Taken(frames.clone())))), ..camera(name, []) }
+    };
+    let given = Given::default();
+    let cameras = vec![
+        taken("a", &[(0.00, 0), (0.05, 3), (0.10, 4)]),
+        taken("b", &[(0.02, 2), (0.07, 5)]),
+        taken("c", &[(0.01, 1), (0.06, 6)]),
+    ];
+    let sink = Good(given.clone(), Arc::default());
+    run(cameras, vec![Box::new(sink)], Pace::Fast, until_the_end(), &mut |_| ()).unwrap();
+    let orders: Vec<u64> = given.lock().unwrap().iter().map(|(_, number)| *number).collect();
+    assert_eq!(orders, [0, 1, 2, 3, 4, 5, 6]);
 }
 
 #[test]

@@ -9,7 +9,7 @@ pub struct Interval {
 
 impl Interval {
     /// Any distance.
-    pub(crate) const ANY: Self = Self { min_m: 0.0, max_m: f64::INFINITY };
+    pub const ANY: Self = Self { min_m: 0.0, max_m: f64::INFINITY };
 
     /// The distances from `min_m` to `max_m`; `None` unless 0 <= min <= max and min is finite.
     pub fn new(min_m: f64, max_m: f64) -> Option<Self> {

@@ -1,13 +1,13 @@
-//! One camera: world -> frame -> tracks in the body frame.
+//! One camera: world -> frame -> what is located in it; and what it tells of who is followed, in the body frame.
 
 use std::sync::Arc;
 
-use nalgebra::{Isometry3, Rotation3, Unit, Vector3};
+use nalgebra::{Isometry3, Unit, Vector3};
 use photinus::camera::Bearing;
 use photinus::locator::{self, Distance, Input, Located, Locator, Neighbour};
-use photinus::lookout::{Fleet, Glance, Lookout};
+use photinus::lookout::{Glance, Lookout};
 use photinus::ranging::{Estimate, Interval};
-use photinus::tracking::{self, Track, Tracked, Turned};
+use photinus::tracking::{Track, Tracked, Turned};
 use photinus_control::{Normal, Seen};
 use photinus_sim::background::Daylight;
 use photinus_sim::snapshot::{LedLight, Lit, Snapshot, Vehicle};
@@ -18,12 +18,6 @@ use super::EyesError;
 use crate::perception::{Looking, Moment, Present};
 use crate::scenario::Scenario;
 
-/// A name is taken for right from this probability on.
-const SURE_NAME: f64 = 0.9;
-/// By how much neighbours tilt more than their autopilots ask for: overshoot, and the error of the own tilt.
-const TILT_MARGIN_RAD: f64 = 0.15;
-/// Gyros are never trusted beyond this, rad/s.
-const LEAST_TURN_RAD_S: f64 = 1e-3;
 /// Nobody is drawn from farther, m: an LED there leaves less than an electron.
 const FARTHEST_M: f64 = 100.0;
 
@@ -34,27 +28,50 @@ pub(super) struct Eye {
     body_from_camera: Isometry3<f64>,
     renderer: Renderer,
     locator: Locator,
-    lookout: Lookout,
     emitter: Emitter,
     daylight: Option<Daylight>,
     airframe_reach_m: f64,
-    /// How far what the gyro tells of a turn from frame to frame may be off, per axis, rad.
-    turn_sigma_rad: f64,
-    followed: Vec<Followed>,
 }
 
-/// What the last frame told that showed a track.
+/// What the last frame told that showed a track: from the body's origin.
 #[derive(Clone, Copy, Debug)]
-struct Followed {
-    track: u64,
-    time_s: f64,
+pub(super) struct Shown {
+    pub(super) track: u64,
+    pub(super) time_s: f64,
     distance: Distance,
     bearing_bound_rad: f64,
     spot_px: Option<f64>,
 }
 
+impl Shown {
+    /// What a neighbour of a frame says of its track. The camera sits `away_m` from the body's origin: bounds from there are wider by that.
+    fn by(
+        neighbour: &Neighbour,
+        (track, time_s): (u64, f64),
+        located: &Located,
+        [away_m, reach_m]: [f64; 2],
+    ) -> Self {
+        let bounds = neighbour.distance.bounds;
+        let lever = (away_m / bounds.min_m().max(away_m)).min(1.0);
+        let bound_rad = bearing_bound_rad(neighbour, located, reach_m) + libm::asin(lever);
+        let wider = Interval::new((bounds.min_m() - away_m).max(0.0), bounds.max_m() + away_m);
+        Self {
+            track,
+            time_s,
+            distance: Distance { bounds: wider.unwrap_or(Interval::ANY), ..neighbour.distance },
+            bearing_bound_rad: bound_rad.min(core::f64::consts::PI),
+            spot_px: largest_spot_px(neighbour, located),
+        }
+    }
+}
+
 impl Eye {
-    pub(super) fn new(scenario: &Scenario, index: usize, camera: usize) -> Result<Self, EyesError> {
+    pub(super) fn new(
+        scenario: &Scenario,
+        index: usize,
+        camera: usize,
+        settings: &locator::Settings,
+    ) -> Result<Self, EyesError> {
         let vehicle = &scenario.vehicles[index];
         let mounted = &vehicle.kind.cameras[camera];
         let preset = &scenario.preset;
@@ -65,123 +82,90 @@ impl Eye {
         };
         let unit = ((index as u64) << 8) | camera as u64;
         let renderer = Renderer::new(view, scenario.seed ^ unit.wrapping_mul(0x9e37_79b9_7f4a_7c15));
-        let tilts = scenario.vehicles.iter().map(|vehicle| vehicle.kind.build.tilt_rad);
-        let max_tilt_rad = tilts.fold(0.0, f64::max) + TILT_MARGIN_RAD;
-        let mut settings = locator::Settings { max_tilt_rad, ..locator::Settings::default() };
-        // half of the largest tilt is as likely as not to be passed in a turn
-        settings.pose.tilt_sigma_rad = settings.pose.tilt_sigma_rad.max(0.3 * max_tilt_rad);
         let expects = &vehicle.kind.expects;
-        let fleet = scenario.codes.as_ref().map(|codes| {
-            let word = |other: &crate::scenario::Vehicle| photinus::lookout::Vehicle {
-                id: other.id,
-                words: vec![other.id as usize],
-            };
-            let others = scenario.vehicles.iter().map(|other| (word(other), codes.rate_hz));
-            Fleet::new(codes.book.clone(), others)
-        });
-        let fleet = fleet.transpose()?;
-        let tracking = tracking::Settings::default();
         Ok(Self {
             camera,
             body_from_camera: mounted.body_from_camera,
             renderer,
-            locator: Locator::new(mounted.camera.clone(), expects, None, settings)?,
-            lookout: Lookout::new(mounted.camera.clone(), expects, &settings, tracking, fleet.as_ref())?,
+            locator: Locator::new(mounted.camera.clone(), expects, None, *settings)?,
             emitter: preset.emitter,
             daylight: scenario.daylight,
             airframe_reach_m: expects.max_radius_m(),
-            turn_sigma_rad: scenario.period_s()
-                * (scenario.accuracy.gyro_bias_rad_s + scenario.accuracy.gyro_noise_rad_s)
-                    .max(LEAST_TURN_RAD_S),
-            followed: Vec::new(),
         })
     }
 
-    /// Looks through the camera and hands over each neighbour that it follows, in the body frame.
+    /// Looks through the camera, and has `lookout` follow what it shows; the vehicle turned so since its frames before, and since the last one of any of its
+    /// cameras.
     pub(super) fn look(
         &mut self,
         looking: &Looking<'_>,
         moment: &Moment<'_>,
-        mut hand_over: impl FnMut(Seen),
+        [turned, since_any]: [Option<Turned>; 2],
+        lookout: &mut Lookout,
+        shown: &mut Vec<Shown>,
     ) {
         let snapshot = self.snapshot(looking.vehicle, moment);
         let frame = self.renderer.render(&snapshot, moment.number).image;
-        let camera_from_body = self.body_from_camera.rotation.inverse();
+        let camera_from_body = self.body_from_camera.rotation.inverse().to_rotation_matrix();
         let down = camera_from_body * (looking.own.attitude.inverse() * -Vector3::z());
         let gravity = Unit::new_normalize(down);
-        let turn = camera_from_body * looking.turned.inverse() * self.body_from_camera.rotation;
+        let of_camera = |turned: Turned| Turned {
+            now_from_before: camera_from_body * turned.now_from_before * camera_from_body.inverse(),
+            ..turned
+        };
         // the renderer makes frames of the camera's size
         let exposure_s = moment.exposure_us * 1e-6;
         let view = frame.view();
+        let reach_m = [self.body_from_camera.translation.vector.norm(), self.airframe_reach_m];
         let input = Input::frame(&view).gravity(&gravity).exposure(exposure_s);
         let Ok(located) = self.locator.locate(input) else { return };
         let glance = Glance {
-            camera: 0,
-            turned_since_any: None,
+            camera: self.camera,
             time_s: moment.time_s,
             exposure_s,
-            turned: (moment.number > 0)
-                .then(|| Turned { now_from_before: Rotation3::from(turn), sigma_rad: self.turn_sigma_rad }),
+            turned: turned.map(of_camera),
+            turned_since_any: since_any.map(of_camera),
             moving: None,
             gravity: Some(gravity),
             located,
         };
-        if self.lookout.look(&glance).is_err() {
+        if lookout.look(&glance).is_err() {
             return;
         }
-        let tracked = self.lookout.tracked();
-        self.followed.retain(|followed| tracked.tracks.iter().any(|track| track.id == followed.track));
+        let tracked = lookout.tracked();
         for track in &tracked.tracks {
-            let told = own_match(located, track, tracked).map(|neighbour| Followed {
-                track: track.id,
-                time_s: moment.time_s,
-                distance: neighbour.distance,
-                bearing_bound_rad: bearing_bound_rad(neighbour, located, self.airframe_reach_m),
-                spot_px: largest_spot_px(neighbour, located),
-            });
-            let before = self.followed.iter_mut().find(|followed| followed.track == track.id);
-            match (told, before) {
-                (Some(told), Some(before)) => *before = told,
-                (Some(told), None) => self.followed.push(told),
-                _ => {}
+            let Some(neighbour) = own_match(located, track, tracked) else { continue };
+            let told = Shown::by(neighbour, (track.id, moment.time_s), located, reach_m);
+            match shown.iter_mut().find(|shown| shown.track == track.id) {
+                Some(before) => *before = told,
+                None => shown.push(told),
             }
-        }
-        for track in &tracked.tracks {
-            let name = self.lookout.name(track.id).filter(|name| name.probability > SURE_NAME);
-            let last = self.followed.iter().find(|followed| followed.track == track.id);
-            hand_over(self.seen(track, last, name.map(|name| name.id), moment.time_s));
         }
     }
 
-    /// A track in the body frame.
-    fn seen(&self, track: &Track, last: Option<&Followed>, identity: Option<u32>, now_s: f64) -> Seen {
+    /// A track that is told in this camera's axes, in the body frame.
+    pub(super) fn seen(
+        &self,
+        track: &Track,
+        last: Option<&Shown>,
+        identity: Option<u32>,
+        now_s: f64,
+    ) -> Seen {
         let turn = self.body_from_camera.rotation.to_rotation_matrix();
         let about = |covariance| turn.matrix() * covariance * turn.matrix().transpose();
-        let offset_m = self.body_from_camera.translation.vector;
-        let mean = turn * track.position_m + offset_m;
+        let mean = turn * track.position_m + self.body_from_camera.translation.vector;
         let covariance = about(track.position_covariance_m2);
         let bearing = Bearing::new(mean).map_or(Vector3::x_axis(), |b| Unit::new_unchecked(*b.vector()));
         let along = bearing.dot(&(covariance * bearing.into_inner()));
         let estimate = Estimate { distance_m: mean.norm(), sigma_m: along.max(0.0).sqrt() };
-        // the camera sits beside the body's origin: bounds from there are wider by that
-        let away_m = offset_m.norm();
-        let bounds = last.map_or((0.0, f64::INFINITY), |last| {
-            let bounds = last.distance.bounds;
-            ((bounds.min_m() - away_m).max(0.0), bounds.max_m() + away_m)
-        });
-        let bearing_bound_rad = last.map_or(core::f64::consts::PI, |last| {
-            let lever = (away_m / last.distance.bounds.min_m().max(away_m)).min(1.0);
-            (last.bearing_bound_rad + libm::asin(lever)).min(core::f64::consts::PI)
-        });
         Seen {
-            track: (track.id << 2) | self.camera as u64,
+            track: track.id,
             identity,
             bearing,
-            bearing_bound_rad,
+            bearing_bound_rad: last.map_or(core::f64::consts::PI, |last| last.bearing_bound_rad),
             distance: Distance {
                 estimate: Some(estimate),
-                bounds: Interval::new(bounds.0, bounds.1)
-                    .unwrap_or_else(|| Interval::new(0.0, f64::INFINITY).expect("in order")),
+                bounds: last.map_or(Interval::ANY, |last| last.distance.bounds),
                 perpendicular_m: last.and_then(|last| last.distance.perpendicular_m),
                 inline_m: last.and_then(|last| last.distance.inline_m),
             },

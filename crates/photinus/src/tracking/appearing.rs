@@ -68,6 +68,7 @@ pub(super) fn appear(
             hidden: 0.0,
             seen_s: moment.time_s,
             seen_by: moment.camera,
+            seen_by_each_s: seen_by_each_s(moment),
             is_predicted: members.is_empty(),
             log_power: [None; Rig::MOST],
             calibration_rad2: calibration / members.len().max(1) as f64,
@@ -85,6 +86,12 @@ pub(super) fn appear(
         }
     }
     unexplained.max(0.0)
+}
+
+fn seen_by_each_s(moment: &Moment) -> [f64; Rig::MOST] {
+    let mut seen_s = [f64::NEG_INFINITY; Rig::MOST];
+    seen_s[moment.camera] = moment.time_s;
+    seen_s
 }
 
 /// A mode as the beginning of a track, turned next to the `first` as far as the airframe's symmetry allows.

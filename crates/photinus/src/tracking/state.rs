@@ -28,9 +28,10 @@ pub(super) struct Target {
     pub(super) existence: f64,
     /// How likely it is hidden, if it exists.
     pub(super) hidden: f64,
-    /// When it was seen last, s, and by which camera.
+    /// When it was seen last, s, and by which camera; and when each saw it last.
     pub(super) seen_s: f64,
     pub(super) seen_by: usize,
+    pub(super) seen_by_each_s: [f64; Rig::MOST],
     /// Whether it is not seen in this frame, nor was in the last one of another camera.
     pub(super) is_predicted: bool,
     /// Logarithm of the light of an LED of intensity 1 at 1 m, by camera, where it was told.
@@ -56,6 +57,8 @@ pub(super) struct State {
     pub(super) moving: Option<Moving>,
     /// Points of clutter in a frame, on average, by camera.
     pub(super) clutter: [f64; Rig::MOST],
+    /// When the last frame of each camera was, s.
+    pub(super) frames_s: [f64; Rig::MOST],
     pub(super) targets: Vec<Target>,
     pub(super) components: Vec<Component>,
     /// Sightings that updated a vehicle.
@@ -74,6 +77,7 @@ impl State {
             up: None,
             moving: None,
             clutter: [CLUTTER_BEFOREHAND; Rig::MOST],
+            frames_s: [f64::NEG_INFINITY; Rig::MOST],
             targets: Vec::with_capacity(MOST_TARGETS),
             components: Vec::with_capacity(2 * MOST_TARGETS),
             members: Vec::with_capacity(128),
@@ -86,6 +90,7 @@ impl State {
         (self.camera, self.time_s, self.next_id) = (camera, time_s, next_id);
         (self.up, self.moving) = (None, None);
         self.clutter = [CLUTTER_BEFOREHAND; Rig::MOST];
+        self.frames_s = [f64::NEG_INFINITY; Rig::MOST];
         self.targets.clear();
         self.components.clear();
         self.members.clear();

@@ -38,7 +38,7 @@ const GONE: f64 = 0.02;
 const POWER_FRAMES: f64 = 16.0;
 /// So many standard deviations off, a vehicle is not.
 const SURELY_SIGMA: f64 = 5.0;
-/// Two cameras of a rig are no nearer in time than this, s, for what their frames repeat.
+/// Frames are no nearer in time than this, s, for what they repeat: the first ones of two cameras may be of one time.
 const LEAST_INTERVAL_S: f64 = 1e-4;
 
 /// What does not change from frame to frame.
@@ -135,7 +135,10 @@ impl Stepper {
             up: moment.up,
             tilt_sigma_rad: model.pose.tilt_sigma_rad,
         };
-        let straight_rad = model.straight_rad(interval_s);
+        // What two cameras see at nearly one time is no more alike for that: a frame is compared with its own camera's.
+        let last_s = before.frames_s[moment.camera];
+        let own_interval_s = if last_s.is_finite() { moment.time_s - last_s } else { interval_s };
+        let straight_rad = model.straight_rad(own_interval_s);
         self.predicted.clear();
         self.first_predicted.clear();
         for target in &before.targets {
@@ -155,7 +158,7 @@ impl Stepper {
             }
         }
         self.first_predicted.push(self.predicted.len());
-        let scene = Scene { model, watched, moment, interval_s };
+        let scene = Scene { model, watched, moment, interval_s, own_interval_s };
         let clutter = before.clutter[moment.camera];
         self.ways.begin(&scene, clutter, before.log_power(moment.camera, &mut self.powers));
         for (vehicle, range) in self.first_predicted.windows(2).enumerate() {
@@ -174,10 +177,12 @@ impl Stepper {
         self.joint.explain(&self.ways.choices, &self.ways.log_unseen, model.settings.association);
         after.clear(moment.camera, moment.time_s, before.next_id);
         (after.up, after.moving, after.clutter) = (moment.up, moment.moving, before.clutter);
+        after.frames_s = before.frames_s;
+        after.frames_s[moment.camera] = moment.time_s;
         self.claimed.clear();
         self.claimed.resize(moment.observations.len(), 0.0);
         for (vehicle, target) in before.targets.iter().enumerate() {
-            self.conclude(vehicle, target, model, moment, interval_s, after);
+            self.conclude(vehicle, target, &scene, straight_rad, after);
         }
         let unexplained =
             appearing::appear(model, moment, straight_rad, &self.claimed, &mut self.reduced, after);
@@ -190,11 +195,11 @@ impl Stepper {
         &mut self,
         vehicle: usize,
         before: &Target,
-        model: &Model,
-        moment: &Moment,
-        interval_s: f64,
+        scene: &Scene<'_>,
+        straight_rad: f64,
         after: &mut State,
     ) {
+        let Scene { model, moment, interval_s, .. } = *scene;
         let Self { predicted, first_predicted, ways, joint, claimed, reduced, .. } = self;
         let unseen = joint.unseen[vehicle];
         let existence = Existence::new(before.existence, before.hidden).after(interval_s, &model.settings);
@@ -219,10 +224,12 @@ impl Stepper {
             let there = existence.hidden + existence.shown * unseen_if_shown;
             reduced.push(Component { weight: unseen * component.weight * there / all, ..*component });
         }
-        reduce(reduced, model.straight_rad(interval_s));
+        reduce(reduced, straight_rad);
         let is_seen = unseen < 0.5;
         let (seen_s, seen_by) =
             if is_seen { (moment.time_s, moment.camera) } else { (before.seen_s, before.seen_by) };
+        let mut seen_by_each_s = before.seen_by_each_s;
+        seen_by_each_s[seen_by] = seen_s;
         // What another camera shows is not missed until that one misses it.
         let is_missed =
             before.is_predicted || moment.camera == before.seen_by || moment.time_s - seen_s > LOST_S;
@@ -253,6 +260,7 @@ impl Stepper {
             hidden: with.hidden / with.total(),
             seen_s,
             seen_by,
+            seen_by_each_s,
             is_predicted: !is_seen && is_missed,
             log_power,
             calibration_rad2,

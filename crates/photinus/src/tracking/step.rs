@@ -52,9 +52,19 @@ pub(super) struct Model {
 }
 
 impl Model {
+    /// In so many frames errors of a vehicle's markers, lobes and powers are the same as in this one, whose camera had its frame before `own_interval_s` ago.
+    /// Frames in which nothing of it shines repeat nothing, and of LEDs that blink words of their own each is dark in some; but what another camera saw since
+    /// that frame is the same once more.
+    pub(super) fn repeats_of(&self, target: &Target, moment: &Moment, own_interval_s: f64) -> f64 {
+        let since_s = (moment.time_s - target.seen_s).max(own_interval_s);
+        let is_since = |seen_s: &&f64| moment.time_s - **seen_s < own_interval_s;
+        let others = target.seen_by_each_s.iter().filter(is_since).count() as f64;
+        self.repeats(since_s / moment.share_lit) * (1.0 + others)
+    }
+
     /// In so many frames at such intervals errors of markers, lobes and powers are the same: one that lasts for a time is as white noise of the density
     /// 2 time sigma^2.
-    pub(super) fn repeats(&self, interval_s: f64) -> f64 {
+    fn repeats(&self, interval_s: f64) -> f64 {
         (2.0 * self.settings.correlation_s / interval_s.max(LEAST_INTERVAL_S)).max(1.0)
     }
 
@@ -289,5 +299,57 @@ fn averaged(before: Option<f64>, now: Option<f64>) -> Option<f64> {
     match (before, now) {
         (Some(before), Some(now)) => Some(before + (now - before) / POWER_FRAMES),
         (before, now) => now.or(before),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tracking::tests::simulator::{camera, hexarotor, located_by};
+
+    #[test]
+    fn what_cameras_see_at_nearly_one_time_repeats_once_each() {
+        let airframe = hexarotor();
+        let (symmetry, pose) = (Symmetry::of(&airframe), located_by().pose);
+        let model =
+            Model { rig: Rig::from(camera()), airframe, symmetry, pose, settings: Settings::default() };
+        let mut moment = Moment::default();
+        (moment.time_s, moment.share_lit) = (7.0, 1.0);
+        let period_s = 0.0625;
+        let repeats = |seen_s: &[f64]| {
+            let mut seen_by_each_s = [f64::NEG_INFINITY; Rig::MOST];
+            seen_by_each_s[..seen_s.len()].copy_from_slice(seen_s);
+            let seen_s = seen_s.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            model.repeats_of(&target(seen_s, seen_by_each_s), &moment, period_s)
+        };
+        let alone = repeats(&[7.0 - period_s]);
+        assert!((alone / (2.0 * model.settings.correlation_s / period_s) - 1.0).abs() < 1e-9);
+        for own_s in [7.0 - period_s, f64::NEG_INFINITY] {
+            for other_s in [7.0, 7.0 - 1e-3, 7.0 - 0.9 * period_s] {
+                assert!((repeats(&[own_s, other_s]) / alone - 2.0).abs() < 1e-9, "{own_s} {other_s}");
+                assert!((repeats(&[own_s, other_s, other_s]) / alone - 3.0).abs() < 1e-9);
+            }
+        }
+        // Whom nobody saw for a while is news.
+        assert!(repeats(&[5.0, 6.0]) < 0.03 * alone);
+    }
+
+    fn target(seen_s: f64, seen_by_each_s: [f64; Rig::MOST]) -> Target {
+        Target {
+            id: 0,
+            vehicle: None,
+            existence: 1.0,
+            hidden: 0.0,
+            seen_s,
+            seen_by: 0,
+            seen_by_each_s,
+            is_predicted: false,
+            log_power: [None; Rig::MOST],
+            calibration_rad2: Matrix3::zeros(),
+            first_component: 0,
+            components: 0,
+            first_member: 0,
+            members: 0,
+        }
     }
 }

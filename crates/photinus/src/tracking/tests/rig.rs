@@ -60,6 +60,25 @@ fn target(time_s: f64) -> Vehicle {
     )
 }
 
+/// Where a vehicle is at a time.
+type Target = fn(f64) -> Vehicle;
+
+/// Three farther away, near each other.
+fn far(time_s: f64) -> Vehicle {
+    let near = target(time_s);
+    Vehicle { position_m: near.position_m * 2.4, velocity_m_s: near.velocity_m_s * 2.4, ..near }
+}
+
+fn second(time_s: f64) -> Vehicle {
+    let before = far(time_s - 0.25);
+    Vehicle { position_m: before.position_m - Vector3::y() * 0.8, ..before }
+}
+
+fn third(time_s: f64) -> Vehicle {
+    let before = second(time_s - 0.25);
+    Vehicle { position_m: before.position_m - Vector3::y() * 0.8, ..before }
+}
+
 /// A frame as it is taken: which camera, when, how it is turned against the world, and what it shows.
 #[derive(Clone)]
 struct Shot {
@@ -71,7 +90,13 @@ struct Shot {
 }
 
 /// The frames of all cameras in the order of time; these sit as `mountings` say.
-fn shots(mountings: &[Mounting; 3], offsets_s: [f64; 3], seconds: f64, seed: u128) -> Vec<Shot> {
+fn shots(
+    mountings: &[Mounting; 3],
+    offsets_s: [f64; 3],
+    vehicles: &[Target],
+    seconds: f64,
+    seed: u128,
+) -> Vec<Shot> {
     let airframe = hexarotor();
     let mut rng = Pcg64::new(seed, 31);
     let mut locators = [(); 3].map(|()| Locator::new(camera(), &airframe, None, located_by()).unwrap());
@@ -83,9 +108,12 @@ fn shots(mountings: &[Mounting; 3], offsets_s: [f64; 3], seconds: f64, seed: u12
         let mounting = &mountings[number];
         let camera_from_world = (world_from_body * mounting.body_from_camera).inverse();
         let camera_m = position_m + world_from_body * mounting.position_m;
-        let vehicle = target(time_s);
-        let vehicle = Vehicle { position_m: vehicle.position_m - camera_m, ..vehicle };
-        let seen = look(&airframe, &[vehicle], &camera_from_world, &mut rng);
+        let from_camera = |at: &Target| {
+            let vehicle = at(time_s);
+            Vehicle { position_m: vehicle.position_m - camera_m, ..vehicle }
+        };
+        let vehicles: Vec<Vehicle> = vehicles.iter().map(from_camera).collect();
+        let seen = look(&airframe, &vehicles, &camera_from_world, &mut rng);
         let spots: Vec<_> = seen.iter().map(|seen| seen.spot.clone()).collect();
         let gravity = down(&camera_from_world);
         let located = locators[number].locate(Input::spots(&spots).gravity(&gravity)).unwrap().clone();
@@ -150,7 +178,7 @@ fn fly(mountings: &[Mounting; 3], believed: &[Mounting; 3], seed: u128) -> ([Sco
     let mut rng = Pcg64::new(seed, 37);
     let mut tracker = Tracker::new(rig(*believed), &hexarotor(), &located_by(), Settings::default()).unwrap();
     let (mut before_s, mut in_view_since_s) = (None, [f64::INFINITY; 3]);
-    for shot in shots(mountings, OFFSETS_S, 14.0, seed) {
+    for shot in shots(mountings, OFFSETS_S, &[target], 14.0, seed) {
         let tracked = take(&mut tracker, &believed[shot.camera], &shot, before_s, &mut rng).unwrap();
         before_s = Some(shot.time_s);
         assert_eq!(tracked.camera, shot.camera);
@@ -233,7 +261,7 @@ fn a_mounting_that_is_off_by_what_it_says_makes_nobody_sure() {
 /// Frames come up to 0.15 s late, as cameras, cables and other work have it.
 #[test]
 fn frames_of_several_cameras_come_in_any_order() {
-    let all = shots(&mountings(), OFFSETS_S, 3.0, 730);
+    let all = shots(&mountings(), OFFSETS_S, &[target], 3.0, 730);
     let believed = mountings();
     let tracker =
         || Tracker::new(rig(mountings()), &hexarotor(), &located_by(), Settings::default()).unwrap();
@@ -298,7 +326,7 @@ fn frames_of_several_cameras_come_in_any_order() {
 /// Those in whose frames a vehicle stands at one time see the same errors of its markers, and nobody else for that.
 #[test]
 fn cameras_may_shoot_at_one_time_but_none_twice() {
-    let all = shots(&mountings(), [0.0; 3], 10.0, 740);
+    let all = shots(&mountings(), [0.0; 3], &[far, second, third], 10.0, 740);
     let believed = mountings();
     // By defaults, markers are off by a hand's work.
     let (settings, mut rng) = (locator::Settings::default(), Pcg64::new(1, 1));
@@ -309,9 +337,9 @@ fn cameras_may_shoot_at_one_time_but_none_twice() {
         for shot in frames {
             let told = take(&mut tracker, &believed[shot.camera], shot, before_s, &mut rng).unwrap();
             let is_known = |track: &Track| {
-                track.id == 0 && track.position_covariance_m2.iter().all(|part| part.is_finite())
+                track.id < 3 && track.position_covariance_m2.iter().all(|part| part.is_finite())
             };
-            assert!(told.tracks.len() < 2 && told.tracks.iter().all(is_known), "{} s: {told:?}", shot.time_s);
+            assert!(told.tracks.len() < 4 && told.tracks.iter().all(is_known), "{} s: {told:?}", shot.time_s);
             let again = take(&mut tracker, &believed[shot.camera], shot, before_s, &mut rng);
             assert_eq!(again, Err(TrackError::Repeated { time_s: shot.time_s }));
             before_s = Some(shot.time_s);
@@ -326,7 +354,7 @@ fn cameras_may_shoot_at_one_time_but_none_twice() {
 /// A camera alone is the same wherever its body's axes point.
 #[test]
 fn a_camera_alone_needs_no_mounting() {
-    let all: Vec<Shot> = shots(&mountings(), OFFSETS_S, 3.0, 750).into_iter().filter(|shot| shot.camera == 0).collect();
+    let all: Vec<Shot> = shots(&mountings(), OFFSETS_S, &[target], 3.0, 750).into_iter().filter(|shot| shot.camera == 0).collect();
     let turned = Mounting { position_m: Vector3::zeros(), ..mountings()[1] };
     let mut told = [Mounting::default(), turned].map(|mounting| {
         let mut tracker = Tracker::new(rig([mounting]), &hexarotor(), &located_by(), Settings::default()).unwrap();

@@ -289,12 +289,7 @@ impl Ways {
     /// What spots are against this vehicle, whose markers are where the airframe says but for the prior's sigma.
     fn prepare(&mut self, scene: &Scene<'_>, target: &Target, components: &[Component]) {
         let Scene { model, moment, .. } = *scene;
-        // Frames in which nothing of it shines repeat nothing, and of LEDs that blink words of their own each is dark in some. What other cameras saw since
-        // this one's frame before, this one repeats once more each.
-        let since_s = (moment.time_s - target.seen_s).max(scene.own_interval_s);
-        let is_since = |seen_s: &&f64| moment.time_s - **seen_s < scene.own_interval_s;
-        let others = target.seen_by_each_s.iter().filter(is_since).count() as f64;
-        self.repeats = model.repeats(since_s / moment.share_lit) * (1.0 + others);
+        self.repeats = model.repeats_of(target, moment, scene.own_interval_s);
         let widening = self.repeats.sqrt();
         self.power = self.log_power.map(|value| LogLight { value, sigma: POWER_SIGMA * widening });
         self.per_frame = pose::Settings {

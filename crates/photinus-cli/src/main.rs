@@ -45,6 +45,7 @@ mod plots;
 mod pose_options;
 mod protocols;
 mod recover;
+mod replayed;
 mod reproduce;
 mod resume;
 mod run;

@@ -11,6 +11,7 @@ use photinus_run::source::Opener;
 use serde::Deserialize;
 
 use crate::failure::Failure;
+use crate::replayed;
 use crate::simulated::Simulated;
 
 /// A sink, and where it can be looked at.
@@ -88,7 +89,7 @@ fn drawing(cameras: &[Camera]) -> photinus_io::Result<photinus_link::ros2::Draw>
     }))
 }
 
-/// What opens a topic or a scene as a camera's source; the tables `[ros2]` and `[zenoh]` say where a topic is. `None` where that is not in this program,
+/// What opens a recording, a scene or a topic as a camera's source; the tables `[ros2]` and `[zenoh]` say where a topic is. `None` where that is not in this program,
 /// or where `[zenoh]` is missing.
 pub(crate) fn source(
     config: &Config,
@@ -99,6 +100,7 @@ pub(crate) fn source(
     #[cfg(not(any(feature = "ros2", feature = "zenoh")))]
     let _ = (tables, spots);
     Ok(match origin {
+        Origin::Recording { path, camera } => Some(replayed::opener(path, camera)?),
         Origin::Scene { path, camera, exposure_us, takeoff, repeat } => {
             Some(Simulated::opener(&path, camera, exposure_us, takeoff, repeat)?)
         }

@@ -87,6 +87,7 @@ impl Simulated {
             time_s: Some(taken.truth.time_s - 0.5 * exposure.length_s),
             source: self.scene.name.clone(),
             gravity: Some(taken.gravity),
+            exposure_s: None,
             moved: Moved::default(),
             conversions: Vec::new(),
         };

@@ -26,6 +26,8 @@ pub struct Frame {
     pub time_s: Option<f64>,
     /// The image file as it is named, or the stream.
     pub source: String,
+    /// How long it was exposed, s, where the source says it of each.
+    pub exposure_s: Option<f64>,
     /// Direction of gravity (down) in the camera frame, where the source knows.
     pub gravity: Option<Unit<Vector3<f64>>>,
     /// How the camera moved, where the source knows.
@@ -167,6 +169,7 @@ fn from_image(path: &Path, index: u64) -> Result<Frame> {
         time_s: None,
         source,
         gravity: None,
+        exposure_s: None,
         moved: Moved::default(),
         conversions: file.conversions,
     })
@@ -186,6 +189,7 @@ fn from_dataset(dataset: &Dataset, camera: usize, number: usize) -> Option<Resul
         time_s: Some(row.time_s),
         source: row.image.display().to_string(),
         gravity: row.gravity,
+        exposure_s: None,
         moved: Moved::default(),
         conversions: file.conversions,
     }))
@@ -199,6 +203,7 @@ fn from_video(frame: VideoFrame, name: &str, conversions: Vec<Conversion>) -> Fr
         time_s,
         source: name.to_owned(),
         gravity: None,
+        exposure_s: None,
         moved: Moved::default(),
         conversions,
     }

@@ -66,6 +66,7 @@ pub(crate) fn of_image((header, image): (Header, GreyImage), index: u64, source:
         time_s: Some(header.stamp.seconds()),
         source: source.to_owned(),
         gravity: None,
+        exposure_s: None,
         moved: Moved::default(),
         conversions: Vec::new(),
     })

@@ -135,6 +135,7 @@ fn entry(camera: usize, index: u64) -> Entry {
         time_s: record.time_s,
         source: "t".to_owned(),
         gravity: None,
+        exposure_s: None,
         moved: Moved::default(),
         conversions: Vec::new(),
     };

@@ -30,6 +30,7 @@ fn frame(index: u64) -> Entry {
         time_s: Some(0.01),
         source: "t".to_owned(),
         gravity: None,
+        exposure_s: None,
         moved: Moved::default(),
         conversions: Vec::new(),
     })

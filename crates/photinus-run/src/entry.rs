@@ -40,6 +40,7 @@ impl Entry {
         let record = record(frame.index, frame.time_s, frame.source, Vec::new());
         Self {
             gravity: frame.gravity,
+            exposure_s: frame.exposure_s,
             moved: frame.moved,
             conversions: frame.conversions,
             ..Self::new(record, Some(frame.image))

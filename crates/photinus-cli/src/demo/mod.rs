@@ -196,6 +196,7 @@ pub(crate) fn apart(rendered: Rendered) -> (TruthFrame, Entry) {
         source: "simulated".to_owned(),
         image,
         gravity: Some(gravity),
+        exposure_s: None,
         moved: Moved::default(),
         conversions: Vec::new(),
     };

@@ -129,6 +129,61 @@ fn cameras_share_their_tracks() {
     assert_eq!(records[5]["tracks"][0]["predicted"], false, "who is behind this camera does not coast");
 }
 
+/// A run takes frames of its cameras in as they come; its recording says in which order that was.
+#[test]
+fn a_recording_of_several_cameras_replays_to_what_the_run_found() {
+    let stage = stage("rig-replay");
+    let camera = |name: &str, source: &str| {
+        format!("[[camera]]\nname = \"{name}\"\nsource = {{ {source}, camera = \"{name}\" }}\n")
+    };
+    let of_dataset: String = ["front", "back"].map(|name| camera(name, "dataset = \"rig\"")).concat();
+    let sinks = |name: &str| format!("[json]\nfile = \"{name}.jsonl\"\n");
+    stage.file("run.toml", format!("{of_dataset}{}[record]\nfile = \"run.mcap\"\n", sinks("run")));
+    let told = stage.run("run run.toml");
+    assert_eq!(told.code, 0, "{}", told.err);
+    let replayed = |name: &str| {
+        let source = camera(name, "recording = \"run.mcap\"");
+        format!("{source}camera = \"rig/camera.toml\"\nmounting = \"rig/{name}.toml\"\n")
+    };
+    let replay =
+        format!("{}[airframe]\nfile = \"rig/hexa.toml\"\n", ["back", "front"].map(replayed).concat());
+    // What a clock says of the run is no result.
+    let results = |name: &str| {
+        let without_latency = |line: &str| {
+            let mut record: Value = serde_json::from_str(line).unwrap();
+            record.as_object_mut().unwrap().remove("latency_s");
+            record.to_string()
+        };
+        let mut lines: Vec<String> = stage.read(name).lines().map(without_latency).collect();
+        lines.sort_unstable();
+        lines
+    };
+    let found = results("run.jsonl");
+    assert!(found.len() >= 4 && found.iter().any(|line| line.contains("\"tracks\"")), "{found:?}");
+    for name in ["first", "second"] {
+        stage.file("replay.toml", format!("pace = \"fast\"\n{replay}{}", sinks(name)));
+        let told = stage.run("run replay.toml");
+        assert_eq!(told.code, 0, "{}", told.err);
+        assert_eq!(results(&format!("{name}.jsonl")), found);
+    }
+    for (wrong, words) in [
+        (format!("{replay}{}", sinks("x")), "add pace = \"fast\""),
+        (
+            format!(
+                "pace = \"fast\"\n{}{}",
+                replay.replace("camera = \"back\"", "camera = \"left\""),
+                sinks("x")
+            ),
+            "back",
+        ),
+        (format!("pace = \"fast\"\n{}{}", replay.replace("run.mcap", "no.mcap"), sinks("x")), "no.mcap"),
+    ] {
+        stage.file("wrong.toml", wrong);
+        let told = stage.run("run wrong.toml");
+        assert!(told.code == 2 && told.err.contains(words), "{}", told.err);
+    }
+}
+
 #[test]
 fn one_camera_of_several_can_be_chosen() {
     let stage = stage("rig-only");

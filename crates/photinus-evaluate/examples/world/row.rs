@@ -200,6 +200,7 @@ impl<'a> Studio<'a> {
             time_s: Some(time_s),
             source: row.name.clone(),
             gravity: Some(gravity),
+            exposure_s: None,
             moved: Moved::default(),
             conversions: Vec::new(),
         };

@@ -102,6 +102,7 @@ impl Iterator for BagFrames {
             time_s: Some(header.stamp.seconds()),
             source: format!("{}:{}", self.bag.path().display(), self.topic.name),
             gravity: None,
+            exposure_s: None,
             moved: Moved::default(),
             conversions: Vec::new(),
         }))

@@ -93,6 +93,10 @@ impl Frames {
                 None => Some(header.stamp.seconds()),
             },
             source: known.as_ref().map_or_else(source, |known| known.source.clone()),
+            exposure_s: known
+                .as_ref()
+                .map(|known| known.exposure)
+                .filter(|exposure_s| exposure_s.is_finite()),
             gravity: known.as_ref().and_then(|known| down(&known.gravity)),
             moved: known.as_ref().map(moved).unwrap_or_default(),
             conversions: Vec::new(),

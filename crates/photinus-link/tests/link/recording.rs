@@ -90,6 +90,7 @@ fn frame(index: u64) -> Frame {
         time_s,
         source,
         gravity: None,
+        exposure_s: None,
         moved: Moved::default(),
         conversions: Vec::new(),
     }

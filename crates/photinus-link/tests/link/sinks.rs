@@ -45,6 +45,7 @@ fn a_run_is_in_its_recording() {
         time_s: Some(index as f64 / 60.0),
         source: format!("frame {index}"),
         gravity: None,
+        exposure_s: None,
         moved: Moved::default(),
         conversions: Vec::new(),
     };

@@ -39,6 +39,13 @@ pub enum Origin<'a> {
     Ros2(&'a str),
     /// A key of Zenoh.
     Zenoh(&'a str),
+    /// What a run recorded.
+    Recording {
+        /// Its file.
+        path: PathBuf,
+        /// Which of its cameras, where it has several.
+        camera: Option<&'a str>,
+    },
     /// A scene, rendered while it runs.
     Scene {
         /// Its file.
@@ -63,6 +70,7 @@ impl Origin<'_> {
                 "messages of zenoh",
                 "build with --features zenoh and add the table [zenoh], or name another source",
             ),
+            Origin::Recording { .. } => ("recordings", "name another source"),
             Origin::Scene { .. } => ("scenes", "name another source"),
         }
     }
@@ -276,15 +284,17 @@ impl Config {
             keys.exposure_us.or_else(|| named.of_dataset().map(|(_, camera)| camera.exposure_us));
         let course = match named.of_dataset() {
             Some((dataset, camera)) => Course::of(dataset, camera.name.is_some(), mounting.as_ref())?,
-            None => mounting.map_or_else(Course::default, |mounting| Course::Live {
-                motion: motion.clone(),
-                mounting,
-            }),
+            None => mounting
+                .map_or_else(Course::default, |mounting| Course::Live { motion: motion.clone(), mounting }),
         };
         let source = match (&keys.source.v4l2, self.origin(keys, takeoff)) {
             (Some(path), _) => self.v4l2(named, path, [camera.width(), camera.height()], *clock)?,
             (_, Some(origin)) => linked(origin.clone(), keys.source.spots)
-                .map_err(|error| of_key("source.scene", keys.source.scene.is_some(), error))?
+                .map_err(|error| match &keys.source {
+                    SourceKeys { scene: Some(_), .. } => of_key("source.scene", true, error),
+                    SourceKeys { recording: Some(_), .. } => of_key("source.recording", true, error),
+                    _ => error,
+                })?
                 .ok_or_else(|| {
                     let (what, advice) = origin.wants();
                     self.refuse(&format!("camera {}", keys.name), &format!("nothing opens {what}"), advice)
@@ -298,7 +308,10 @@ impl Config {
 
     /// Where its frames come from, where others open it.
     fn origin<'a>(&self, keys: &'a CameraKeys, takeoff: &Takeoff) -> Option<Origin<'a>> {
-        let SourceKeys { scene, camera, repeat, ros2, zenoh, .. } = &keys.source;
+        let SourceKeys { recording, scene, camera, repeat, ros2, zenoh, .. } = &keys.source;
+        let recording = recording
+            .as_ref()
+            .map(|path| Origin::Recording { path: self.located(path), camera: camera.as_deref() });
         let topic = || ros2.as_deref().map(Origin::Ros2).or_else(|| zenoh.as_deref().map(Origin::Zenoh));
         let scene = scene.as_ref().map(|path| Origin::Scene {
             path: self.located(path),
@@ -307,7 +320,7 @@ impl Config {
             takeoff: (self.pace() == Pace::Live).then(|| takeoff.clone()),
             repeat: *repeat,
         });
-        scene.or_else(topic)
+        recording.or(scene).or_else(topic)
     }
 
     fn gravity(&self) -> Result<Option<Unit<Vector3<f64>>>> {

@@ -54,9 +54,11 @@ pub(super) struct CameraKeys {
 #[serde(deny_unknown_fields)]
 pub(super) struct SourceKeys {
     pub(super) dataset: Option<PathBuf>,
+    /// What a run recorded.
+    pub(super) recording: Option<PathBuf>,
     /// What the simulator renders while it runs.
     pub(super) scene: Option<PathBuf>,
-    /// Which camera of a dataset or a scene with several.
+    /// Which camera of a dataset, a recording or a scene with several.
     pub(super) camera: Option<String>,
     #[serde(default)]
     pub(super) repeat: bool,

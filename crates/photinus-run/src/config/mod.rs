@@ -217,12 +217,25 @@ impl Config {
 
     fn check_source(&self, source: &SourceKeys, key: &str) -> Result<()> {
         let SourceKeys {
-            dataset, scene, camera, repeat, command, stdin, tcp, unix, raw, times, spots, ..
+            dataset,
+            recording,
+            scene,
+            camera,
+            repeat,
+            command,
+            stdin,
+            tcp,
+            unix,
+            raw,
+            times,
+            spots,
+            ..
         } = source;
         let SourceKeys { ros2, zenoh, v4l2, format, rate_hz, gain, .. } = source;
         let is_stream = command.is_some() || *stdin == Some(true) || tcp.is_some() || unix.is_some();
         let kinds = [
             dataset.is_some(),
+            recording.is_some(),
             scene.is_some(),
             command.is_some(),
             *stdin == Some(true),
@@ -236,22 +249,26 @@ impl Config {
             return Err(self.refuse(
                 key,
                 "it needs exactly one source",
-                "give one of dataset, scene, command, stdin = true, tcp, unix, v4l2, ros2, zenoh",
+                "give one of dataset, recording, scene, command, stdin = true, tcp, unix, v4l2, ros2, zenoh",
             ));
         }
-        let of_frames = camera.is_some() || *repeat;
+        let is_named = camera.is_some() && dataset.is_none() && recording.is_none() && scene.is_none();
+        let is_repeated = *repeat && dataset.is_none() && scene.is_none();
         let of_stream = raw.is_some() || times.is_some();
         let is_lost = *spots && !is_stream && !source.is_topic();
         let of_v4l2 = format.is_some() || rate_hz.is_some() || gain.is_some();
-        if of_frames && dataset.is_none() && scene.is_none()
-            || of_stream && !is_stream
-            || of_v4l2 && v4l2.is_none()
-            || is_lost
-        {
+        if is_named || is_repeated || of_stream && !is_stream || of_v4l2 && v4l2.is_none() || is_lost {
             return Err(self.refuse(
                 key,
                 "these keys do not go together",
-                "`camera` and `repeat` are of a dataset or a scene, `raw` and `times` of a stream, `spots` of a stream, ros2 or zenoh, `format`, `rate_hz` and `gain` of v4l2",
+                "`camera` is of a dataset, a recording or a scene, `repeat` of a dataset or a scene, `raw` and `times` of a stream, `spots` of a stream, ros2 or zenoh, `format`, `rate_hz` and `gain` of v4l2",
+            ));
+        }
+        if recording.is_some() && self.pace() == Pace::Live {
+            return Err(self.refuse(
+                &format!("{key}.recording"),
+                "a recording is replayed as fast as it is read",
+                "add pace = \"fast\"",
             ));
         }
         if *spots && raw.is_some() {

@@ -32,6 +32,7 @@ fn frame(index: u64, time_s: f64) -> Entry {
         time_s: Some(time_s),
         source: "fake".to_owned(),
         gravity: None,
+        exposure_s: None,
         moved: Moved::default(),
         conversions: Vec::new(),
     };

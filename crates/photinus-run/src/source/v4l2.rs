@@ -168,7 +168,7 @@ impl V4l2 {
         let time_s = Some(self.clock.unix_s(taken) - exposure_s);
         let source = name.display().to_string();
         let (index, gravity, moved) = (u64::from(meta.sequence), None, Moved::default());
-        let frame = Frame { image, index, time_s, source, gravity, moved, conversions };
+        let frame = Frame { image, index, time_s, source, exposure_s: None, gravity, moved, conversions };
         let mut entry = Entry::from_frame(frame);
         entry.taken = Some(taken);
         entry.exposure_s = Some(exposure_s);

@@ -15,6 +15,7 @@ pub(super) fn shot(index: u64, pixels: Vec<u8>, width: usize, height: usize) -> 
         time_s: Some(index as f64 / 60.0),
         source: format!("images/{index:06}.png"),
         gravity: Some(Unit::new_normalize(Vector3::new(0.1, 0.9, 0.2))),
+        exposure_s: None,
         moved: Moved::default(),
         conversions: Vec::new(),
     };

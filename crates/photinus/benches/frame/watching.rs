@@ -63,8 +63,7 @@ impl Watch {
         };
         let turned = Some(Turned { now_from_before: Rotation3::identity(), sigma_rad: 1e-4 });
         let time_s = self.frame as f64 / RATE_HZ;
-        let glance =
-            Glance { turned, gravity: Some(gravity), ..Glance::new(time_s, located) };
+        let glance = Glance { turned, gravity: Some(gravity), ..Glance::new(time_s, located) };
         black_box(lookout.look(&glance).expect("time passes"));
     }
 }

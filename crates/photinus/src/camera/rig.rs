@@ -73,7 +73,9 @@ pub enum RigError {
     #[error("{0}")]
     Mask(#[from] FrameError),
     /// A mounting that is no number, or whose covariance is none.
-    #[error("camera {0} of the rig: its mounting must be finite, and its covariances without negative variances")]
+    #[error(
+        "camera {0} of the rig: its mounting must be finite, and its covariances without negative variances"
+    )]
     Mounting(usize),
 }
 
@@ -101,7 +103,8 @@ impl Rig {
                 mask.check_size(camera.width(), camera.height())?;
             }
             let is_covariance = |of: &Matrix3<f64>| {
-                of.iter().all(|part| part.is_finite()) && of.diagonal().iter().all(|&variance| variance >= 0.0)
+                of.iter().all(|part| part.is_finite())
+                    && of.diagonal().iter().all(|&variance| variance >= 0.0)
             };
             let is_finite = mounting.body_from_camera.matrix().iter().all(|part| part.is_finite())
                 && mounting.position_m.iter().all(|part| part.is_finite());

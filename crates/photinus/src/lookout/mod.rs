@@ -208,7 +208,8 @@ impl Lookout {
         let is_alone = self.tracker.rig().cameras().len() == 1;
         let turned = if is_alone { glance.turned } else { glance.turned_since_any };
         let (signals, lit) = (&[], &[]);
-        let mut look = Look { camera, time_s, turned, moving, gravity, located, signals, lit, blinking: None };
+        let mut look =
+            Look { camera, time_s, turned, moving, gravity, located, signals, lit, blinking: None };
         look.check(self.tracker.rig())?;
         if let Some(blinking) = &mut self.blinking {
             let power = self.tracker.power(camera);

@@ -227,7 +227,8 @@ impl Moment {
         let Look { camera, time_s, turned, moving, gravity, located, signals, lit, blinking } = *look;
         (self.camera, self.time_s) = (camera, time_s);
         self.turned = turned.map(|turned| turned.of_body(mounting));
-        let of_body = |own: Moving| Moving { velocity_m_s: mounting.body_from_camera * own.velocity_m_s, ..own };
+        let of_body =
+            |own: Moving| Moving { velocity_m_s: mounting.body_from_camera * own.velocity_m_s, ..own };
         self.moving = moving.map(of_body);
         self.faintest_light = located.faintest_light;
         self.up = gravity.map(|down| -down);

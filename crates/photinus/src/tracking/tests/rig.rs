@@ -242,7 +242,8 @@ fn who_circles_a_vehicle_with_three_cameras_keeps_one_track() {
 fn a_mounting_that_is_off_by_what_it_says_makes_nobody_sure() {
     let off_rad = 0.01;
     let mut truth = mountings();
-    truth[1].body_from_camera = Rotation3::new(Vector3::new(0.3, 0.9, 0.3) * off_rad) * truth[1].body_from_camera;
+    truth[1].body_from_camera =
+        Rotation3::new(Vector3::new(0.3, 0.9, 0.3) * off_rad) * truth[1].body_from_camera;
     let told = mountings().map(|mounting| Mounting {
         rotation_covariance_rad2: Matrix3::from_diagonal_element(off_rad * off_rad / 2.0),
         ..mounting
@@ -308,7 +309,8 @@ fn frames_of_several_cameras_come_in_any_order() {
     let (expected, late) = run(&in_order);
     assert_eq!((expected.tracks.len(), late), (1, 0));
     let mut rng = Pcg64::new(731, 1);
-    let mut late_s = || -> f64 { 0.15 * <StandardUniform as Distribution<f64>>::sample(&StandardUniform, &mut rng) };
+    let mut late_s =
+        || -> f64 { 0.15 * <StandardUniform as Distribution<f64>>::sample(&StandardUniform, &mut rng) };
     let mut arrival: Vec<(f64, usize)> =
         all.iter().enumerate().map(|(index, shot)| (shot.time_s + late_s(), index)).collect();
     // The first is there when the others come: nobody was followed before it.
@@ -354,10 +356,14 @@ fn cameras_may_shoot_at_one_time_but_none_twice() {
 /// A camera alone is the same wherever its body's axes point.
 #[test]
 fn a_camera_alone_needs_no_mounting() {
-    let all: Vec<Shot> = shots(&mountings(), OFFSETS_S, &[target], 3.0, 750).into_iter().filter(|shot| shot.camera == 0).collect();
+    let all: Vec<Shot> = shots(&mountings(), OFFSETS_S, &[target], 3.0, 750)
+        .into_iter()
+        .filter(|shot| shot.camera == 0)
+        .collect();
     let turned = Mounting { position_m: Vector3::zeros(), ..mountings()[1] };
     let mut told = [Mounting::default(), turned].map(|mounting| {
-        let mut tracker = Tracker::new(rig([mounting]), &hexarotor(), &located_by(), Settings::default()).unwrap();
+        let mut tracker =
+            Tracker::new(rig([mounting]), &hexarotor(), &located_by(), Settings::default()).unwrap();
         let (mut rng, mut before_s, mut last) = (Pcg64::new(2, 2), None, None);
         for shot in &all {
             // The same turns in the camera's axes, whatever is believed of the body's.

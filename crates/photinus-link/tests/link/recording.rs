@@ -55,6 +55,7 @@ proptest! {
             source: format!("images/{index}.png"),
             gravity: (index != 1).then(|| Unit::new_normalize(Vector3::from(down))),
             moved: moved(index, &down),
+            exposure_s: None,
             conversions: Vec::new(),
         }).collect();
         for (frame, arrived) in written.iter().zip(1..) {

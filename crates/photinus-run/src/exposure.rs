@@ -6,7 +6,8 @@
 //! for such a one. Before any neighbour was seen, nothing is changed.
 
 use nalgebra::Vector3;
-use photinus_io::results::{FrameRecord, NeighbourRecord};
+use photinus::camera::{Bearing, Camera};
+use photinus_io::results::{FrameRecord, NeighbourRecord, TrackRecord};
 
 use crate::Entry;
 
@@ -34,9 +35,10 @@ pub struct Wanted {
 }
 
 /// Sets the exposure of one camera.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct Exposure {
     wanted: Wanted,
+    camera: Option<Camera>,
     k: Option<Light>,
     /// How far the nearest neighbour is in this frame and in the one before, which alternating exposes otherwise: one of them may tell it badly.
     nearest_m: [Option<f64>; 2],
@@ -56,7 +58,13 @@ enum Light {
 impl Exposure {
     /// Nothing is known of the markers' light yet.
     pub fn new(wanted: Wanted) -> Self {
-        Self { wanted, k: None, nearest_m: [None; 2], told_us: None, frames: 0 }
+        Self { wanted, camera: None, k: None, nearest_m: [None; 2], told_us: None, frames: 0 }
+    }
+
+    /// For those that this camera has in view: others of its vehicle may show more.
+    #[must_use]
+    pub fn of_camera(self, camera: Camera) -> Self {
+        Self { camera: Some(camera), ..self }
     }
 
     /// The exposure of the frames after this one, us, where it is to be another.
@@ -92,13 +100,20 @@ impl Exposure {
 
     fn learn(&mut self, record: &FrameRecord, exposure_us: f64) {
         // One that blinks is followed through frames in which it is dark.
-        let followed_m = record.tracks.iter().map(|track| Vector3::from(track.position_m).norm());
+        let followed_m = record.tracks.iter().filter_map(|track| self.distance_m(track));
         let seen_m = record.neighbours.iter().filter_map(|neighbour| neighbour.distance_m.estimate);
         self.nearest_m = [seen_m.chain(followed_m).reduce(f64::min), self.nearest_m[0]];
         for neighbour in &record.neighbours {
             let Some(seen) = light(record, neighbour, exposure_us) else { continue };
             self.k = Some(self.k.map_or(seen, |known| known.with(seen)));
         }
+    }
+
+    /// How far someone who is followed is, if in view.
+    fn distance_m(&self, track: &TrackRecord) -> Option<f64> {
+        let bearing = Bearing::new(Vector3::from(track.position_m))?;
+        let is_in_view = self.camera.as_ref().is_none_or(|camera| camera.pixel(&bearing).is_some());
+        is_in_view.then(|| Vector3::from(track.position_m).norm())
     }
 }
 
@@ -127,6 +142,7 @@ fn light(record: &FrameRecord, neighbour: &NeighbourRecord, exposure_us: f64) ->
 
 #[cfg(test)]
 mod tests {
+    use photinus::camera::{Ideal, IdealLaw, Model, Pixel};
     use photinus_io::results::ResultsReader;
 
     use super::*;
@@ -207,6 +223,23 @@ mod tests {
         let mut control = Exposure::new(WANTED);
         let asked_us = control.after(&entry).unwrap();
         assert!((asked_us / 4000.0 - 128.0 / 245.0).abs() < 0.01, "{asked_us}");
+    }
+
+    #[test]
+    fn who_is_in_view_of_other_cameras_only_is_nobody_to_expose_for() {
+        let lens = Ideal::new(IdealLaw::Equidistant, [200.0; 2], Pixel::new(319.5, 239.5)).unwrap();
+        let camera = Camera::new(Model::Ideal(lens), 640, 480, None).unwrap();
+        let followed = |position_m: &str| {
+            let line = format!(
+                r#"{{"spots":[],"tracks":[{{"track":0,"airframe":"a","probability":1,"predicted":true,"spots":[],"position_m":{position_m},"position_covariance_m2":[[1,0,0],[0,1,0],[0,0,1]],"velocity_m_s":[0,0,0],"velocity_covariance_m2_s2":[[1,0,0],[0,1,0],[0,0,1]],"orientation_xyzw":[0,0,0,1],"orientation_covariance_rad2":[[1,0,0],[0,1,0],[0,0,1]]}}]}}"#
+            );
+            ResultsReader::new(line.as_bytes(), "t").next().unwrap().unwrap()
+        };
+        let mut control = Exposure::new(WANTED).of_camera(camera);
+        control.learn(&followed("[0.1,0,2]"), 100.0);
+        assert!((control.nearest_m[0].unwrap() - 2.0).abs() < 0.01);
+        control.learn(&followed("[0.1,0,-2]"), 100.0);
+        assert_eq!(control.nearest_m[0], None);
     }
 
     #[test]

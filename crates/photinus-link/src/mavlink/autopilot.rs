@@ -1,6 +1,7 @@
 //! The link to an autopilot: a socket that never blocks, and a clock that the caller reads.
 
-use std::collections::VecDeque;
+use std::cmp::Ordering;
+use std::collections::{BTreeSet, VecDeque};
 use std::io::{self, ErrorKind};
 use std::net::{SocketAddr, ToSocketAddrs, UdpSocket};
 
@@ -290,13 +291,17 @@ impl Autopilot {
         self.targets_s = Some(now_s);
         let own = Own { enu_from_body: attitude.enu_from_body, ..own };
         let time_boot_ms = self.since_boot_us(now_s) / 1000;
+        // Cameras of one vehicle all tell who is followed: the newest frame knows best.
         let fresh = self.cameras.iter().filter(|camera| !camera.is_stale);
-        let tracks = fresh.flat_map(|camera| {
-            let tracks = camera.last.iter().flat_map(|record| &record.tracks);
-            tracks.filter(|track| track.id.is_some()).map(|track| (track, camera.mounting))
-        });
-        let targets: Vec<_> =
-            tracks.map(|(track, mounting)| follow_target(track, &own, mounting, time_boot_ms)).collect();
+        let mut told: Vec<_> =
+            fresh.filter_map(|camera| Some((camera.last.as_ref()?, camera.mounting))).collect();
+        told.sort_by(|a, b| b.0.time_s.partial_cmp(&a.0.time_s).unwrap_or(Ordering::Equal));
+        let mut ids = BTreeSet::new();
+        let mut targets = Vec::new();
+        for (record, mounting) in told {
+            let named = record.tracks.iter().filter(|track| track.id.is_some_and(|id| ids.insert(id)));
+            targets.extend(named.map(|track| follow_target(track, &own, mounting, time_boot_ms)));
+        }
         targets.into_iter().for_each(|target| self.send(&MavMessage::FOLLOW_TARGET(target)));
     }
 

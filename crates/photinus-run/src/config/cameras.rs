@@ -301,7 +301,7 @@ impl Config {
                 })?,
             _ => self.opener(named, exposure_us, (*clock, takeoff.clone(), start_s)),
         };
-        let exposure = self.wanted_exposure().map(Exposure::new);
+        let exposure = self.wanted_exposure().map(|wanted| Exposure::new(wanted).of_camera(camera.clone()));
         let looking = Looking { camera, mask, mounting, course, exposure_us };
         Ok((Camera { name: keys.name.clone(), source, view, exposure }, looking))
     }

@@ -50,7 +50,7 @@ pub struct Moved {
 /// What is known of a frame that is followed together with those of other cameras.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Together {
-    /// How many frames of all of them were taken in before it.
+    /// How many frames of all of them were handed in before it.
     pub order: u64,
     /// How it turned since the frame before in time, of any of them.
     pub turned: Option<Turned>,

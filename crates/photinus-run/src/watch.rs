@@ -210,8 +210,9 @@ struct Together {
     lookouts: Vec<(Lookout, bool)>,
     airframes: Vec<String>,
     disputes: Disputes,
-    /// How many frames were taken in, and the times of the last ones, ascending.
+    /// How many frames were handed in.
     order: u64,
+    /// Times of the last ones that were taken in, ascending, s.
     taken_s: Vec<f64>,
     /// Said once of each kind.
     told: Vec<&'static str>,
@@ -319,6 +320,7 @@ impl Together {
             None => before_s.and_then(|before_s| own.course.turned(before_s, time_s)),
         };
         *together = Some(frames::Together { order: self.order, turned });
+        self.order += 1;
     }
 
     /// Remembers when frames were taken that others may come before or after.
@@ -329,7 +331,6 @@ impl Together {
         }
         let last_s = &mut self.cameras[camera].last_s;
         *last_s = Some(last_s.map_or(time_s, |last_s| last_s.max(time_s)));
-        self.order += 1;
         self.taken_s.insert(self.taken_s.partition_point(|taken_s| *taken_s <= time_s), time_s);
         let oldest_s = self.taken_s.last().map_or(time_s, |newest_s| newest_s - 2.0 * Tracker::MOST_LATE_S);
         // One before all that may still come.

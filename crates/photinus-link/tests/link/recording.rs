@@ -32,7 +32,7 @@ fn write(recorder: &mut Recorder, frame: &Frame, arrived_ns: u64) {
         gravity: frame.gravity,
         moved: frame.moved,
     };
-    recorder.located(&located, &view(), arrived_ns).expect("it is written");
+    recorder.located(&located, &view().exposed(frame.exposure_s), arrived_ns).expect("it is written");
 }
 
 proptest! {
@@ -55,7 +55,7 @@ proptest! {
             source: format!("images/{index}.png"),
             gravity: (index != 1).then(|| Unit::new_normalize(Vector3::from(down))),
             moved: moved(index, &down),
-            exposure_s: None,
+            exposure_s: Some(1e-3 / (1 + index % 3) as f64),
             conversions: Vec::new(),
         }).collect();
         for (frame, arrived) in written.iter().zip(1..) {
@@ -91,7 +91,7 @@ fn frame(index: u64) -> Frame {
         time_s,
         source,
         gravity: None,
-        exposure_s: None,
+        exposure_s: Some(1e-3),
         moved: Moved::default(),
         conversions: Vec::new(),
     }

@@ -119,8 +119,9 @@ impl Tracker {
         self.stepper.power(camera, self.history.newest()?)
     }
 
-    /// Takes a frame in, and tells the tracks at its time, in its camera's axes; [`Self::at`] tells those of the newest frame's after a late one. Frames up to [`Self::MOST_LATE_S`] behind the newest
-    /// take their place; one that is more than [`Self::JUMP_S`] off is of another clock: all tracks are forgotten first, and [`Tracked::placed`] says so.
+    /// Takes a frame in, and tells the tracks at its time, in its camera's axes; after a late one, [`Self::at`] tells those of the newest. Frames up to
+    /// [`Self::MOST_LATE_S`] behind the newest take their place; one that is more than [`Self::JUMP_S`] off is of another clock: all tracks are forgotten
+    /// first, and [`Tracked::placed`] says so.
     ///
     /// # Errors
     /// [`TrackError`] for a time or a turn without meaning, a frame that is too late, and a second one of the same time; nothing is changed then.

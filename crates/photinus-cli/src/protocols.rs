@@ -89,8 +89,8 @@ fn drawing(cameras: &[Camera]) -> photinus_io::Result<photinus_link::ros2::Draw>
     }))
 }
 
-/// What opens a recording, a scene or a topic as a camera's source; the tables `[ros2]` and `[zenoh]` say where a topic is. `None` where that is not in this program,
-/// or where `[zenoh]` is missing.
+/// What opens a recording, a scene or a topic as a camera's source; the tables `[ros2]` and `[zenoh]` say where a topic is. `None` where that is not in this
+/// program, or where `[zenoh]` is missing.
 pub(crate) fn source(
     config: &Config,
     origin: Origin<'_>,

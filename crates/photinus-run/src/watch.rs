@@ -124,10 +124,11 @@ pub struct Looking {
 }
 
 /// What follows the vehicles that a camera sees, or cameras together, as one of these cameras reaches it.
-#[derive(Clone)]
 pub struct Watch {
     all: Arc<Mutex<Together>>,
     camera: usize,
+    course: Course,
+    exposure_s: f64,
 }
 
 impl Watch {
@@ -142,27 +143,22 @@ impl Watch {
         fleets: &[Option<Fleet>],
     ) -> std::result::Result<Vec<Self>, LookoutError> {
         let is_placed = |looking: &Looking| looking.mounting.is_some_and(|own| own.position_m.is_some());
-        let placed = cameras.iter().filter(|looking| is_placed(looking)).count();
-        let are_together = (2..=Rig::MOST).contains(&placed);
-        let watch = |together: Vec<Looking>| {
-            Together::new(together, kinds, settings, fleets).map(|all| Arc::new(Mutex::new(all)))
-        };
-        let (mut rig, mut places, mut watches) = (Vec::new(), Vec::new(), Vec::new());
-        for (place, looking) in cameras.into_iter().enumerate() {
-            if are_together && is_placed(&looking) {
-                rig.push(looking);
-                places.push(place);
-            } else {
-                watches.push((place, Self { all: watch(vec![looking])?, camera: 0 }));
+        let rig: Vec<&Looking> = cameras.iter().filter(|looking| is_placed(looking)).collect();
+        let are_together = (2..=Rig::MOST).contains(&rig.len());
+        let all = are_together.then(|| Together::of(&rig, kinds, settings, fleets)).transpose()?;
+        let mut numbers = 0..Rig::MOST;
+        let watch = |looking: Looking| {
+            let together = all.as_ref().filter(|_| is_placed(&looking));
+            match together.and_then(|all| Some((all, numbers.next()?))) {
+                Some((all, camera)) => {
+                    // The tracker of a rig swings its cameras about the vehicle itself.
+                    let course = looking.course.of_middle();
+                    Ok(Self::with(all.clone(), camera, course, looking.exposure_us))
+                }
+                None => Self::alone(looking, kinds, settings, fleets),
             }
-        }
-        if are_together {
-            let all = watch(rig)?;
-            let own = |(camera, place)| (place, Self { all: all.clone(), camera });
-            watches.extend(places.into_iter().enumerate().map(own));
-        }
-        watches.sort_by_key(|watch| watch.0);
-        Ok(watches.into_iter().map(|(_, watch)| watch).collect())
+        };
+        cameras.into_iter().map(watch).collect()
     }
 
     /// For the frames of one camera.
@@ -175,21 +171,22 @@ impl Watch {
         settings: &Settings,
         fleets: &[Option<Fleet>],
     ) -> std::result::Result<Self, LookoutError> {
-        let all = Together::new(vec![looking], kinds, settings, fleets)?;
-        Ok(Self { all: Arc::new(Mutex::new(all)), camera: 0 })
+        let all = Together::of(&[&looking], kinds, settings, fleets)?;
+        Ok(Self::with(all, 0, looking.course, looking.exposure_us))
+    }
+
+    fn with(all: Arc<Mutex<Together>>, camera: usize, course: Course, exposure_us: Option<f64>) -> Self {
+        Self { all, camera, course, exposure_s: exposure_us.map_or(EXPOSURE_S, |us| us * 1e-6) }
     }
 
     /// Down in the camera frame in the middle of a frame's exposure, where the vehicle says so.
     pub fn down(&self, entry: &Entry) -> Option<Unit<Vector3<f64>>> {
-        let time_s = entry.record.time_s?;
-        let own = &self.all().cameras[self.camera];
-        let exposure_s = entry.exposure_s.unwrap_or(own.exposure_s);
-        own.course.down(time_s + 0.5 * exposure_s)
+        self.course.down(entry.record.time_s? + 0.5 * entry.exposure_s.unwrap_or(self.exposure_s))
     }
 
     /// Completes the record of a frame that was located, if it has a time that comes after the one before.
     pub fn follow(&self, entry: &mut Entry, located: &Located) {
-        self.all().follow(self.camera, entry, located);
+        self.all().follow(self, entry, located);
     }
 
     /// What a user should know, since it was asked for last.
@@ -205,7 +202,8 @@ impl Watch {
 
 /// What follows the vehicles that cameras see together.
 struct Together {
-    cameras: Vec<Own>,
+    /// When the last frame of each camera was, s.
+    last_s: Vec<Option<f64>>,
     /// By kind.
     lookouts: Vec<(Lookout, bool)>,
     airframes: Vec<String>,
@@ -220,22 +218,15 @@ struct Together {
     remarks: Vec<String>,
 }
 
-/// What is known of one of the cameras.
-struct Own {
-    course: Course,
-    exposure_s: f64,
-    last_s: Option<f64>,
-}
-
 impl Together {
-    fn new(
-        cameras: Vec<Looking>,
+    fn of(
+        cameras: &[&Looking],
         kinds: &[Kind],
         settings: &Settings,
         fleets: &[Option<Fleet>],
-    ) -> std::result::Result<Self, LookoutError> {
+    ) -> std::result::Result<Arc<Mutex<Self>>, LookoutError> {
         let is_rig = cameras.len() > 1;
-        let mounted = |looking: &Looking| Mounted {
+        let mounted = |looking: &&Looking| Mounted {
             camera: looking.camera.clone(),
             mask: looking.mask.clone(),
             mounting: looking.mounting.filter(|_| is_rig).map(Mounting::from).unwrap_or_default(),
@@ -249,14 +240,8 @@ impl Together {
         };
         let lookouts = kinds.iter().zip(fleets).enumerate().map(lookout);
         let lookouts = lookouts.collect::<std::result::Result<_, LookoutError>>()?;
-        let own = |looking: Looking| Own {
-            // The tracker of a rig swings its cameras about the vehicle itself.
-            course: if is_rig { looking.course.of_middle() } else { looking.course },
-            exposure_s: looking.exposure_us.map_or(EXPOSURE_S, |us| us * 1e-6),
-            last_s: None,
-        };
-        Ok(Self {
-            cameras: cameras.into_iter().map(own).collect(),
+        Ok(Arc::new(Mutex::new(Self {
+            last_s: vec![None; cameras.len()],
             lookouts,
             airframes: kinds.iter().map(|kind| kind.airframe.name().to_owned()).collect(),
             disputes: Disputes::default(),
@@ -265,15 +250,15 @@ impl Together {
             told: Vec::new(),
             contested: Vec::new(),
             remarks: Vec::new(),
-        })
+        })))
     }
 
-    fn follow(&mut self, camera: usize, entry: &mut Entry, located: &Located) {
-        let Some(time_s) = entry.record.time_s else { return };
-        self.complete(camera, entry, time_s);
+    fn follow(&mut self, watch: &Watch, entry: &mut Entry, located: &Located) {
+        let (Some(time_s), camera) = (entry.record.time_s, watch.camera) else { return };
+        self.complete(watch, entry, time_s);
         let Moved { turned, moving, together } = entry.moved;
         let turned_since_any = together.and_then(|together| together.turned);
-        let exposure_s = entry.exposure_s.unwrap_or(self.cameras[camera].exposure_s);
+        let exposure_s = entry.exposure_s.unwrap_or(watch.exposure_s);
         let gravity = entry.gravity;
         let glance =
             Glance { camera, time_s, exposure_s, turned, turned_since_any, moving, gravity, located };
@@ -301,12 +286,11 @@ impl Together {
     }
 
     /// Adds how the camera moved. What a recording of a run says goes before: it was told then.
-    fn complete(&mut self, camera: usize, entry: &mut Entry, time_s: f64) {
-        let own = &self.cameras[camera];
+    fn complete(&mut self, watch: &Watch, entry: &mut Entry, time_s: f64) {
         let Moved { turned, moving, together } = &mut entry.moved;
-        *turned = turned.or_else(|| own.course.turned(own.last_s?, time_s));
-        *moving = moving.or_else(|| own.course.moving(time_s));
-        if self.cameras.len() == 1 {
+        *turned = turned.or_else(|| watch.course.turned(self.last_s[watch.camera]?, time_s));
+        *moving = moving.or_else(|| watch.course.moving(time_s));
+        if self.last_s.len() == 1 {
             *together = None;
             return;
         }
@@ -317,7 +301,7 @@ impl Together {
         let before_s = place.checked_sub(1).map(|before| self.taken_s[before]);
         let turned = match recorded {
             Some(recorded) => recorded.turned,
-            None => before_s.and_then(|before_s| own.course.turned(before_s, time_s)),
+            None => before_s.and_then(|before_s| watch.course.turned(before_s, time_s)),
         };
         *together = Some(frames::Together { order: self.order, turned });
         self.order += 1;
@@ -327,9 +311,9 @@ impl Together {
     fn took(&mut self, camera: usize, time_s: f64, placed: Placed) {
         if placed == Placed::Reset {
             self.taken_s.clear();
-            self.cameras.iter_mut().for_each(|own| own.last_s = None);
+            self.last_s.fill(None);
         }
-        let last_s = &mut self.cameras[camera].last_s;
+        let last_s = &mut self.last_s[camera];
         *last_s = Some(last_s.map_or(time_s, |last_s| last_s.max(time_s)));
         self.taken_s.insert(self.taken_s.partition_point(|taken_s| *taken_s <= time_s), time_s);
         let oldest_s = self.taken_s.last().map_or(time_s, |newest_s| newest_s - 2.0 * Tracker::MOST_LATE_S);

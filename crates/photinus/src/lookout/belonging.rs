@@ -49,7 +49,8 @@ impl Belongings {
         self.all.iter().find(|own| (own.camera, own.number) == (camera, number))
     }
 
-    /// Moves those of a camera on by a frame of it. Those whose marker is followed no more, or whose vehicle is not, end: `ended` is told the last that was heard of each.
+    /// Moves those of a camera on by a frame of it. Those whose marker is followed no more, or whose vehicle is not, end: `ended` is told the last that was
+    /// heard of each.
     pub(super) fn follow(
         &mut self,
         camera: usize,

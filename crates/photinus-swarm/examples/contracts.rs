@@ -13,11 +13,7 @@ use photinus_swarm::{Grade, Metrics, Run};
 
 fn main() -> Result<()> {
     let words: Vec<String> = std::env::args().skip(1).collect();
-    let grade = match words.first().map(String::as_str) {
-        Some("rendered") => Grade::Rendered,
-        Some("perfect") => Grade::Perfect,
-        _ => Grade::StandIn,
-    };
+    let grade = words.first().and_then(|word| Grade::named(word)).unwrap_or(Grade::StandIn);
     let seeds: usize = words.get(1).and_then(|word| word.parse().ok()).unwrap_or(10);
     println!(
         "| scenario | perception | flights | collisions | with obstacles | flights where the proof applied | collisions there | proven, % | braking, % | slow, % | too fast | velocity off | strayed | farthest stray, m | bounds broken | held broken | unseen near | smallest distance, m | mean speed, m/s |\n|{}",

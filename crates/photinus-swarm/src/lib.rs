@@ -5,7 +5,7 @@
 //!                      \-> metrics, records
 //! ```
 //!
-//! A robot decides by its own frames and its own instruments alone; how it sees is one of three grades ([`perception`]). A run depends on the scenario, its
+//! A robot decides by its own frames and its own instruments alone; how it sees is one of four grades ([`perception`]). A run depends on the scenario, its
 //! seed and the grade, and on nothing else: not on the number of threads.
 
 pub mod chance;

@@ -90,6 +90,8 @@ enum Perception {
     StandIn,
     /// What is in view is known exactly
     Perfect,
+    /// The noise of UVDAR's own simulator, ten times a second
+    Uvdar,
 }
 
 impl Args {
@@ -124,6 +126,7 @@ pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> Result<(), Failure> {
         Perception::Rendered => Grade::Rendered,
         Perception::StandIn => Grade::StandIn,
         Perception::Perfect => Grade::Perfect,
+        Perception::Uvdar => Grade::Uvdar,
     });
     let read = if own.is_some() { Vec::new() } else { vec![path.clone()] };
     let run = Run::new(scenario, path, grade);

@@ -13,7 +13,7 @@ use crate::{Controller, OwnState, Seen, Setpoint};
 /// How to follow.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Follower {
-    /// Whom; the nearest where `None`.
+    /// Whom; where `None`, whoever was nearest when nobody was followed.
     pub leader: Option<u32>,
     /// How far away, m.
     pub distance_m: f64,
@@ -35,6 +35,8 @@ pub struct Follower {
     pub patience_s: f64,
     /// Azimuth at which it was seen last, rad.
     last_azimuth_rad: f64,
+    /// The track that is followed.
+    track: Option<u64>,
 }
 
 impl Follower {
@@ -52,15 +54,17 @@ impl Follower {
             acceleration_m_s2: 8.0,
             patience_s: 1.0,
             last_azimuth_rad: 0.0,
+            track: None,
         }
     }
 
     fn leader<'a>(&self, seen: &'a [Seen]) -> Option<&'a Seen> {
         match self.leader {
             Some(identity) => identified(seen, identity),
-            None => {
+            // whoever appears in between is no leader
+            None => likely(seen).find(|seen| Some(seen.track) == self.track).or_else(|| {
                 likely(seen).min_by(|a, b| a.distance.bounds.min_m().total_cmp(&b.distance.bounds.min_m()))
-            }
+            }),
         }
     }
 }
@@ -73,6 +77,7 @@ impl Controller for Follower {
             self.last_azimuth_rad = wrapped(self.last_azimuth_rad - own.turn_rad_s() * dt_s);
             return Setpoint::stand().turning(self.turn_per_s * self.last_azimuth_rad);
         };
+        self.track = Some(leader.track);
         let level = Vector3::new(at.x, at.y, 0.0);
         let range = level.norm().max(1e-3);
         let towards = level / range;
@@ -100,4 +105,48 @@ impl Controller for Follower {
 fn wrapped(angle_rad: f64) -> f64 {
     let (sine, cosine) = libm::sincos(angle_rad);
     libm::atan2(sine, cosine)
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{Matrix3, UnitVector3};
+    use photinus::locator::Distance;
+    use photinus::ranging::Interval;
+
+    use super::*;
+    use crate::Normal;
+
+    fn seen(track: u64, x: f64, y: f64) -> Seen {
+        let mean = Vector3::new(x, y, 0.0);
+        let bounds = Interval::new(0.5 * mean.norm(), 2.0 * mean.norm()).unwrap();
+        Seen {
+            track,
+            identity: None,
+            bearing: UnitVector3::new_normalize(mean),
+            bearing_bound_rad: 0.1,
+            distance: Distance { estimate: None, bounds, perpendicular_m: None, inline_m: None },
+            position_m: Some(Normal { mean, covariance: Matrix3::identity() * 0.01 }),
+            velocity_m_s: None,
+            heading: None,
+            probability: 0.9,
+            spot_px: None,
+            age_s: 0.0,
+        }
+    }
+
+    fn wants_to_turn(follower: &mut Follower, seen: &[Seen]) -> f64 {
+        let own = OwnState::resting();
+        follower.command(&own, seen, 0.05).yaw_rate_rad_s
+    }
+
+    #[test]
+    fn who_appears_nearer_is_not_the_leader() {
+        let mut follower = Follower::new(None, 6.0);
+        let (leader, another) = (seen(1, 6.0, 1.0), seen(2, 2.0, -2.0));
+        assert!(wants_to_turn(&mut follower, &[leader]) > 0.0);
+        assert!(wants_to_turn(&mut follower, &[another, leader]) > 0.0);
+        // alone, the nearest is followed
+        assert!(wants_to_turn(&mut follower, &[another]) < 0.0);
+        assert!(wants_to_turn(&mut follower, &[leader, another]) < 0.0);
+    }
 }

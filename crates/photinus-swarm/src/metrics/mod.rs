@@ -65,6 +65,8 @@ pub struct Metrics {
     pub formation_error_m: Option<f64>,
     /// Time from which on that stays within twice its final value, s.
     pub formation_settles_s: Option<f64>,
+    /// Root of the mean square velocity of its vehicles against that of the formation, m/s, over the last fifth: how much it oscillates.
+    pub formation_oscillation_m_s: Option<f64>,
     /// Mean speed, m/s.
     pub mean_speed_m_s: f64,
     /// Share of frames in which the sight graph is connected: two are linked when one sees the other.
@@ -167,6 +169,7 @@ impl Tally {
             extension_sigma_m: sigma(&shape.extension_m[last..]),
             formation_error_m,
             formation_settles_s,
+            formation_oscillation_m_s: shape.oscillation_m_s(last),
             mean_speed_m_s: mean(&shape.speed_m_s).unwrap_or(0.0),
             connected: shares.connected,
             largest_part: shares.largest_part,

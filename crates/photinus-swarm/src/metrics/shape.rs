@@ -15,6 +15,8 @@ pub(super) struct Shape {
     pub(super) extension_m: Vec<f64>,
     pub(super) speed_m_s: Vec<f64>,
     formation_m: Vec<f64>,
+    /// Mean square velocity against the group's, m^2/s^2.
+    stirring_m2_s2: Vec<f64>,
 }
 
 impl Shape {
@@ -25,6 +27,7 @@ impl Shape {
             extension_m: Vec::new(),
             speed_m_s: Vec::new(),
             formation_m: Vec::new(),
+            stirring_m2_s2: Vec::new(),
         }
     }
 
@@ -41,6 +44,8 @@ impl Shape {
         self.extension_m.push(extension_m(&places));
         if !self.wanted_m.is_empty() {
             self.formation_m.push(formation_error_m(&places[..self.wanted_m.len()], &self.wanted_m));
+            let velocities: Vec<Vector3<f64>> = velocities().take(self.wanted_m.len()).collect();
+            self.stirring_m2_s2.push(extension_m(&velocities).powi(2));
         }
     }
 
@@ -51,6 +56,11 @@ impl Shape {
         };
         let outside = self.formation_m.iter().rposition(|&now_m| now_m > 2.0 * error_m);
         (Some(error_m), Some(outside.map_or(0.0, |frame| (frame + 1) as f64 * period_s)))
+    }
+
+    /// Root of the mean square velocity of those in the formation against that of all of it, from frame `last` on, m/s.
+    pub(super) fn oscillation_m_s(&self, last: usize) -> Option<f64> {
+        super::mean(self.stirring_m2_s2.get(last..)?).map(f64::sqrt)
     }
 }
 

@@ -1,9 +1,10 @@
-//! What a vehicle sees of the others, in three grades, by one interface.
+//! What a vehicle sees of the others, in four grades, by one interface.
 //!
 //! ```text
 //! the world at a moment -> in_view: who could be seen at all                      sight
 //!                       -> exactly what is in view                                perfect
 //!                       -> what a table of errors makes of it                     stand_in
+//!                       -> what UVDAR's own simulator makes of it                 uvdar
 //!                       -> frames -> photinus -> tracks of all cameras together   rendered
 //! body frame -> level frame, as the vehicle believes it to be                     axes
 //! ```
@@ -17,6 +18,7 @@ mod perfect;
 mod rendered;
 mod sight;
 mod stand_in;
+mod uvdar;
 
 use std::sync::Arc;
 
@@ -45,15 +47,26 @@ pub enum Grade {
     StandIn,
     /// What is in view is known exactly.
     Perfect,
+    /// What is in view is told with the noise of UVDAR's own simulator, ten times a second.
+    Uvdar,
 }
 
 impl Grade {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::Rendered, Self::StandIn, Self::Perfect, Self::Uvdar];
+
+    /// The grade of a name.
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|grade| grade.name() == name)
+    }
+
     /// Its name in files.
     pub fn name(self) -> &'static str {
         match self {
             Self::Rendered => "rendered",
             Self::StandIn => "stand_in",
             Self::Perfect => "perfect",
+            Self::Uvdar => "uvdar",
         }
     }
 }
@@ -110,6 +123,8 @@ pub enum Eyes {
     StandIn(Box<stand_in::StandIn>),
     /// See frames.
     Rendered(Box<rendered::Rendered>),
+    /// See with UVDAR's own noise.
+    Uvdar(Box<uvdar::Uvdar>),
 }
 
 impl Eyes {
@@ -127,6 +142,7 @@ impl Eyes {
             Grade::Perfect => Self::Perfect(perfect::Perfect::default()),
             Grade::StandIn => Self::StandIn(Box::new(stand_in::StandIn::new(scenario, index, table))),
             Grade::Rendered => Self::Rendered(Box::new(rendered::Rendered::new(scenario, index)?)),
+            Grade::Uvdar => Self::Uvdar(Box::new(uvdar::Uvdar::new(scenario, index))),
         })
     }
 
@@ -137,6 +153,7 @@ impl Eyes {
             Self::Perfect(eyes) => eyes.look(looking, moment, seen),
             Self::StandIn(eyes) => eyes.look(looking, moment, seen),
             Self::Rendered(eyes) => eyes.look(looking, moment, seen),
+            Self::Uvdar(eyes) => eyes.look(looking, moment, seen),
         }
     }
 }

@@ -51,7 +51,7 @@ pub use input::Input;
 use input::Seen;
 pub use kinds::Kind;
 pub use neighbour::{Distance, Located, Neighbour, Orientation, Position, RunnerUp};
-pub(crate) use posing::of_mean_calibration;
+pub(crate) use posing::{LOG_RANGE, of_mean_calibration};
 pub use settings::Settings;
 pub use sighting::Sighting;
 pub use sun::Sun;

@@ -27,7 +27,7 @@ use crate::pose::{
 use crate::ranging::Interval;
 
 /// Logarithm of the farthest over the nearest distance of a neighbour: they are even over it.
-pub(super) const LOG_RANGE: f64 = 4.6;
+pub(crate) const LOG_RANGE: f64 = 4.6;
 /// Light of the wrong power does not rule out what geometry is sure of, nats.
 const MOST_POWER_NATS: f64 = 12.0;
 

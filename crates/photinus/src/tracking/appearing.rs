@@ -8,7 +8,8 @@ use alloc::vec::Vec;
 use nalgebra::Matrix3;
 
 use super::component::{Component, Covariance, YAW_RATE};
-use super::look::Moment;
+use super::doubting;
+use super::look::{Appearance, Moment};
 use super::reduction::reduce;
 use super::state::{MOST_TARGETS, State, Target};
 use super::step::Model;
@@ -44,15 +45,7 @@ pub(super) fn appear(
         if existence < LEAST || !may_begin {
             continue;
         }
-        modes.clear();
-        let anonymous =
-            appearance.vehicle.is_none() && members.iter().all(|&spot| moment.signals[spot].is_none());
-        let turns = if anonymous { model.symmetry.turns() } else { 1 };
-        for mode in moment.modes(appearance) {
-            let first = modes.first().copied();
-            modes.push(begin(model, mode, first.as_ref(), turns));
-        }
-        reduce(modes, straight_rad);
+        begun(model, moment, appearance, straight_rad, modes);
         if modes.is_empty() {
             continue;
         }
@@ -61,7 +54,7 @@ pub(super) fn appear(
         after.components.extend_from_slice(modes);
         after.members.extend_from_slice(members);
         after.markers.resize(after.members.len(), None);
-        let begun = Target {
+        let target = Target {
             id: before.map_or(after.next_id, |before| after.targets[before].id),
             vehicle: appearance.vehicle,
             existence,
@@ -76,16 +69,36 @@ pub(super) fn appear(
             components: modes.len(),
             first_member,
             members: members.len(),
+            log_wrong: doubting::beforehand(),
         };
         match before {
-            Some(before) => after.targets[before] = begun,
+            Some(before) => after.targets[before] = target,
             None => {
-                after.targets.push(begun);
+                after.targets.push(target);
                 after.next_id += 1;
             }
         }
     }
     unexplained.max(0.0)
+}
+
+/// Fills `modes` with what a neighbour tells of a vehicle of which nothing else is known.
+pub(super) fn begun(
+    model: &Model,
+    moment: &Moment,
+    appearance: &Appearance,
+    straight_rad: f64,
+    modes: &mut Vec<Component>,
+) {
+    modes.clear();
+    let is_dumb = |&spot: &usize| moment.signals[spot].is_none();
+    let anonymous = appearance.vehicle.is_none() && moment.members(appearance).iter().all(is_dumb);
+    let turns = if anonymous { model.symmetry.turns() } else { 1 };
+    for mode in moment.modes(appearance) {
+        let first = modes.first().copied();
+        modes.push(begin(model, mode, first.as_ref(), turns));
+    }
+    reduce(modes, straight_rad);
 }
 
 fn seen_by_each_s(moment: &Moment) -> [f64; Rig::MOST] {

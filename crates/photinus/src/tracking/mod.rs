@@ -7,7 +7,8 @@
 //!             Kalman update; the pose room brings the measurement
 //! joint       how likely each way is, no spot being two vehicles'           joint
 //! state       vehicles as sums of normal distributions, and whether they    reduction, existence
-//!             exist; new ones from located neighbours nobody claims         appearing
+//!             exist; wrong ones begin anew where frames have them           doubting
+//!             new ones from located neighbours nobody claims                appearing
 //! history     late frames in their place, and all after them again          history
 //! tracks      one mean and covariance each                                  track
 //! ```
@@ -21,6 +22,7 @@
 mod appearing;
 mod branches;
 mod component;
+mod doubting;
 mod error;
 mod existence;
 mod gyro;

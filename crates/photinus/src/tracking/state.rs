@@ -38,6 +38,8 @@ pub(super) struct Target {
     pub(super) log_power: [Option<f64>; Rig::MOST],
     /// What the camera's calibration leaves open of its direction, rad^2.
     pub(super) calibration_rad2: Matrix3<f64>,
+    /// How likely it has settled for a wrong pose, as the logarithm of odds.
+    pub(super) log_wrong: f64,
     pub(super) first_component: usize,
     pub(super) components: usize,
     pub(super) first_member: usize,

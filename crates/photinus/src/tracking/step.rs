@@ -5,6 +5,7 @@
 //! ways        which spots may be which of its markers, each updated    ways (branches, update)
 //! joint       how likely each is, no spot being two vehicles'          joint
 //! concluded   vehicles as sums of those, few; whether they exist       reduction, existence
+//!             those that frames contradict begin anew                  doubting
 //! appeared    located neighbours whose spots nobody claims             appearing
 //! ```
 
@@ -15,6 +16,7 @@ use nalgebra::Matrix3;
 use super::Settings;
 use super::appearing::{self, LOST_S};
 use super::component::Component;
+use super::doubting;
 use super::existence::Existence;
 use super::joint::Joint;
 use super::look::Moment;
@@ -278,7 +280,10 @@ impl Stepper {
             components: reduced.len(),
             first_member,
             members,
+            log_wrong: before.log_wrong,
         });
+        let repeats = model.repeats_of(before, moment, scene.own_interval_s);
+        doubting::doubt(model, moment, repeats, straight_rad, reduced, after);
     }
 }
 
@@ -346,6 +351,7 @@ mod tests {
             is_predicted: false,
             log_power: [None; Rig::MOST],
             calibration_rad2: Matrix3::zeros(),
+            log_wrong: doubting::beforehand(),
             first_component: 0,
             components: 0,
             first_member: 0,

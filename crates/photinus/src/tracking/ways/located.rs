@@ -8,6 +8,7 @@ use nalgebra::{Matrix3, Rotation3, Vector3};
 use super::super::appearing::turn_next_to;
 use super::super::branches::Pairs;
 use super::super::component::{Component, Covariance, Step, pose_step};
+use super::super::doubting::WRONG;
 use super::super::look::Appearance;
 use super::super::state::Target;
 use super::super::step::Model;
@@ -21,9 +22,7 @@ const NEIGHBOUR_GATE: f64 = 36.0;
 /// Most of a neighbour's poses that are begun from; those with less weight are not.
 const MOST_STARTS: usize = 6;
 const LEAST_START: f64 = 0.02;
-/// A track has settled for the wrong pose so seldom, ...
-const WRONG: f64 = 1e-3;
-/// ... and then nothing is known of it but this: its distance to this much of itself, and yaw, rad.
+/// Of a track that has settled for the wrong pose nothing is known but this: its distance to this much of itself, and yaw, rad.
 const ANEW_SHARE: f64 = 0.5;
 const ANEW_YAW_RAD: f64 = 1.0;
 

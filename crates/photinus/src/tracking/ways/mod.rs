@@ -106,7 +106,6 @@ pub(super) struct Ways {
     /// The light of an LED of intensity 1 at 1 m, as one frame may count it, and where it counts.
     log_power: Option<f64>,
     power: Option<LogLight>,
-    own_power: Option<LogLight>,
     repeats: f64,
     whitened: Vec<Whitened>,
     /// Who the vehicle is, where it was heard.
@@ -155,7 +154,6 @@ impl Ways {
             per_frame: pose::Settings::default(),
             log_power: None,
             power: None,
-            own_power: None,
             repeats: 1.0,
             whitened: Vec::new(),
             who: None,
@@ -303,7 +301,6 @@ impl Ways {
         self.whitened.clear();
         self.whitened.extend(self.observations.iter().map(|seen| Whitened::of(seen, extra_rad2)));
         self.who = target.vehicle;
-        self.own_power = self.power.filter(|_| target.vehicle.is_some());
         self.told_lit.clear();
         self.told_lit.resize(model.airframe.markers().len(), 1.0);
         for told in moment.lit.iter().filter(|told| told.track == target.id) {
@@ -351,7 +348,7 @@ impl Ways {
             others: &self.others,
             lit: &self.lit,
         };
-        let known = Known { up: None, bounds: Interval::ANY, size: None, power: self.own_power, visible };
+        let known = Known { up: None, bounds: Interval::ANY, size: None, power: self.power, visible };
         let seen = Seen {
             airframe: &model.airframe,
             settings: &model.pose,

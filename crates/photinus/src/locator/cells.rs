@@ -42,7 +42,10 @@ impl Cells {
     }
 
     /// A cell and those around it, row by row: the cells of each row.
-    pub(super) fn around(self, [column, row]: [usize; 2]) -> impl ExactSizeIterator<Item = Range<usize>> + Clone {
+    pub(super) fn around(
+        self,
+        [column, row]: [usize; 2],
+    ) -> impl ExactSizeIterator<Item = Range<usize>> + Clone {
         let across = column.saturating_sub(1)..(column + 2).min(self.columns);
         let down = row.saturating_sub(1)..(row + 2).min(self.rows);
         down.map(move |row| row * self.columns + across.start..row * self.columns + across.end)
@@ -95,7 +98,8 @@ impl ByCell {
         let within = around.flat_map(|cells| &self.order[self.starts[cells.start]..self.starts[cells.end]]);
         within.filter(move |&&other| other != observation).filter_map(move |&other| {
             let there = sightings[other].spot.centre;
-            let gap_px = libm::hypot(here.u - there.u, here.v - there.v);
+            let (across, down) = (here.u - there.u, here.v - there.v);
+            let gap_px = (across * across + down * down).sqrt();
             (gap_px < reach_px).then_some((other, gap_px))
         })
     }

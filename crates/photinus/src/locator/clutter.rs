@@ -82,7 +82,8 @@ impl Clutter {
     ) {
         let Surroundings { places, besides, companions, .. } = *frame;
         self.shares.clear();
-        self.shares.extend(places.iter().enumerate().map(|(index, place)| share(index) * place.comes_and_goes));
+        self.shares
+            .extend(places.iter().enumerate().map(|(index, place)| share(index) * place.comes_and_goes));
         self.counts.list.copy_from_slice(&besides.list);
         for (place, &share) in places.iter().zip(&self.shares) {
             self.counts.add(place, share);
@@ -93,7 +94,8 @@ impl Clutter {
             members.iter().for_each(|&index| self.counts.add(&places[index], -self.shares[index]));
             let mean = match *members {
                 [only] => {
-                    let beside: f64 = companions.of(only).iter().map(|near| near.density_at(&self.shares)).sum();
+                    let beside: f64 =
+                        companions.of(only).iter().map(|near| near.density_at(&self.shares)).sum();
                     self.log_per_sr(&self.counts, frame, &places[only], 0.0, beside)
                 }
                 _ => self.mean_of_group(frame, members),
@@ -126,7 +128,8 @@ impl Clutter {
     pub(super) fn excess(&mut self, frame: &Surroundings<'_>, share: impl Fn(usize) -> f64) -> f64 {
         let Surroundings { places, besides, companions, .. } = *frame;
         self.shares.clear();
-        self.shares.extend(places.iter().enumerate().map(|(index, place)| share(index) * place.comes_and_goes));
+        self.shares
+            .extend(places.iter().enumerate().map(|(index, place)| share(index) * place.comes_and_goes));
         self.before.list.copy_from_slice(&besides.list);
         let mut excess = 0.0;
         for (index, place) in places.iter().enumerate() {
@@ -155,7 +158,7 @@ impl Clutter {
         let (mut count, mut in_area) = (0, 0.0);
         for row in around {
             count += row.len();
-            let both = counts.list[row.clone()].iter().zip(&memory.clutter()[row]);
+            let both = counts.list[row.clone()].iter().zip(&memory.clutter_by_cell()[row]);
             both.for_each(|(own, before)| in_area += own + before);
         }
         let area_px = count as f64 * cells.area_px2();
@@ -173,7 +176,7 @@ impl Clutter {
         let Some(step) = place.light_step.filter(|_| self.with_light) else { return 1.0 };
         let count = |step: usize| {
             let place = counts.cells.count() + step;
-            counts.list[place] + memory.clutter()[place]
+            counts.list[place] + memory.clutter_by_cell()[place]
         };
         let there = 0.25 * count(step.saturating_sub(1))
             + 0.5 * count(step)
@@ -214,7 +217,7 @@ impl Counts {
     /// All of it, with what is remembered.
     fn total(&self, memory: &Memory) -> f64 {
         let place = self.list.len() - 1;
-        (self.list[place] + memory.clutter()[place]).max(0.0)
+        (self.list[place] + memory.clutter_by_cell()[place]).max(0.0)
     }
 
     /// Counts an observation by this much.

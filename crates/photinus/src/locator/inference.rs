@@ -14,7 +14,7 @@
 
 use alloc::vec::Vec;
 
-use super::alternatives::{Alternatives, POOR_GAIN};
+use super::alternatives::{Alternatives, POOR_GAIN, Question};
 use super::candidates::Candidates;
 use super::clutter::{Clutter, Counts, Surroundings};
 use super::companions::Companions;
@@ -34,6 +34,8 @@ use super::{LocatorError, Sighting, Stage};
 use crate::camera::{Camera, Watched};
 use crate::pose::LogLight;
 
+/// This many of the observations nearest to each are known, and as many as one neighbour shows.
+const FEWEST_BESIDE: usize = 16;
 /// Most first looks, each at what the one before leaves as clutter.
 const LOOKS: usize = 4;
 /// An observation that is likelier than this to be clutter may be another neighbour's.
@@ -131,7 +133,7 @@ impl Inference {
         let (sightings, besides) = all.split_at(all.len().min(self.most()));
         self.besides.count(besides);
         let mut near = core::mem::take(&mut self.near);
-        near.sort(sightings);
+        near.sort(sightings, self.kinds.most_visible().max(FEWEST_BESIDE));
         let context = Context {
             sightings,
             near: &near,
@@ -250,9 +252,9 @@ impl Inference {
             if work.left == 0 {
                 break;
             }
-            work.look(alternatives.look(&context, spot, kinds));
-            let held = |handful: &[usize]| explanation.held(candidates, handful);
-            alternatives.choose(&context, groups, spot, held);
+            let asked = Question { context: &context, groups, explanation, candidates };
+            work.look(alternatives.look(&asked, spot, kinds));
+            alternatives.choose(&asked, spot, kinds);
             for handful in alternatives.chosen() {
                 if !candidates.has(handful) {
                     kinds.weigh(&context, handful, candidates, || work.weigh());

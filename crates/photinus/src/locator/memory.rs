@@ -59,7 +59,7 @@ impl Memory {
     }
 
     /// The clutter that they had in each cell, together.
-    pub(super) fn clutter(&self) -> &[f64] {
+    pub(super) fn clutter_by_cell(&self) -> &[f64] {
         &self.sums
     }
 
@@ -124,7 +124,7 @@ mod tests {
             }
             (
                 memory.frames(),
-                [0, 1].map(|cell: usize| memory.clutter()[cell].to_bits()),
+                [0, 1].map(|cell: usize| memory.clutter_by_cell()[cell].to_bits()),
                 memory.neighbours(),
                 memory.power(),
             )

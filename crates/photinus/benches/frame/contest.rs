@@ -9,6 +9,10 @@ const ROUNDS: usize = 100;
 const CALLS_PER_ROUND: usize = 32;
 /// What takes long is timed over fewer rounds of a single call each.
 const LONG_ROUNDS: usize = 3;
+/// Calls before those whose instructions are counted: what is learnt from frame to frame is known by then.
+const WARM_UP: usize = 96;
+/// What takes long is counted over so many calls, after as many.
+const LONG_CALLS: usize = 2;
 
 /// What is timed; called with the number of the round.
 pub(crate) type Contender<'a> = Box<dyn FnMut(usize) + 'a>;
@@ -74,6 +78,16 @@ impl<'a> Contest<'a> {
         contest
     }
 
+    /// Calls every contender so often, after so many calls to warm up, for `valgrind --tool=callgrind --toggle-collect='*counted*'`
+    /// `--dump-after='*contest::counted*'`: instructions are the same whatever else the machine does.
+    fn count(&mut self, warm_up: usize, calls: usize) {
+        for (name, call) in self.names.iter().zip(&mut self.contenders).skip(1) {
+            println!("{name}, {calls} calls");
+            (0..warm_up).for_each(&mut *call);
+            counted(call, calls);
+        }
+    }
+
     /// A contender is called with the number of its call, to choose among its inputs.
     pub(crate) fn add(&mut self, name: &str, mut call: impl FnMut(usize) + 'a) {
         if !self.names.is_empty() && self.only.as_ref().is_some_and(|only| !name.contains(only.as_str())) {
@@ -88,6 +102,9 @@ impl<'a> Contest<'a> {
     }
 
     pub(crate) fn run(mut self) {
+        if is_counting() {
+            return self.count(WARM_UP, frames::FRAMES);
+        }
         let times = times(&mut self.contenders, CALLS_PER_ROUND);
         self.print_head();
         for (name, time) in self.names.iter().zip(&times) {
@@ -97,6 +114,9 @@ impl<'a> Contest<'a> {
 
     /// For what takes milliseconds to minutes: one after the other, each told as it is done.
     pub(crate) fn run_long(mut self) {
+        if is_counting() {
+            return self.count(LONG_CALLS, LONG_CALLS);
+        }
         self.print_head();
         let mut floor = None;
         for (name, contender) in self.names.iter().zip(&mut self.contenders) {
@@ -110,6 +130,16 @@ impl<'a> Contest<'a> {
         let floor = format!("x {}", self.floor);
         println!("\n{:<34}{:>11}{:>11}{floor:>26}", self.title, "median us", "10 % us");
     }
+}
+
+/// Whether instructions are counted, not times: `--count`.
+fn is_counting() -> bool {
+    std::env::args().any(|argument| argument == "--count")
+}
+
+#[inline(never)]
+fn counted(call: &mut Contender<'_>, calls: usize) {
+    (0..calls).for_each(call);
 }
 
 fn print_row(name: &str, time: Time, floor: Time) {

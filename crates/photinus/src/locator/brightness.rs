@@ -24,6 +24,8 @@ const NOISE: f64 = 0.75;
 const OTHERS: f64 = 0.11;
 const FALL_PX: f64 = 3.0;
 const FAR_PX: f64 = 15.0;
+/// What is so much fainter, as a logarithm, adds nothing.
+const NEGLIGIBLE_LOG: f64 = -12.0;
 /// Error where another spot makes the window narrow, at no distance, and how far away that is, px.
 const NARROWED: f64 = 0.25;
 const NARROWED_PX: f64 = 4.2;
@@ -79,11 +81,11 @@ pub(super) fn tell(
     by_cell.sort(&cells, sightings);
     for own in 0..sightings.len().min(most) {
         let Sighting { spot, log_light, .. } = &sightings[own];
-        let Some(mut light) = log_light.filter(|_| spot.light.is_none()) else { continue };
-        for (other, gap_px) in by_cell.near(&cells, sightings, own, FAR_PX) {
-            disturb(&mut light, sightings[other].log_light, gap_px);
-        }
-        sightings[own].log_light = Some(light);
+        let Some(light) = log_light.filter(|_| spot.light.is_none()) else { continue };
+        let near = by_cell.near(&cells, sightings, own, FAR_PX);
+        let others = near.map(|(other, gap_px)| disturbance(light, sightings[other].log_light, gap_px));
+        let variance = light.sigma * light.sigma + others.sum::<f64>();
+        sightings[own].log_light = Some(LogLight { sigma: variance.sqrt(), ..light });
     }
 }
 
@@ -112,11 +114,11 @@ fn alone(spot: &Spot) -> Option<LogLight> {
     })
 }
 
-/// What another spot of this light adds to the error of one.
-fn disturb(own: &mut LogLight, other: Option<LogLight>, gap_px: f64) {
-    let LogLight { value, sigma } = own;
+/// What another spot of this light adds to the variance of one's.
+fn disturbance(own: LogLight, other: Option<LogLight>, gap_px: f64) -> f64 {
     let share = gap_px / NARROWED_PX;
-    let narrowed = NARROWED * libm::exp(-(share * share) * (share * share));
-    let within = other.map_or(0.0, |other| OTHERS * libm::exp(other.value - *value - gap_px / FALL_PX));
-    *sigma = libm::hypot(*sigma, libm::hypot(narrowed, within));
+    let square = |log: f64| if log < NEGLIGIBLE_LOG { 0.0 } else { libm::exp(2.0 * log) };
+    let narrowed = NARROWED * NARROWED * square(-(share * share) * (share * share));
+    let within = other.map_or(0.0, |other| square(other.value - own.value - gap_px / FALL_PX));
+    narrowed + OTHERS * OTHERS * within
 }

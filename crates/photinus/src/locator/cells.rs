@@ -1,6 +1,7 @@
 //! An image that is divided into cells, to count what is in them and to find what is near.
 
 use alloc::vec::Vec;
+use core::ops::Range;
 
 use super::Sighting;
 #[cfg(not(feature = "std"))]
@@ -40,11 +41,14 @@ impl Cells {
         row * self.columns + column
     }
 
-    /// A cell and those around it, row by row.
-    pub(super) fn around(self, [column, row]: [usize; 2]) -> impl Iterator<Item = usize> + Clone {
+    /// A cell and those around it, row by row: the cells of each row.
+    pub(super) fn around(
+        self,
+        [column, row]: [usize; 2],
+    ) -> impl ExactSizeIterator<Item = Range<usize>> + Clone {
         let across = column.saturating_sub(1)..(column + 2).min(self.columns);
         let down = row.saturating_sub(1)..(row + 2).min(self.rows);
-        down.flat_map(move |row| across.clone().map(move |column| row * self.columns + column))
+        down.map(move |row| row * self.columns + across.start..row * self.columns + across.end)
     }
 }
 
@@ -90,10 +94,12 @@ impl ByCell {
     ) -> impl Iterator<Item = (usize, f64)> + 'a {
         let here = sightings[observation].spot.centre;
         let around = cells.around(cells.of_observation(&sightings[observation]));
-        let within = around.flat_map(|cell| &self.order[self.starts[cell]..self.starts[cell + 1]]);
+        // The observations of cells beside each other are beside each other.
+        let within = around.flat_map(|cells| &self.order[self.starts[cells.start]..self.starts[cells.end]]);
         within.filter(move |&&other| other != observation).filter_map(move |&other| {
             let there = sightings[other].spot.centre;
-            let gap_px = libm::hypot(here.u - there.u, here.v - there.v);
+            let (across, down) = (here.u - there.u, here.v - there.v);
+            let gap_px = (across * across + down * down).sqrt();
             (gap_px < reach_px).then_some((other, gap_px))
         })
     }

@@ -21,6 +21,13 @@ const LIGHT_SIGMA: f64 = 0.7;
 /// Where more observations are near each other than this, on average, clutter is dense whether or not it clumps: those further off are left out.
 const MOST_NEAR: f64 = 16.0;
 
+impl Companion {
+    /// That density where observations are clutter that comes and goes as likely as `shares` tells.
+    pub(super) fn density_at(&self, shares: &[f64]) -> f64 {
+        shares[self.observation] * self.density
+    }
+}
+
 /// The companions of each observation of a frame.
 #[derive(Debug)]
 pub(super) struct Companions {

@@ -28,6 +28,8 @@ pub(super) struct Explanation {
     best: Vec<f64>,
     left: Vec<usize>,
     roots: Vec<usize>,
+    /// Whether an observation is one of a candidate's that is left.
+    claimed: Vec<bool>,
     spots: Vec<usize>,
     options: Vec<Choice>,
     sums: Vec<f64>,
@@ -56,6 +58,7 @@ impl Explanation {
             best: Vec::new(),
             left: Vec::with_capacity(count),
             roots: Vec::new(),
+            claimed: Vec::new(),
             spots: Vec::with_capacity(512),
             options: Vec::with_capacity(count),
             sums: Vec::with_capacity(1 << MOST_TOGETHER),
@@ -154,6 +157,9 @@ impl Explanation {
                 rest = others;
             }
             self.spots = spots;
+            if self.spots.iter().all(|&spot| self.done[spot]) {
+                break;
+            }
         }
     }
 
@@ -179,9 +185,12 @@ impl Explanation {
     fn join(&mut self, candidates: &Candidates, count: usize) {
         self.roots.clear();
         self.roots.extend(0..count);
+        self.claimed.clear();
+        self.claimed.resize(count, false);
         for &index in &self.left {
             let members = candidates.members(index);
             for &spot in members {
+                self.claimed[spot] = true;
                 let [a, b] = [members[0], spot].map(|spot| root(&mut self.roots, spot));
                 self.roots[a.max(b)] = a.min(b);
             }
@@ -191,11 +200,11 @@ impl Explanation {
         }
     }
 
-    /// Sorts what is not done yet, so that what hangs together is together.
+    /// Sorts what is not done yet, so that what hangs together is together. What no candidate claims is clutter, as it began.
     fn sort_into_parts(&mut self, candidates: &Candidates) {
-        let Self { spots, left, roots, done, .. } = self;
+        let Self { spots, left, roots, done, claimed, .. } = self;
         spots.clear();
-        spots.extend((0..roots.len()).filter(|&spot| !done[spot]));
+        spots.extend((0..roots.len()).filter(|&spot| claimed[spot] && !done[spot]));
         spots.sort_unstable_by_key(|&spot| (roots[spot], spot));
         left.sort_unstable_by_key(|&index| (roots[candidates.members(index)[0]], index));
     }

@@ -14,7 +14,7 @@
 
 use alloc::vec::Vec;
 
-use super::alternatives::{Alternatives, POOR_GAIN};
+use super::alternatives::{Alternatives, POOR_GAIN, Question};
 use super::candidates::Candidates;
 use super::clutter::{Clutter, Counts, Surroundings};
 use super::companions::Companions;
@@ -27,13 +27,15 @@ use super::kinds::{Kind, Kinds};
 use super::memory::Memory;
 use super::near::Near;
 use super::neighbour::Located;
+use super::places::Places;
 use super::settings::Settings;
-use super::sun::Sun;
 use super::telling::Telling;
 use super::{LocatorError, Sighting, Stage};
 use crate::camera::{Camera, Watched};
 use crate::pose::LogLight;
 
+/// This many of the observations nearest to each are known, and as many as one neighbour shows.
+const FEWEST_BESIDE: usize = 16;
 /// Most first looks, each at what the one before leaves as clutter.
 const LOOKS: usize = 4;
 /// An observation that is likelier than this to be clutter may be another neighbour's.
@@ -66,6 +68,7 @@ pub(super) struct Inference {
     besides: Counts,
     companions: Companions,
     fixtures: Fixtures,
+    places: Places,
     /// Clutter after a first look, and with what is explained.
     first_clutter: Clutter,
     clutter: Clutter,
@@ -74,6 +77,9 @@ pub(super) struct Inference {
     promising: Vec<usize>,
     doubtful: Vec<usize>,
     explanation: Explanation,
+    /// The same from the other supposition.
+    other_clutter: Clutter,
+    other_explanation: Explanation,
     telling: Telling,
 }
 
@@ -96,6 +102,7 @@ impl Inference {
             besides: Counts::of(size),
             companions: Companions::new(),
             fixtures: Fixtures::new(with_light),
+            places: Places::default(),
             first_clutter: Clutter::new(size, with_light),
             clutter,
             candidates: Candidates::with_room(most),
@@ -103,6 +110,8 @@ impl Inference {
             promising: Vec::new(),
             doubtful: Vec::new(),
             explanation: Explanation::with_room(most),
+            other_clutter: Clutter::new(size, with_light),
+            other_explanation: Explanation::with_room(most),
             telling: Telling::with_room(most),
         })
     }
@@ -124,7 +133,7 @@ impl Inference {
         let (sightings, besides) = all.split_at(all.len().min(self.most()));
         self.besides.count(besides);
         let mut near = core::mem::take(&mut self.near);
-        near.sort(sightings);
+        near.sort(sightings, self.kinds.most_visible().max(FEWEST_BESIDE));
         let context = Context {
             sightings,
             near: &near,
@@ -139,7 +148,10 @@ impl Inference {
         let of_frame = self.groups.sort_out(&context, &mut self.kinds);
         self.companions.find(sightings, self.size, self.with_light);
         self.fixtures.find(sightings);
-        self.look(&context, input.sun);
+        let frame_px = (self.size[0] * self.size[1]) as f64;
+        let cells = (self.besides.cells(), frame_px);
+        self.places.find(sightings, cells, &self.fixtures, input.sun, self.with_light);
+        self.look(&context);
         let clear_power = self.groups.clear_log_power(&context, &mut self.kinds);
         input.tell(Stage::Grouping);
         let context = Context { power: self.memory.power().or(of_frame), ..context };
@@ -150,7 +162,7 @@ impl Inference {
         for round in 0..ROUNDS {
             self.doubt(sightings, round);
             self.look_for_others(&context, round, &mut work);
-            self.settle(sightings, input.sun);
+            self.settle();
         }
         self.fixtures.remember(sightings, |spot| self.explanation.clutter(spot));
         self.memory.remember(self.clutter.counts(), self.explanation.neighbours(), clear_power);
@@ -168,12 +180,9 @@ impl Inference {
     }
 
     /// Takes a first look at each group, and tells from that how dense clutter is.
-    fn look(&mut self, context: &Context<'_>, sun: Option<Sun>) {
-        let Self { groups, first_clutter, besides, companions, fixtures, memory, kinds, with_light, .. } =
-            self;
-        let with_light = *with_light;
-        let sightings = context.sightings;
-        let frame = Surroundings { sightings, besides, companions, fixtures, memory, sun, with_light };
+    fn look(&mut self, context: &Context<'_>) {
+        let Self { groups, first_clutter, besides, companions, places, memory, kinds, .. } = self;
+        let frame = Surroundings { places: places.each(), besides, companions, memory };
         groups.look(context, kinds);
         let mut supposed = |share: f64| {
             groups.suppose(context.sightings.len(), share);
@@ -243,9 +252,9 @@ impl Inference {
             if work.left == 0 {
                 break;
             }
-            work.look(alternatives.look(&context, spot, kinds));
-            let held = |handful: &[usize]| explanation.held(candidates, handful);
-            alternatives.choose(&context, groups, spot, held);
+            let asked = Question { context: &context, groups, explanation, candidates };
+            work.look(alternatives.look(&asked, spot, kinds));
+            alternatives.choose(&asked, spot, kinds);
             for handful in alternatives.chosen() {
                 if !candidates.has(handful) {
                     kinds.weigh(&context, handful, candidates, || work.weigh());
@@ -255,28 +264,33 @@ impl Inference {
     }
 
     /// Explains the frame by its candidates, with clutter and neighbours as dense as the explanation itself has them.
-    fn settle(&mut self, sightings: &[Sighting], sun: Option<Sun>) {
-        let Self { explanation, clutter, groups, candidates, besides, companions, fixtures, memory, .. } =
-            self;
-        let with_light = self.with_light;
-        let frame = Surroundings { sightings, besides, companions, fixtures, memory, sun, with_light };
-        let mut supposed = |share: Option<f64>| {
-            clutter.measure(&frame, groups, |spot| share.unwrap_or(groups.clutter(spot)));
-            let mut density = log_neighbours(groups.neighbours(), memory);
-            for _ in 0..CLUTTER_ROUNDS {
-                explanation.explain(candidates, clutter.log_density(), density);
-                clutter.measure(&frame, groups, |spot| explanation.clutter(spot));
-                density = log_neighbours(explanation.neighbours(), memory);
-            }
-            explanation.explain(candidates, clutter.log_density(), density);
-            explanation.log_density(clutter.log_density())
-                - clutter.excess(&frame, |spot| explanation.clutter(spot))
-                - excess_of_neighbours(explanation.neighbours(), density, memory)
-        };
-        let [much, little] = [None, Some(0.0)].map(&mut supposed);
+    fn settle(&mut self) {
+        let much = self.suppose(None);
+        core::mem::swap(&mut self.explanation, &mut self.other_explanation);
+        core::mem::swap(&mut self.clutter, &mut self.other_clutter);
+        let little = self.suppose(Some(0.0));
         if much > little {
-            supposed(None);
+            core::mem::swap(&mut self.explanation, &mut self.other_explanation);
+            core::mem::swap(&mut self.clutter, &mut self.other_clutter);
         }
+    }
+
+    /// Explains the frame from the supposition that each observation is as likely clutter, or as a first look has it. Returns the logarithm of how likely
+    /// the frame then is.
+    fn suppose(&mut self, share: Option<f64>) -> f64 {
+        let Self { explanation, clutter, groups, candidates, besides, companions, places, memory, .. } = self;
+        let frame = Surroundings { places: places.each(), besides, companions, memory };
+        clutter.measure(&frame, groups, |spot| share.unwrap_or(groups.clutter(spot)));
+        let mut density = log_neighbours(groups.neighbours(), memory);
+        for _ in 0..CLUTTER_ROUNDS {
+            explanation.explain(candidates, clutter.log_density(), density);
+            clutter.measure(&frame, groups, |spot| explanation.clutter(spot));
+            density = log_neighbours(explanation.neighbours(), memory);
+        }
+        explanation.explain(candidates, clutter.log_density(), density);
+        explanation.log_density(clutter.log_density())
+            - clutter.excess(&frame, |spot| explanation.clutter(spot))
+            - excess_of_neighbours(explanation.neighbours(), density, memory)
     }
 }
 

@@ -115,6 +115,31 @@ impl Kinds {
         }
     }
 
+    /// The same look in any light, as [`Matcher::log_density_in_any_light`] has it, as the kind that it looks most like.
+    pub(super) fn log_density_in_any_light(&mut self, context: &Context<'_>, group: &[usize]) -> f64 {
+        let look = |kind: &mut Looked| kind.matcher.log_density_in_any_light(context, group);
+        self.each.iter_mut().map(look).fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    /// The most that [`Self::log_density`] can be, and how much less for each spot fewer, as [`Matcher::most_of_look`] has it of one kind.
+    pub(super) fn most_of_look(
+        &self,
+        context: &Context<'_>,
+        spots: usize,
+        widest2_rad2: f64,
+        is_lit: bool,
+    ) -> [f64; 2] {
+        let each = self.each.iter();
+        let looks = each.map(|kind| kind.matcher.most_of_look(context, spots, widest2_rad2, is_lit));
+        looks.fold([f64::NEG_INFINITY; 2], |a, b| [a[0].max(b[0]), a[1].max(b[1])])
+    }
+
+    /// The most that a full look can make of a group of at least two, as any kind.
+    pub(super) fn most_in_full(&self, context: &Context<'_>, group: &[usize]) -> f64 {
+        let most = |kind: &Looked| kind.matcher.most_in_full(context, group);
+        self.each.iter().map(most).fold(f64::NEG_INFINITY, f64::max)
+    }
+
     /// Widens the bounds of neighbours to those of every kind that they may be: no probability rules a kind out of a strict bound.
     pub(super) fn widen_bounds(&mut self, context: &Context<'_>, located: &mut Located) {
         if self.each.len() == 1 {

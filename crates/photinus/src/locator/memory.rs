@@ -58,9 +58,9 @@ impl Memory {
         self.frames
     }
 
-    /// The clutter that they had in a cell, together.
-    pub(super) fn clutter(&self, cell: usize) -> f64 {
-        self.sums.get(cell).copied().unwrap_or(0.0)
+    /// The clutter that they had in each cell, together.
+    pub(super) fn clutter_by_cell(&self) -> &[f64] {
+        &self.sums
     }
 
     /// How many neighbours they had, together.
@@ -124,7 +124,7 @@ mod tests {
             }
             (
                 memory.frames(),
-                [0, 1].map(|cell| memory.clutter(cell).to_bits()),
+                [0, 1].map(|cell: usize| memory.clutter_by_cell()[cell].to_bits()),
                 memory.neighbours(),
                 memory.power(),
             )

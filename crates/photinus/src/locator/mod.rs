@@ -32,6 +32,7 @@ mod memory;
 mod near;
 mod neighbour;
 mod pairs;
+mod places;
 mod posing;
 mod settings;
 mod sighting;

@@ -18,17 +18,36 @@ pub(super) struct Near {
     places: Vec<(Vector3<f64>, usize)>,
     /// The axis along which the stretch with this middle is split.
     axes: Vec<u8>,
+    /// Of each observation the nearest, as many as were asked for, with the squared gaps.
+    beside: Vec<(f64, usize)>,
+    most: usize,
+    nearest: Vec<(f64, usize)>,
 }
 
 impl Near {
-    /// Sorts the observations of a frame.
-    pub(super) fn sort(&mut self, sightings: &[Sighting]) {
+    /// Sorts the observations of a frame, and finds the `most` that are nearest to each.
+    pub(super) fn sort(&mut self, sightings: &[Sighting], most: usize) {
         self.places.clear();
         let directions = sightings.iter().map(|sighting| *sighting.bearing.vector());
         self.places.extend(directions.enumerate().map(|(index, direction)| (direction, index)));
         self.axes.clear();
         self.axes.resize(self.places.len(), 0);
         split(&mut self.places, &mut self.axes);
+        self.most = (most + 1).min(sightings.len());
+        self.beside.clear();
+        let mut nearest = core::mem::take(&mut self.nearest);
+        for sighting in sightings {
+            self.nearest(sighting.bearing.vector(), self.most, &mut nearest);
+            self.beside.extend_from_slice(&nearest);
+        }
+        self.nearest = nearest;
+    }
+
+    /// The observations nearest to one with their squared gaps, the nearest first: as many as the frame was sorted for, and one more where others are at
+    /// its very place.
+    pub(super) fn beside(&self, observation: usize) -> impl Iterator<Item = (f64, usize)> {
+        let nearest = &self.beside[observation * self.most..][..self.most];
+        nearest.iter().copied().filter(move |&(_, other)| other != observation)
     }
 
     /// Calls `with` for every observation that is nearer to a direction than `reach_rad`, and with the squared gap.
@@ -47,7 +66,7 @@ impl Near {
     }
 
     /// The `most` observations nearest to a direction with their squared gaps, the nearest first.
-    pub(super) fn nearest(&self, direction: &Vector3<f64>, most: usize, nearest: &mut Vec<(f64, usize)>) {
+    fn nearest(&self, direction: &Vector3<f64>, most: usize, nearest: &mut Vec<(f64, usize)>) {
         nearest.clear();
         let before = |a: &(f64, usize), b: &(f64, usize)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)).is_lt();
         search(&self.places, &self.axes, direction, &mut |gap2, index| {

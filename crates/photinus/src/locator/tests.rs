@@ -13,6 +13,8 @@ use crate::camera::{Ideal, IdealLaw, Model, Pixel};
 use crate::pose;
 use crate::spots::Extent;
 
+mod most;
+
 const SIGMA_PX: f64 = 0.1;
 /// Light of an LED straight ahead at 1 m, and the least that the detector finds with its default threshold, grey levels.
 const POWER: f64 = 100_000.0;

@@ -60,8 +60,9 @@ impl Problem<'_> {
         normal.nats = clutter.map(|(seen, _)| -seen.clutter_log_density).sum();
         let camera_in_body_m = pose.camera_in_body_m();
         let mut light = self.settings.use_brightness.then(|| Light::beforehand(self));
+        let unseen = self.unseen(&camera_in_body_m);
         for (spot, marker) in self.used() {
-            let shining = self.shining(spot, marker, &camera_in_body_m);
+            let shining = self.shining_among(&unseen, spot, marker, &camera_in_body_m);
             self.add_bearing(pose, &shining, &mut normal);
             if let Some(light) = &mut light {
                 light.see(self, pose, &shining);

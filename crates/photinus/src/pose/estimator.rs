@@ -11,7 +11,7 @@ use super::misfit::Misfit;
 use super::mixture::{self, Component, Mode, Summary};
 use super::observation::{Observation, Whitened};
 use super::problem::{Pose, Problem};
-use super::refine::{Held, Refined, refine};
+use super::refine::{Held, MOST_STEPS, Refined, refine};
 use super::settings::{Settings, SettingsError};
 use super::symmetry::Symmetry;
 use crate::airframe::Airframe;
@@ -22,6 +22,8 @@ use crate::float::Float as _;
 const HOPELESS_NATS: f64 = 8.0;
 /// Most rounds of assigning spots to markers and refining the pose.
 const MOST_ROUNDS: usize = 10;
+/// Most steps of the pose between two such rounds.
+const MOST_SETTLING_STEPS: usize = 8;
 
 /// What the spots of one neighbour tell.
 #[derive(Clone, Debug, Default)]
@@ -122,7 +124,7 @@ impl Estimator {
             let is_better_twin = |other: usize| {
                 (self.nats[other], other) < (self.nats[index], index)
                     && hypotheses.markers(other) == hypotheses.markers(index)
-                    && is_same(&self.modes[other], &mode)
+                    && is_same(&self.modes[other].pose, &mode.pose)
             };
             if self.nats[index] > limit || (0..self.modes.len()).any(is_better_twin) {
                 continue;
@@ -156,10 +158,9 @@ impl Estimator {
             }
             let problem = problem(&self.airframe, &self.settings, observations, &self.whitened, known);
             let mode = if hypotheses.is_loose(index) {
-                let markers = hypotheses.markers_mut(index);
-                settle(&problem, start, markers, &mut self.assignment)
+                settle(&problem, index, hypotheses, &self.modes, &mut self.assignment)
             } else {
-                refine(&problem.assigned(hypotheses.markers(index), &start), start)
+                refine(&problem.assigned(hypotheses.markers(index), &start), start, MOST_STEPS)
             };
             let problem = problem.assigned(hypotheses.markers(index), &mode.pose);
             let mut unseen = problem.visibility_nats(&mode.pose, mode.normal.log_power);
@@ -228,21 +229,32 @@ fn problem<'a>(
     Problem { airframe, settings, observations, whitened, known, markers: &[], merging: true, repeats: 1.0 }
 }
 
-/// Assigns spots to the nearest markers and refines the pose in turns, until nothing changes.
+/// Assigns spots to the nearest markers and refines the pose in turns, until nothing changes; a few steps each turn, for what is nearest changes on the way.
+/// A search that comes to where one before it ended has ended there.
 fn settle(
     problem: &Problem<'_>,
-    start: Pose,
-    markers: &mut [Option<u16>],
+    index: usize,
+    hypotheses: &mut Hypotheses,
+    modes: &[Refined],
     assignment: &mut Assignment,
 ) -> Refined {
-    let mut pose = start;
+    let mut pose = hypotheses.start(index).pose;
     for _ in 0..MOST_ROUNDS {
-        if !assignment.assign(problem.airframe, &pose, problem.observations, markers) {
+        let markers = hypotheses.markers_mut(index);
+        let changed = assignment.assign(problem.airframe, &pose, problem.observations, markers);
+        let markers = hypotheses.markers(index);
+        let is_there = |&(before, mode): &(usize, &Refined)| {
+            hypotheses.markers(before) == markers && is_same(&mode.pose, &pose)
+        };
+        if let Some((_, there)) = modes.iter().enumerate().find(is_there) {
+            return *there;
+        }
+        if !changed {
             break;
         }
-        pose = refine(&problem.assigned(markers, &pose), pose).pose;
+        pose = refine(&problem.assigned(markers, &pose), pose, MOST_SETTLING_STEPS).pose;
     }
-    Refined::at(&problem.assigned(markers, &pose), pose)
+    refine(&problem.assigned(hypotheses.markers(index), &pose), pose, MOST_STEPS)
 }
 
 impl<'a> Problem<'a> {
@@ -256,9 +268,9 @@ impl<'a> Problem<'a> {
     }
 }
 
-/// Whether two searches ended in one mode.
-fn is_same(a: &Refined, b: &Refined) -> bool {
-    let moved = (a.pose.position_m - b.pose.position_m).norm() / a.pose.position_m.norm();
-    let turn = (a.pose.camera_from_body.matrix() - b.pose.camera_from_body.matrix()).norm();
+/// Whether two searches are in one mode.
+fn is_same(a: &Pose, b: &Pose) -> bool {
+    let moved = (a.position_m - b.position_m).norm() / a.position_m.norm();
+    let turn = (a.camera_from_body.matrix() - b.camera_from_body.matrix()).norm();
     moved < 1e-2 && turn < 3e-2
 }

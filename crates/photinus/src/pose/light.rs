@@ -68,8 +68,9 @@ impl Light {
     pub(super) fn of(problem: &Problem<'_>, pose: &Pose) -> Self {
         let mut light = Self::beforehand(problem);
         let camera_in_body_m = pose.camera_in_body_m();
+        let unseen = problem.unseen(&camera_in_body_m);
         for (spot, marker) in problem.used() {
-            let shining = problem.shining(spot, marker, &camera_in_body_m);
+            let shining = problem.shining_among(&unseen, spot, marker, &camera_in_body_m);
             light.see(problem, pose, &shining);
         }
         light

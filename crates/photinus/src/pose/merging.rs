@@ -18,7 +18,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::problem::{Pose, Problem};
-use crate::airframe::Marker;
+use crate::airframe::{Airframe, Marker};
 #[cfg(not(feature = "std"))]
 use crate::float::Float as _;
 
@@ -65,6 +65,29 @@ pub(super) struct Shining {
     /// Their light, 1 being one LED straight ahead, with its derivative by the camera's place in the body frame, 1/m.
     pub(super) intensity: f64,
     pub(super) intensity_gradient: Vector3<f64>,
+}
+
+/// Markers without a spot of their own that shine, a bit each.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Unseen([u64; Airframe::MAX_LEDS / 64]);
+
+impl Unseen {
+    fn add(&mut self, marker: usize) {
+        self.0[marker / 64] |= 1 << (marker % 64);
+    }
+
+    fn remove(&mut self, marker: usize) {
+        self.0[marker / 64] &= !(1 << (marker % 64));
+    }
+
+    /// From the first to the last.
+    fn each(self) -> impl Iterator<Item = usize> {
+        self.0.into_iter().enumerate().filter(|(_, bits)| *bits != 0).flat_map(|(word, bits)| {
+            let left =
+                core::iter::successors(Some(bits), |bits| Some(bits & (bits - 1)).filter(|left| *left != 0));
+            left.map(move |bits| 64 * word + bits.trailing_zeros() as usize)
+        })
+    }
 }
 
 /// A marker without a spot of its own that may shine into that of another.
@@ -166,12 +189,32 @@ impl Problem<'_> {
         self.used().any(near)
     }
 
-    /// Markers without spots of their own so near to a spot's that they may be in its window.
-    fn beside(&self, spot: usize, seen: usize, camera_m: Vector3<f64>) -> impl Iterator<Item = Beside> + '_ {
-        let others = if self.merging { self.airframe.markers() } else { &[] };
+    /// The markers without a spot of their own that shine towards a camera at a place in the body frame.
+    pub(super) fn unseen(&self, camera_m: &Vector3<f64>) -> Unseen {
+        let mut unseen = Unseen::default();
+        let markers = if self.merging { self.airframe.markers().len() } else { 0 };
+        (0..markers).for_each(|marker| unseen.add(marker));
+        self.markers.iter().flatten().for_each(|&marker| unseen.remove(usize::from(marker)));
+        for marker in unseen.each() {
+            if !self.airframe.is_visible(marker, camera_m) {
+                unseen.remove(marker);
+            }
+        }
+        unseen
+    }
+
+    /// Those of them so near to a spot's marker that they may be in its window.
+    fn beside(
+        &self,
+        spot: usize,
+        seen: usize,
+        camera_m: Vector3<f64>,
+        unseen: Unseen,
+    ) -> impl Iterator<Item = Beside> + '_ {
         let gaps = self.gaps(spot, seen, &camera_m);
-        others.iter().enumerate().filter_map(move |(other, Marker { position_m, .. })| {
-            gaps.to(position_m).filter(|_| other != seen && !self.is_used(other))?;
+        unseen.each().filter_map(move |other| {
+            let Marker { position_m, .. } = &self.airframe.markers()[other];
+            gaps.to(position_m).filter(|_| other != seen)?;
             let (intensity, intensity_gradient) = self.airframe.intensity_with_gradient(other, &camera_m);
             (intensity > 0.0).then_some(Beside { place_m: *position_m, intensity, intensity_gradient })
         })
@@ -202,6 +245,17 @@ impl Problem<'_> {
 
     /// What a spot shows: the light of its marker, with that of those that shine into its window.
     pub(super) fn shining(&self, spot: usize, marker: usize, camera_m: &Vector3<f64>) -> Shining {
+        self.shining_among(&self.unseen(camera_m), spot, marker, camera_m)
+    }
+
+    /// The same where it is known which other markers shine without a spot.
+    pub(super) fn shining_among(
+        &self,
+        unseen: &Unseen,
+        spot: usize,
+        marker: usize,
+        camera_m: &Vector3<f64>,
+    ) -> Shining {
         let alone_m = self.airframe.markers()[marker].position_m;
         let (own, own_gradient) = self.airframe.intensity_with_gradient(marker, camera_m);
         let mut shining = Shining {
@@ -212,7 +266,7 @@ impl Problem<'_> {
             intensity: own,
             intensity_gradient: own_gradient,
         };
-        let mut beside = self.beside(spot, marker, *camera_m);
+        let mut beside = self.beside(spot, marker, *camera_m, *unseen);
         let Some(first) = beside.next() else { return shining };
         // A marker that hardly shines is no middle of a spot, but it keeps the others' light from being the whole of it.
         let own_gradient = if own > 1e-3 { own_gradient } else { Vector3::zeros() };
@@ -221,7 +275,7 @@ impl Problem<'_> {
         let lights = [own, first].into_iter().chain(beside);
         kept.iter_mut().zip(lights).for_each(|(place, light)| *place = Some(light));
         let are_more = kept[KEPT - 1].is_some();
-        let rest = || self.beside(spot, marker, *camera_m).skip(KEPT - 1);
+        let rest = || self.beside(spot, marker, *camera_m, *unseen).skip(KEPT - 1);
         let all = || kept.into_iter().flatten().chain(are_more.then(rest).into_iter().flatten());
         let open = |_: &Beside| Window { room: 1.0, gradient: Vector3::zeros() };
         let mut middle = centre_of(&alone_m, all(), open);

@@ -8,7 +8,7 @@ use super::problem::{Normal, Pose, Problem};
 use crate::float::Float as _;
 
 /// Most steps towards a mode: sharp bearings make the valley of distance against yaw narrow, and the way along it long.
-const MOST_STEPS: usize = 80;
+pub(super) const MOST_STEPS: usize = 80;
 /// A step that would gain less than this, nats, is the last.
 const SMALL_GAIN: f64 = 1e-4;
 /// The same for a slice, which is one of many.
@@ -31,11 +31,11 @@ impl Refined {
     }
 }
 
-/// The mode downhill from `start`.
-pub(super) fn refine(problem: &Problem<'_>, start: Pose) -> Refined {
+/// The mode downhill from `start`, or as near to it as so many steps come.
+pub(super) fn refine(problem: &Problem<'_>, start: Pose, most_steps: usize) -> Refined {
     let mut here = Refined::at(problem, start);
     let (mut damping, mut growth) = (1e-4, 2.0);
-    for _ in 0..MOST_STEPS {
+    for _ in 0..most_steps {
         let Normal { nats, gradient, mut information, .. } = here.normal;
         for axis in 0..6 {
             information[(axis, axis)] += damping * information[(axis, axis)] + 1e-9;

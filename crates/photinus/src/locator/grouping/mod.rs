@@ -103,7 +103,7 @@ impl GroupList {
 impl Groups {
     /// Finds the groups of a frame's observations, and what the clear ones tell of the light of its LEDs.
     pub(super) fn sort_out(&mut self, context: &Context<'_>, kinds: &mut Kinds) -> Option<LogLight> {
-        self.tree.grow(context, kinds);
+        self.tree.grow(context);
         self.cut_tree(context, kinds);
         let log_power = self.log_power(context, kinds);
         let power = log_power.map(|value| LogLight { value, sigma: LOG_POWER_SIGMA });

@@ -3,18 +3,13 @@
 use alloc::vec::Vec;
 
 use crate::locator::context::Context;
-use crate::locator::kinds::Kinds;
 use crate::locator::matching::{IMPOSSIBLE, NEIGHBOUR_NATS};
-
-/// A spot is joined to this many of the nearest, and to as many as one neighbour shows.
-const FEWEST_LINKS: usize = 16;
 
 /// Trees over the sightings of a frame: spots are leaves, every branch joins the two that are nearest.
 #[derive(Debug, Default)]
 pub(super) struct Tree {
     /// By how much the square of a distance to each spot is longer: one over the probability that it is a marker.
     doubts: Vec<f64>,
-    nearest: Vec<(f64, usize)>,
     /// From the shortest to the longest.
     links: Vec<(f64, usize, usize)>,
     /// Branches that are part of no other.
@@ -44,8 +39,8 @@ const LEAF: Branch =
 
 impl Tree {
     /// Grows the trees of a frame's observations.
-    pub(super) fn grow(&mut self, context: &Context<'_>, kinds: &Kinds) {
-        self.link_nearest(context, kinds);
+    pub(super) fn grow(&mut self, context: &Context<'_>) {
+        self.link_nearest(context);
         self.join(context.sightings.len());
         self.order_spots(context.sightings.len());
     }
@@ -90,20 +85,16 @@ impl Tree {
     }
 
     /// Links every spot to those nearest to it.
-    fn link_nearest(&mut self, context: &Context<'_>, kinds: &Kinds) {
-        let Self { doubts, nearest, links, .. } = self;
+    fn link_nearest(&mut self, context: &Context<'_>) {
+        let Self { doubts, links, .. } = self;
         let Context { sightings, near, .. } = *context;
-        let most = kinds.most_visible().max(FEWEST_LINKS) + 1;
         doubts.clear();
         doubts.extend(
             sightings.iter().map(|sighting| 1.0 + libm::exp(-sighting.spot.marker_log_odds.max(-20.0))),
         );
         links.clear();
-        for (spot, sighting) in sightings.iter().enumerate() {
-            let direction = sighting.bearing.vector();
-            near.nearest(direction, most, nearest);
-            let others = nearest.iter().filter(|&&(_, other)| other != spot);
-            links.extend(others.map(|&(gap2, other)| {
+        for spot in 0..sightings.len() {
+            links.extend(near.beside(spot).map(|(gap2, other)| {
                 (gap2 * doubts[spot] * doubts[other], spot.min(other), spot.max(other))
             }));
         }

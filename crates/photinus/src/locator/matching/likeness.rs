@@ -81,8 +81,8 @@ impl Handful {
     }
 }
 
-/// Places for handfuls: a frame of dozens of neighbours finds nearly all of its own again.
-const PLACES: usize = 2048;
+/// Places for handfuls: a frame of dozens of neighbours, or of hundreds of points of clutter, finds nearly all of its own again.
+const PLACES: usize = 8192;
 
 /// What handfuls of a frame look like; `None` where a handful cannot be one neighbour. One that comes to the place of another takes it.
 #[derive(Debug)]

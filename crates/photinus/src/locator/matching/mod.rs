@@ -6,6 +6,7 @@
 
 mod image;
 mod likeness;
+mod most;
 mod ordered;
 mod outlined;
 mod size;
@@ -29,6 +30,7 @@ use crate::pose::{self, Hypotheses, LogDistance, LogLight, POWER_RANGE, Pose, Sy
 use crate::ranging::{BoundedBearing, DistanceBounds, Interval};
 use image::Image;
 use likeness::{Handful, Likeness, Likenesses};
+use most::{GRID_NATS, Most, Peak};
 use ordered::Ordered;
 use outlined::overlay;
 use size::{plausible_m, size_nats};
@@ -55,6 +57,7 @@ pub(super) const IMPOSSIBLE: f64 = 1e9;
 pub(super) struct Matcher {
     views: Views,
     triples: Triples,
+    most: Most,
     bounds: DistanceBounds,
     symmetry: Symmetry,
     tilt_sigma_rad: f64,
@@ -72,15 +75,21 @@ impl Matcher {
             lit(airframe).iter().map(|lit| -libm::log(1.0 - lit * (1.0 - believed.missed))).collect();
         let grid_rad = ELEVATION_STEP_RAD / 2.0;
         let symmetry = Symmetry::of(airframe);
+        let views = Views::of(airframe, &symmetry, &unseen_nats);
+        let bounds = DistanceBounds::new(airframe, max_tilt_rad);
+        let log_flux_sigma = libm::hypot(LOG_FLUX_GRID, believed.unit_sigma);
+        let most_unseen_nats = unseen_nats.iter().copied().fold(0.0, f64::max);
+        let shows = (views.most_visible, bounds.near_m());
         Self {
-            views: Views::of(airframe, &symmetry, &unseen_nats),
+            most: Most::new(shows, believed, log_flux_sigma, most_unseen_nats),
+            views,
             triples: Triples::of(airframe, &symmetry),
             symmetry,
-            bounds: DistanceBounds::new(airframe, max_tilt_rad),
+            bounds,
             // The grid of views adds half a step.
             tilt_sigma_rad: libm::hypot(believed.tilt_sigma_rad, grid_rad),
-            log_flux_sigma: libm::hypot(LOG_FLUX_GRID, believed.unit_sigma),
-            unseen_nats: unseen_nats.iter().copied().fold(0.0, f64::max),
+            log_flux_sigma,
+            unseen_nats: most_unseen_nats,
             bearings: Vec::new(),
             places: Vec::new(),
             costs: Vec::new(),
@@ -214,12 +223,6 @@ impl Matcher {
         }
         let sightings = context.sightings;
         let likeness = self.likeness(context, group)?;
-        let turn_sigma_rad = if context.gravity.is_some() { self.tilt_sigma_rad } else { TAU.sqrt() };
-        let count = group.len() as f64;
-        let places = -(count - 2.0) * libm::log(TAU * likeness.variance)
-            - libm::log(count)
-            - 2.0 * libm::log(likeness.size)
-            - 0.5 * libm::log(TAU * turn_sigma_rad * turn_sigma_rad);
         let lit = group.iter().filter(|&&spot| sightings[spot].log_light.is_some()).count();
         let light = if lit == 0 {
             0.0
@@ -227,12 +230,71 @@ impl Matcher {
             -(lit as f64 - 1.0) * likeness.log_light_width - libm::log(POWER_RANGE)
         };
         Some(
-            places + light
+            self.log_density_of_places(context, group.len(), &likeness) + light
                 - likeness.views_nats
                 - power_nats(context, group, &likeness)
                 - size_nats(sightings, group, likeness.distance_m)
                 - libm::log(LOG_RANGE),
         )
+    }
+
+    /// The part of it that the places of so many spots have.
+    fn log_density_of_places(&self, context: &Context<'_>, spots: usize, likeness: &Likeness) -> f64 {
+        let turn_sigma_rad = if context.gravity.is_some() { self.tilt_sigma_rad } else { TAU.sqrt() };
+        let count = spots as f64;
+        -(count - 2.0) * libm::log(TAU * likeness.variance)
+            - libm::log(count)
+            - 2.0 * libm::log(likeness.size)
+            - 0.5 * libm::log(TAU * turn_sigma_rad * turn_sigma_rad)
+    }
+
+    /// The same look at the most that a full one can make of it, whatever the lights of the handful, of at least two: what hardly shows is hardly told by its
+    /// light. Nothing where it cannot be one neighbour, and infinite where too many show to be put in order.
+    pub(super) fn log_density_in_any_light(&mut self, context: &Context<'_>, group: &[usize]) -> f64 {
+        if group.len() > self.views.most_visible || self.bounds(context, group).is_none() {
+            return f64::NEG_INFINITY;
+        }
+        let Some(arrangements) = self.views.arrangements(group.len()) else { return f64::INFINITY };
+        let Some(image) = Image::of(context, group, &mut self.places) else { return f64::NEG_INFINITY };
+        let seen = Ordered::of(&image, context.sightings, group, f64::INFINITY);
+        let best = seen.costs(arrangements, &image, self.tilt_sigma_rad, &mut self.costs);
+        let likeness = Likeness::of(&seen, &image, &best, &self.costs);
+        self.log_density_of_places(context, group.len(), &likeness)
+            + self.most.log_light(context, group)
+            + GRID_NATS
+            - likeness.views_nats
+            - libm::log(LOG_RANGE)
+    }
+
+    /// The most that [`Self::log_density`] can be for so many spots, the farthest apart at this squared gap, and how much less it is for each spot fewer;
+    /// infinite where too many show to be put in order.
+    pub(super) fn most_of_look(
+        &self,
+        context: &Context<'_>,
+        spots: usize,
+        widest2_rad2: f64,
+        is_lit: bool,
+    ) -> [f64; 2] {
+        let peak = self.most.peak_of_look(widest2_rad2, is_lit);
+        [self.most_with(context, spots, widest2_rad2, peak), self.most.further(peak)]
+    }
+
+    /// The most that a full look can make of a group of at least two; infinite where too many show to be put in order.
+    pub(super) fn most_in_full(&self, context: &Context<'_>, group: &[usize]) -> f64 {
+        let direction = |spot: usize| context.sightings[spot].bearing.vector();
+        let gaps = group.iter().enumerate().flat_map(|(place, &a)| {
+            group[..place].iter().map(move |&b| (direction(a) - direction(b)).norm_squared())
+        });
+        let widest2_rad2 = gaps.fold(0.0, f64::max);
+        let peaks = group.iter().map(|&spot| self.most.peak(&context.sightings[spot], widest2_rad2.sqrt()));
+        self.most_with(context, group.len(), widest2_rad2, peaks.fold(Peak::NONE, Peak::max))
+    }
+
+    fn most_with(&self, context: &Context<'_>, spots: usize, widest2_rad2: f64, peak: Peak) -> f64 {
+        if spots <= self.views.most_visible && self.views.arrangements(spots).is_none() {
+            return f64::INFINITY;
+        }
+        self.most.log_density(context, spots, widest2_rad2, peak)
     }
 
     /// What it costs that a spot's other markers are not seen, nats: nothing where it is hardly seen itself, all where it is e times as bright.

@@ -13,7 +13,7 @@ use crate::locator::views::{Arrangement, Arrangements, Band, MOST_ORDERED};
 use crate::pose::LogLight;
 
 /// How far the grid of views leaves a true shape from the nearest one, as a share of its size.
-const GRID_ERROR: f64 = 0.04;
+pub(super) const GRID_ERROR: f64 = 0.04;
 
 /// A group to be put in order.
 pub(super) struct Ordered {

@@ -17,6 +17,10 @@ use super::settings::Brightness;
 use super::tiles::{Block, TILE_PX, Tiles};
 use crate::frame::FrameView;
 
+/// The spread that a quarter of the tiles of Gaussian noise do not exceed, in its sigmas; the same where half of it is cut off at 0.
+const SIGMAS: f64 = 3.1;
+const SIGMAS_CUT_OFF: f64 = 1.25;
+
 /// Thresholds of one frame, tile by tile, and the room to compute them in.
 #[derive(Debug, Default)]
 pub(super) struct Background {
@@ -26,6 +30,8 @@ pub(super) struct Background {
     scratch: Vec<Block>,
     /// What is bright stands at least this far above the level.
     step: u8,
+    /// How far noise spreads in a tile; 0 where the threshold is a fixed one.
+    spread: u8,
 }
 
 impl Background {
@@ -36,13 +42,14 @@ impl Background {
                 self.tiles.summarise::<false>(frame);
                 self.level.clear();
                 self.level.resize(self.tiles.brightest.len(), Block::default());
-                self.step = level;
+                (self.step, self.spread) = (level, 0);
             }
             Brightness::Contrast(step) => {
                 self.tiles.summarise::<true>(frame);
                 for room in [&mut self.level, &mut self.scratch] {
                     room.resize(self.tiles.brightest.len(), Block::default());
                 }
+                self.spread = self.spread_of_a_quarter();
                 self.step = self.step_above_noise(step);
                 self.level_of_surroundings();
             }
@@ -77,6 +84,11 @@ impl Background {
         )
     }
 
+    /// Noise of a dark pixel of the frame, grey levels, about; more rather than less where darkness is cut off at 0 (`level` 0).
+    pub(super) fn noise_dn(&self, level: u8) -> f64 {
+        f64::from(self.spread) / if level == 0 { SIGMAS_CUT_OFF } else { SIGMAS }
+    }
+
     /// Tiles from the start of a row of them to the start of the next.
     fn pitch(&self) -> usize {
         self.tiles.blocks * TILE_PX
@@ -86,7 +98,7 @@ impl Background {
     ///
     /// The spread of a tile of Gaussian noise is about 3.6 sigma, 2.4 of it below the mean.
     fn step_above_noise(&self, step: u8) -> u8 {
-        let spread = usize::from(self.spread_of_a_quarter());
+        let spread = usize::from(self.spread);
         (usize::from(step) + spread * 3 / 4).max(spread * 5 / 2).min(255) as u8
     }
 

@@ -17,11 +17,40 @@ use super::patch::Patch;
 use crate::camera::Pixel;
 use crate::lanes::{self, Lanes};
 
-/// Noise of a pixel with signal s: `dark` + `shot` x max(s, 0), grey levels^2.
+/// Noise of a pixel with signal s: `dark` + `shot` x max(s, 0) + (`shape` s)^2, grey levels^2.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PixelVariance {
     pub(super) dark: f32,
     pub(super) shot: f32,
+    /// How far what is seen is from any shape that is known, as a share of the light in a pixel.
+    pub(super) shape: f32,
+}
+
+impl PixelVariance {
+    pub(super) fn lanes(self) -> VarianceLanes {
+        let Self { dark, shot, shape } = self;
+        VarianceLanes {
+            dark: Lanes::splat(dark),
+            shot: Lanes::splat(shot),
+            shape2: Lanes::splat(shape * shape),
+        }
+    }
+}
+
+/// The same for four pixels.
+#[derive(Clone, Copy)]
+pub(super) struct VarianceLanes {
+    dark: Lanes,
+    shot: Lanes,
+    shape2: Lanes,
+}
+
+impl VarianceLanes {
+    #[inline(always)]
+    pub(super) fn of(self, signal: Lanes) -> Lanes {
+        let signal = lanes::positive(signal);
+        self.dark + (self.shot + self.shape2 * signal) * signal
+    }
 }
 
 /// Balances a window of radius `radius_px` on the light near `guess`: the centre with its covariance, px^2; `None` where
@@ -85,7 +114,7 @@ impl Sums {
 
 fn sums<const NOISE: bool>(patch: &Patch, centre: Pixel, radius_px: f32, variance: PixelVariance) -> Sums {
     let inverse = Lanes::splat(1.0 / (radius_px * radius_px));
-    let (dark, shot) = (Lanes::splat(variance.dark), Lanes::splat(variance.shot));
+    let variance = variance.lanes();
     let [mut weight, mut first_x, mut first_y] = [Lanes::default(); 3];
     let mut slope = [Lanes::default(); 3];
     let mut noise = [Lanes::default(); 3];
@@ -107,7 +136,7 @@ fn sums<const NOISE: bool>(patch: &Patch, centre: Pixel, radius_px: f32, varianc
             slope[2] += edge * down;
             if NOISE {
                 let window = t * t;
-                let spread = window * window * (dark + shot * lanes::positive(signal));
+                let spread = window * window * variance.of(signal);
                 noise[0] += spread * across;
                 noise[1] += spread * dx * dy;
                 noise[2] += spread * down;

@@ -34,6 +34,8 @@ pub(super) const DONE_SHARE: f64 = 0.03;
 const SETTLED_PX: f64 = 0.05;
 /// How far light is taken to change in a step, over the light.
 const LIGHT_STEP: f64 = 3.0;
+/// Share of a pixel's noise that must not be cut off for what it leaves to tell of noise.
+const WHOLLY_SEEN: f32 = 0.98;
 /// How far the level of the background is known beforehand, grey levels.
 const LEVEL_KNOWN_DN: f64 = 3.0;
 
@@ -137,7 +139,7 @@ struct Sums<const N: usize> {
 /// Light of other first guesses over that of the first, where so many pixels are full that it may be far off.
 const BRIGHTER: [f64; 2] = [3.0, 10.0];
 /// Squared residuals over degrees of freedom from which others are tried.
-const GOOD_FIT: f64 = 1.5;
+pub(super) const GOOD_FIT: f64 = 1.5;
 /// Lights spread evenly in space are as many per light as light^-5/2: what that adds to the cost per logarithm of light.
 const COUNTS: f64 = 5.0;
 /// Fewer full pixels hide little.
@@ -263,12 +265,12 @@ fn sums<const N: usize>(
     noise: PixelNoise,
 ) -> Sums<N> {
     let (light, level) = (Lanes::splat(numbers[LIGHT] as f32), Lanes::splat(numbers[LEVEL] as f32));
-    let spilling = shape.spill(numbers).numbers;
+    let model = PixelModel { light, level, noise, spilling: shape.spill(numbers).numbers, window };
     let [mut chi2, mut pixels, mut log_variances] = [Lanes::ZERO; 3];
     let mut products = [[Lanes::ZERO; N]; N];
     let mut right = [Lanes::ZERO; N];
     for four in &window.fours {
-        let (columns, residual, weight) = weighed(four, shape, numbers, light, level, noise, spilling);
+        let (columns, residual, weight) = weighed(four, shape, numbers, &model);
         let counts = lanes::less(Lanes::ZERO, weight);
         pixels += counts;
         if window.full_px > 0 {
@@ -295,16 +297,22 @@ fn sums<const N: usize>(
     }
 }
 
+/// What all pixels of a spot share.
+struct PixelModel<'a> {
+    light: Lanes,
+    level: Lanes,
+    noise: PixelNoise,
+    spilling: Option<[usize; 2]>,
+    window: &'a Window,
+}
+
 /// Slopes, residual and weight of four pixels.
 #[inline(always)]
 fn weighed<const N: usize>(
     four: &Four,
     shape: &impl Shape<N>,
     numbers: &SVector<f64, N>,
-    light: Lanes,
-    level: Lanes,
-    noise: PixelNoise,
-    spilling: Option<[usize; 2]>,
+    &PixelModel { light, level, noise, spilling, window }: &PixelModel<'_>,
 ) -> ([Lanes; N], Lanes, Lanes) {
     let (share, mut columns) = shape.shares(four.row, four.column, numbers);
     let own = light * share;
@@ -318,13 +326,22 @@ fn weighed<const N: usize>(
             columns[number] = by_spill;
         }
     }
-    let model = own + level + four.others + four.spilled;
+    let mut model = own + level + four.others + four.spilled;
     let wrong = Lanes::splat(noise.shape) * own;
-    let variance = Lanes::splat(noise.dark)
+    let mut variance = Lanes::splat(noise.dark)
         + Lanes::splat(noise.shot) * lanes::positive(own + four.others)
         + wrong * wrong
         + four.others_variance
         + four.spilled_variance;
+    if let Some(floor) = window.floor_dn {
+        let floor = Lanes::splat(floor);
+        let read = window.cut_off.read(model - floor, variance.sqrt());
+        model = floor + read.mean;
+        variance *= read.variance;
+        for column in &mut columns {
+            *column *= read.slope;
+        }
+    }
     let residual = four.signal - model;
     // A full pixel counts where the model has less than it reads.
     let tells = Lanes::ONE - four.full * lanes::less(residual, Lanes::ZERO);
@@ -343,15 +360,17 @@ pub(super) fn residuals<const N: usize>(
     let numbers = &fitted.numbers;
     shape.place(numbers, window.reach);
     let (light, level) = (Lanes::splat(numbers[LIGHT] as f32), Lanes::splat(numbers[LEVEL] as f32));
-    let spilling = shape.spill(numbers).numbers;
+    let model = PixelModel { light, level, noise, spilling: shape.spill(numbers).numbers, window };
     for four in &window.fours {
-        let (columns, residual, weight) = weighed(four, shape, numbers, light, level, noise, spilling);
+        let (columns, residual, weight) = weighed(four, shape, numbers, &model);
         let own = (light * columns[LIGHT]).to_array();
+        let seen = columns[LEVEL].to_array();
         let columns = columns.map(Lanes::to_array);
         let (residual, weight) = (residual.to_array(), weight.to_array());
         let full = four.full.to_array();
         for lane in 0..lanes::LANES {
-            if weight[lane] <= 0.0 || full[lane] > 0.0 {
+            // What is cut off tells of less noise than there is.
+            if weight[lane] <= 0.0 || full[lane] > 0.0 || seen[lane] < WHOLLY_SEEN {
                 continue;
             }
             let slopes = SVector::<f64, N>::from_fn(|i, _| f64::from(columns[i][lane]));

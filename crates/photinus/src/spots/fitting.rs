@@ -10,6 +10,7 @@ use alloc::vec::Vec;
 use nalgebra::Matrix2;
 
 use super::centroid::PixelVariance;
+use super::cut_off::CutOff;
 use super::fit::{self, Fitted, PixelNoise, PointSource};
 use super::full_level::FullLevel;
 use super::hot_pixel::{self, LonePixels};
@@ -17,9 +18,9 @@ use super::learning::{Belief, UNKNOWNS};
 use super::lessons::LEARNT_FRAMES;
 use super::neighbourhood::Neighbourhood;
 use super::part::Part;
-use super::patch::{self, Surroundings};
+use super::patch::{self, Dark, Surroundings};
 use super::settings::{Brightness, Noise, Settings};
-use super::smear::{self, Smeared};
+use super::smear::{Motion, Smeared, bend_px};
 use super::window::{Spill, WIDEST_PX, Window, nearest_pixel};
 use crate::camera::Pixel;
 #[cfg(not(feature = "std"))]
@@ -52,8 +53,8 @@ const WINGS: f64 = 1.0;
 const MISSHAPEN_PX: f64 = 1.0;
 /// Error of the light of a spot whose charge spills, over the light and the share that spills.
 const SPILT_LIGHT: f64 = 0.1;
-/// Whether the light of others is taken away, pass by pass: their places are better known the second time.
-const PASSES: [bool; 3] = [false, true, true];
+/// How often the light of others is taken away: their places are better known the second time.
+const PASSES_BESIDE: usize = 2;
 
 /// Where the point spread is wrong by more of the light than this, it is none of the shapes that are known.
 const SHAPELESS: f32 = 0.15;
@@ -69,6 +70,10 @@ pub(super) struct Model {
     /// Light that windows see, and all of it.
     pub(super) light: Measured,
     pub(super) all_light: f64,
+    /// How far it moved while the shutter was open, px.
+    pub(super) moved_px: [f64; 2],
+    /// Whether what it leaves is about noise.
+    pub(super) fits: bool,
     /// Whether it was fitted together with a twin.
     pub(super) is_of_pair: bool,
 }
@@ -90,6 +95,8 @@ pub(super) struct Fitter {
     models: Vec<Option<Model>>,
     /// Whether light moved in this frame while the shutter was open.
     pub(super) is_smeared: bool,
+    /// How it moved.
+    pub(super) motion: Option<Motion>,
     /// How far apart two points must be to be told apart, px.
     pub(super) resolution_px: f64,
     /// Components that are one streak though they were split: room to work in.
@@ -110,6 +117,7 @@ impl Fitter {
             widths: Vec::new(),
             models: Vec::new(),
             is_smeared: false,
+            motion: None,
             resolution_px: 0.0,
             joined: Vec::new(),
         }
@@ -118,6 +126,11 @@ impl Fitter {
     /// Whether the point spread is known as well as it will be.
     pub(super) fn is_sure(&self) -> bool {
         self.optics.is_some() || self.frames >= LEARNT_FRAMES || self.belief.is_sure()
+    }
+
+    /// Whether the point spread is known so well that fits need not look for it.
+    pub(super) fn is_sharp(&self) -> bool {
+        self.optics.is_some() || self.belief.is_sure()
     }
 
     /// Whether a part may be a point's light, as far as that can be told: where nobody measured the point spread, not what the border cuts, and
@@ -140,48 +153,82 @@ impl Fitter {
             return;
         }
         let full_from = self.full_from(frame, parts);
-        if !self.is_smeared {
-            self.learn(frame, parts, near, full_from);
+        // A point spread that is known tells by itself, by what it does not fit, whether it is worth while to look for motion.
+        self.motion = None;
+        let knows = self.is_sharp() && self.unknown_shape() == 0.0;
+        if !knows {
+            self.motion = self.motion(frame, parts, near, full_from);
         }
+        self.learn(frame, parts, near, full_from);
         let is_sure = self.is_sure();
         if is_sure {
             let middle = Pixel::new(0.5 * frame.width() as f64, 0.5 * frame.height() as f64);
             self.resolution_px = spread(self.optics.as_deref(), &self.belief, middle).resolution_px();
         }
-        let passes = if is_sure { &PASSES[..] } else { &PASSES[..1] };
-        for &others in passes {
-            for (index, part) in parts.iter().enumerate() {
-                if !self.may_be_point(part) {
-                    continue;
-                }
-                let room_px = near.room_px(index, part.most_room_px());
-                let alone_px = radius_px(part) + OTHERS_PX - part.radius_px;
-                let is_alone = near.room_px(index, alone_px) >= alone_px;
-                // Light beside it and a point spread that is not known yet are not told apart.
-                let is_unclear = !is_alone && !is_sure;
-                if is_unclear || (others && is_alone) {
-                    continue;
-                }
-                if others && let Some(twin) = self.twin(parts, index, near) {
-                    if twin < index && self.models[twin].is_some_and(|model| model.is_of_pair) {
-                        continue;
-                    }
-                    if let Some(models) = self.pair(frame, parts, [index, twin], near, full_from) {
-                        [self.models[index], self.models[twin]] = models.map(Some);
-                        continue;
-                    }
-                }
-                let (window_px, around) =
-                    self.open(frame, part, if others { f64::INFINITY } else { room_px }, full_from);
-                if others {
-                    self.add_others(index, None, window_px, near);
-                }
-                let model = self.model(part, around, is_sure);
-                if model.is_some() || !others {
-                    self.models[index] = model;
-                }
+        let (alone, misfits) = self.pass(frame, parts, near, full_from, false);
+        if knows && (self.is_smeared || 3 * misfits > alone) {
+            self.motion = self.motion(frame, parts, near, full_from);
+            if self.motion.is_some() {
+                self.pass(frame, parts, near, full_from, false);
             }
         }
+        let passes = if is_sure { PASSES_BESIDE } else { 0 };
+        for _ in 0..passes {
+            self.pass(frame, parts, near, full_from, true);
+        }
+    }
+
+    /// Fits all parts as if nothing shone beside them, or those beside which something does with its light taken away. Says how many stand
+    /// alone, and how many of these fit no point.
+    fn pass(
+        &mut self,
+        frame: &FrameView<'_>,
+        parts: &[Part],
+        near: &Neighbourhood,
+        full_from: u8,
+        others: bool,
+    ) -> (usize, usize) {
+        let (is_sure, is_sharp) = (self.is_sure(), self.is_sharp());
+        let (mut alone, mut misfits) = (0, 0);
+        for (index, part) in parts.iter().enumerate() {
+            if !self.may_be_point(part) {
+                continue;
+            }
+            let room_px = near.room_px(index, part.most_room_px());
+            let alone_px = radius_px(part) + OTHERS_PX - part.radius_px;
+            let is_alone = near.room_px(index, alone_px) >= alone_px;
+            // Light beside it and a point spread that is not known yet are not told apart.
+            let is_unclear = !is_alone && !is_sure;
+            if is_unclear || (others && is_alone) {
+                continue;
+            }
+            if others
+                && self.motion.is_none()
+                && let Some(twin) = self.twin(parts, index, near)
+            {
+                if twin < index && self.models[twin].is_some_and(|model| model.is_of_pair) {
+                    continue;
+                }
+                if let Some(models) = self.pair(frame, parts, [index, twin], near, full_from) {
+                    [self.models[index], self.models[twin]] = models.map(Some);
+                    continue;
+                }
+            }
+            let (window_px, around) =
+                self.open(frame, part, if others { f64::INFINITY } else { room_px }, full_from);
+            if others {
+                self.add_others(index, None, window_px, near);
+            }
+            let model = self.model(part, around, is_sharp);
+            if is_alone {
+                alone += 1;
+                misfits += usize::from(model.is_none_or(|model| !model.fits));
+            }
+            if model.is_some() || !others {
+                self.models[index] = model;
+            }
+        }
+        (alone, misfits)
     }
 
     /// Tells the window what light of others falls into it, that of part `index` and its twin left out.
@@ -196,7 +243,15 @@ impl Fitter {
         near.each_near(index, window_px + OTHERS_PX, |other, _| {
             if let Some(model) = self.models[other].filter(|_| twin != Some(other)) {
                 let spread = spread(self.optics.as_deref(), &self.belief, middle);
-                self.window.add_other(spread, model.centre, model.all_light, OTHERS_KNOWN);
+                // As many places along its way as that has pixels.
+                let [along_u, along_v] = model.moved_px;
+                let places = libm::hypot(along_u, along_v) as usize + 1;
+                let light = model.all_light / places as f64;
+                for place in 0..places {
+                    let time = (place as f64 + 0.5) / places as f64 - 0.5;
+                    let centre = Pixel::new(model.centre.u + time * along_u, model.centre.v + time * along_v);
+                    self.window.add_other(spread, centre, light, OTHERS_KNOWN);
+                }
             }
         });
     }
@@ -210,7 +265,7 @@ impl Fitter {
         full_from: u8,
     ) -> (f64, Surroundings) {
         let window_px = radius_px(part).min(room_px.max(part.radius_px + 0.8).max(1.9));
-        let around = surroundings(frame, part, window_px);
+        let around = surroundings(frame, part, window_px, &self.window.cut_off);
         self.read(frame, part.guess, window_px, &around, full_from);
         (window_px, around)
     }
@@ -239,7 +294,13 @@ impl Fitter {
     pub(super) fn told_noise(&self, around: Surroundings) -> PixelVariance {
         let Noise { read_dn, shot } = self.noise;
         let dark = (read_dn * read_dn + 1.0 / 12.0) as f32;
-        PixelVariance { dark: dark.max(around.variance), shot: shot as f32 }
+        PixelVariance { dark: dark.max(around.variance), shot: shot as f32, shape: self.unknown_shape() }
+    }
+
+    /// How wrong any point spread is, as a share of the light in a pixel, where points are of no shape that is known; 0 where they are.
+    pub(super) fn unknown_shape(&self) -> f32 {
+        let shape = self.belief.noise().shape;
+        if self.optics.is_none() && shape >= SHAPELESS { shape } else { 0.0 }
     }
 
     /// Noise of a pixel, the frame's own where that is more.
@@ -262,7 +323,7 @@ impl Fitter {
     pub(super) fn hot_pixel_odds(&self, (u, v): (u32, u32), own: f32, around: f32) -> f64 {
         let Some(optics) = &self.optics else { return self.lone_pixels.odds((u, v)) };
         let place = Pixel::new(f64::from(u), f64::from(v));
-        let dark = Surroundings { level: 0.0, slope: [0.0; 2], variance: 0.0 };
+        let dark = Surroundings { level: 0.0, slope: [0.0; 2], variance: 0.0, is_cut_off: false };
         let beforehand =
             if optics.hot_pixels.at(u, v).is_some() { hot_pixel::KNOWN } else { hot_pixel::BEFOREHAND };
         beforehand * hot_pixel::odds(own, around, optics.spread.at(place), self.pixel_noise(dark))
@@ -278,30 +339,54 @@ impl Fitter {
         (u, v, self.window.flux().max(1.0))
     }
 
-    fn model(&mut self, part: &Part, around: Surroundings, is_sure: bool) -> Option<Model> {
+    fn model(&mut self, part: &Part, around: Surroundings, is_sharp: bool) -> Option<Model> {
         let noise = self.pixel_noise(around);
         let guess = self.guess(part);
-        let moved = if self.is_smeared { smear::of_outline(part) } else { None };
-        if is_sure {
+        if is_sharp {
             let spread = spread(self.optics.as_deref(), &self.belief, part.guess);
             let mut point = PointSource::new(spread, SIZE_PX2, self.spill());
-            let fitted = fit::fit(&mut self.window, &mut point, guess, noise);
-            let still = fitted.as_ref().filter(|fitted| fitted.fits());
-            if let (None, Some(moved)) = (still, moved) {
-                let fitted: Option<Fitted<7>> =
-                    fit::fit(&mut self.window, &mut Smeared::new(point, moved), guess, noise);
-                return self.told(&fitted?, noise, part);
+            if let Some(motion) = self.motion {
+                let streak: Option<Fitted<7>> =
+                    fit::fit(&mut self.window, &mut Smeared::new(point, motion), guess, noise);
+                if let Some(streak) = streak.filter(Fitted::fits) {
+                    return self.told_streak(&streak, noise, part);
+                }
+                let still = fit::fit(&mut self.window, &mut point, guess, noise);
+                return match (streak, still) {
+                    (Some(streak), still) if still.is_none_or(|still| still.chi2 > streak.chi2) => {
+                        self.told_streak(&streak, noise, part)
+                    }
+                    (_, still) => self.told(&still?, noise, part),
+                };
             }
+            let fitted = fit::fit(&mut self.window, &mut point, guess, noise);
             self.told(&fitted?, noise, part)
-        } else if let Some(moved) = moved {
-            let mut streak = Smeared::new(self.belief.free(), moved);
+        } else if let Some(motion) = self.motion {
+            let mut streak = Smeared::new(self.belief.free(), motion);
             let fitted: Option<Fitted<{ UNKNOWNS + 2 }>> =
                 fit::fit(&mut self.window, &mut streak, guess, noise);
-            self.told(&fitted?, noise, part)
+            self.told_streak(&fitted?, noise, part)
         } else {
             let fitted = fit::fit(&mut self.window, &mut self.belief.free(), guess, noise)?;
             self.told(&fitted, noise, part)
         }
+    }
+
+    /// What a fit says of a spot that moved: its last two numbers are how far.
+    fn told_streak<const N: usize>(
+        &self,
+        fitted: &Fitted<N>,
+        noise: PixelNoise,
+        part: &Part,
+    ) -> Option<Model> {
+        let moved_px = [fitted.numbers[N - 2], fitted.numbers[N - 1]];
+        let bend_px = bend_px(moved_px);
+        // What a wrong shape leaves averages out along a streak, and what is learnt of it from streaks is as much less; the error of all light is not.
+        let pixels = 1.0 + libm::hypot(moved_px[0], moved_px[1]);
+        let noise = PixelNoise { shape: noise.shape * pixels.sqrt() as f32, ..noise };
+        let model = self.told(fitted, noise, part)?;
+        let bent = Matrix2::from_diagonal_element(bend_px * bend_px);
+        Some(Model { covariance_px2: model.covariance_px2 + bent, moved_px, ..model })
     }
 
     /// What a fit says of a spot.
@@ -342,6 +427,8 @@ impl Fitter {
                 sigma: seen * (point.light_variance * noisier + unsure * unsure).sqrt(),
             },
             all_light: point.light,
+            moved_px: [0.0; 2],
+            fits: misfit < fit::GOOD_FIT,
             is_of_pair: false,
         })
     }
@@ -376,8 +463,13 @@ pub(super) fn radius_px(part: &Part) -> f64 {
 }
 
 /// The background around a window on a part.
-pub(super) fn surroundings(frame: &FrameView<'_>, part: &Part, window_px: f64) -> Surroundings {
-    surroundings_at(frame, part, part.guess, window_px)
+pub(super) fn surroundings(
+    frame: &FrameView<'_>,
+    part: &Part,
+    window_px: f64,
+    cut_off: &CutOff,
+) -> Surroundings {
+    surroundings_at(frame, part, part.guess, window_px, cut_off)
 }
 
 /// The background around a window at a place beside a part.
@@ -386,9 +478,12 @@ pub(super) fn surroundings_at(
     part: &Part,
     place: Pixel,
     window_px: f64,
+    cut_off: &CutOff,
 ) -> Surroundings {
-    let level = Surroundings { level: f32::from(part.level), slope: [0.0; 2], variance: 0.0 };
-    patch::surroundings(frame, nearest_pixel(place), reach_px(window_px), part.bright).unwrap_or(level)
+    let variance = (part.noise_dn * part.noise_dn) as f32;
+    let level = Surroundings { level: f32::from(part.level), slope: [0.0; 2], variance, is_cut_off: false };
+    let dark = Dark { bright: part.bright, noise_dn: part.noise_dn, cut_off };
+    patch::surroundings(frame, nearest_pixel(place), reach_px(window_px), &dark).unwrap_or(level)
 }
 
 /// Pixels from the middle of a patch to its edge that hold a window of this radius, wherever in a pixel it settles.

@@ -41,7 +41,7 @@ const SPILL_ERROR: f64 = 0.3;
 const SEEN_PX: f64 = 3.5;
 
 type Numbers = SVector<f64, NUMBERS>;
-type Information = SMatrix<f64, NUMBERS, NUMBERS>;
+pub(super) type Information = SMatrix<f64, NUMBERS, NUMBERS>;
 
 /// What is believed of a camera's optics.
 #[derive(Debug)]
@@ -195,7 +195,7 @@ impl Told {
     /// Adds a spot that was fitted with the numbers free: its answer and covariance, with what was believed beforehand taken out.
     pub(super) fn add(
         &mut self,
-        answer: &SVector<f64, UNKNOWNS>,
+        answer: &Numbers,
         covariance: &Information,
         weights: [f64; NUMBERS],
         trust: f64,
@@ -206,7 +206,6 @@ impl Told {
         if (0..NUMBERS).any(|i| own[(i, i)] < 0.0) {
             return;
         }
-        let answer = Numbers::from_fn(|i, _| answer[WIDTH + i]);
         self.information += own;
         self.weighted += information * answer * trust;
     }

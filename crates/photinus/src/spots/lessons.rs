@@ -4,11 +4,16 @@
 //! wiser. Spots and point spread are fitted to each other in turn; hot pixels, spots beside others and those that the border cuts
 //! teach nothing. After some frames there is nothing left to learn.
 
-use super::fit::{self, PixelNoise, PointSource, WIDTH};
+use nalgebra::SVector;
+
+use super::fit::{self, Fitted, PixelNoise, PointSource, Shape, WIDTH};
 use super::fitting::{Fitter, NO_POINT, SIZE_PX2, WIDEST_POINT_PX};
-use super::learning::{Belief, NUMBERS, Told};
+use super::learning::{Belief, Information, NUMBERS, Told, UNKNOWNS};
 use super::neighbourhood::Neighbourhood;
 use super::part::Part;
+use super::patch::NOISY_DN;
+use super::smear::Smeared;
+use super::window::Window;
 #[cfg(not(feature = "std"))]
 use crate::float::Float as _;
 use crate::frame::FrameView;
@@ -27,6 +32,10 @@ const ROUNDS: usize = 5;
 pub(super) const LEARNT_FRAMES: u32 = 32;
 /// A spot with less contrast than this says little of the spread, grey levels.
 const TELLING_DN: f64 = 30.0;
+/// Nor one that noise may have made, sigmas.
+const TELLING_SIGMAS: f64 = 6.0;
+/// A pixel that reads no further below the level of full ones, sigmas of noise, may be full.
+const FULL_SIGMAS: f64 = 2.0;
 
 impl Fitter {
     /// Whether frames still tell something of the camera.
@@ -34,9 +43,18 @@ impl Fitter {
         self.fits && self.optics.is_none() && self.frames < LEARNT_FRAMES
     }
 
-    /// The lowest level that may be that of a full pixel, as far as it is known.
-    pub(super) fn lowest_full(&self) -> u8 {
-        self.optics.as_ref().map_or(self.full_level.lowest(), |optics| optics.sensor.full_from_dn())
+    /// The lowest level that may be that of a full pixel, as far as it is known, in a frame of so much noise.
+    pub(super) fn lowest_full(&self, noise_dn: f64) -> u8 {
+        let known =
+            self.optics.as_ref().map_or(self.full_level.lowest(), |optics| optics.sensor.full_from_dn());
+        let lower_dn = if noise_dn < f64::from(NOISY_DN) { 0.0 } else { FULL_SIGMAS * noise_dn };
+        known.saturating_sub(lower_dn as u8)
+    }
+
+    /// Begins anew.
+    pub(super) fn unlearn(&mut self) {
+        self.belief = Belief::new(self.noise, self.full_level.lowest());
+        self.frames = 0;
     }
 
     /// The same with what a frame tells.
@@ -49,11 +67,10 @@ impl Fitter {
             self.full_level.settle();
             // What was learnt of spots whose tops were cut off unnoticed was wrong.
             if self.full_level.lowest().abs_diff(before) > SAME_LEVEL_DN {
-                self.belief = Belief::new(self.noise, self.full_level.lowest());
-                self.frames = 0;
+                self.unlearn();
             }
         }
-        self.lowest_full()
+        self.lowest_full(parts.first().map_or(0.0, |part| part.noise_dn))
     }
 
     /// Whether light fell on the window: no lens is so sharp that, wherever in a pixel a point's light falls, the eight pixels around the
@@ -84,7 +101,9 @@ impl Fitter {
         let tells = |index: usize, part: &Part| {
             let height = f64::from(part.outline.peak) - f64::from(part.level);
             let is_plain = part.reason.is_none() && !part.outline.cut && part.radius_px < WIDEST_POINT_PX;
-            is_plain && height > TELLING_DN && near.room_px(index, 9.0) >= 9.0
+            is_plain
+                && height > TELLING_DN.max(TELLING_SIGMAS * part.noise_dn)
+                && near.room_px(index, 9.0) >= 9.0
         };
         if self.frames == 0 {
             let widths = parts.iter().enumerate().filter(|(index, part)| tells(*index, part));
@@ -113,11 +132,17 @@ impl Fitter {
                 }
                 let mut shape = self.belief.free();
                 let weights = shape.weights;
-                let Some(fitted) = fit::fit(&mut self.window, &mut shape, guess, noise) else { continue };
-                let misfit = fitted.chi2 / fitted.freedom;
-                if misfit < NO_POINT {
-                    let widths = fitted.covariance.fixed_view::<NUMBERS, NUMBERS>(WIDTH, WIDTH).into_owned();
-                    told.add(&fitted.numbers, &widths, weights, 1.0 / misfit.max(1.0));
+                let lesson = match self.motion {
+                    None => fit::fit(&mut self.window, &mut shape, guess, noise).as_ref().and_then(lesson),
+                    Some(motion) => {
+                        let mut streak = Smeared::new(shape, motion);
+                        let fitted: Option<Fitted<{ UNKNOWNS + 2 }>> =
+                            fit::fit(&mut self.window, &mut streak, guess, noise);
+                        fitted.as_ref().and_then(lesson)
+                    }
+                };
+                if let Some((numbers, widths, trust)) = lesson {
+                    told.add(&numbers, &widths, weights, trust);
                     any = true;
                 }
             }
@@ -164,19 +189,44 @@ impl Fitter {
             if !self.is_light(self.pixel_noise(around)) {
                 continue;
             }
-            let (noise, guess) = (self.belief.noise(), self.guess(part));
+            // Wings beside a spot make its frame no noisier: what is cut off does.
+            let noise = if around.is_cut_off { self.pixel_noise(around) } else { self.belief.noise() };
+            let guess = self.guess(part);
+            let known = (noise.dark - self.belief.noise().dark).max(0.0);
             let mut bins = *self.belief.noise_bins();
             let mut shape = PointSource::new(self.belief.spread(), SIZE_PX2, self.belief.spill());
-            if let Some(fitted) = fit::fit(&mut self.window, &mut shape, guess, noise) {
-                let spills = self.window.full_px > 0 && self.window.spilled_share() > LEAST_SPILT;
-                if fitted.chi2 / fitted.freedom < NO_POINT && !spills {
-                    fit::residuals(&self.window, &mut shape, &fitted, noise, |light, square| {
-                        bins.add(light, square);
-                    });
+            let mut add = |light, square| bins.add(light, square, known);
+            match self.motion {
+                None => tell_noise::<5>(&mut self.window, &mut shape, guess, noise, &mut add),
+                Some(motion) => {
+                    let mut streak = Smeared::new(shape, motion);
+                    tell_noise::<7>(&mut self.window, &mut streak, guess, noise, &mut add);
                 }
             }
             *self.belief.noise_bins() = bins;
         }
         self.belief.noise_bins().solve();
+    }
+}
+/// What a spot that was fitted with the spread's numbers free says of them: the numbers, their covariance, how far it is to be trusted.
+fn lesson<const N: usize>(fitted: &Fitted<N>) -> Option<(SVector<f64, NUMBERS>, Information, f64)> {
+    let misfit = fitted.chi2 / fitted.freedom;
+    let numbers = fitted.numbers.fixed_rows::<NUMBERS>(WIDTH).into_owned();
+    let covariance = fitted.covariance.fixed_view::<NUMBERS, NUMBERS>(WIDTH, WIDTH).into_owned();
+    (misfit < NO_POINT).then_some((numbers, covariance, 1.0 / misfit.max(1.0)))
+}
+
+/// Tells what a spot leaves, unless it is no point or its charge spills.
+fn tell_noise<const N: usize>(
+    window: &mut Window,
+    shape: &mut impl Shape<N>,
+    guess: (f64, f64, f64),
+    noise: PixelNoise,
+    with: impl FnMut(f32, f32),
+) {
+    let Some(fitted) = fit::fit(window, shape, guess, noise) else { return };
+    let spills = window.full_px > 0 && window.spilled_share() > LEAST_SPILT;
+    if fitted.chi2 / fitted.freedom < NO_POINT && !spills {
+        fit::residuals(window, shape, &fitted, noise, with);
     }
 }

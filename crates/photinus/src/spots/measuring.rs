@@ -11,6 +11,7 @@ use nalgebra::Matrix2;
 
 use super::Spot;
 use super::centroid;
+use super::cut_off::CutOff;
 use super::fitting::{Fitter, Model, SATURATION_BLUR_PX, reach_px, surroundings};
 use super::neighbourhood::Neighbourhood;
 use super::part::Part;
@@ -78,7 +79,7 @@ impl Meter {
         settings: &Settings,
     ) -> Result<Spot, Reason> {
         let outline = &part.outline;
-        let (window_px, around) = open_window(frame, part, room_px);
+        let (window_px, around) = open_window(frame, part, room_px, &self.fitter.window.cut_off);
         let height = f64::from(outline.peak) - f64::from(around.level);
         if let Brightness::Contrast(step) = settings.brightness
             && 2.0 * height < f64::from(step)
@@ -101,7 +102,7 @@ impl Meter {
             saturated_px: outline.saturated_px,
             flux,
             light: model.map(|model| model.light),
-            background: f64::from(around.level),
+            background: f64::from(around.level.max(0.0)),
             marker_log_odds: 0.0,
             middle: part.middle,
             extent: outline.extent,
@@ -193,10 +194,10 @@ impl Meter {
 }
 
 /// A window as wide as the spot is, or as its wings where it is saturated, with the background around it.
-fn open_window(frame: &FrameView<'_>, part: &Part, room_px: f64) -> (f64, Surroundings) {
+fn open_window(frame: &FrameView<'_>, part: &Part, room_px: f64, cut_off: &CutOff) -> (f64, Surroundings) {
     let room_px = room_px.max(part.radius_px + 0.8).max(1.9);
     let narrow_px = (part.radius_px + 2.5).min(room_px);
-    let around = surroundings(frame, part, narrow_px);
+    let around = surroundings(frame, part, narrow_px, cut_off);
     if part.outline.saturated_px > 0 {
         return (narrow_px, around);
     }
@@ -204,5 +205,5 @@ fn open_window(frame: &FrameView<'_>, part: &Part, room_px: f64) -> (f64, Surrou
     if whole_px <= narrow_px {
         return (narrow_px, around);
     }
-    (whole_px, surroundings(frame, part, whole_px))
+    (whole_px, surroundings(frame, part, whole_px, cut_off))
 }

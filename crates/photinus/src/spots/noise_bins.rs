@@ -33,6 +33,8 @@ struct Bin {
     squares: f64,
     light: f64,
     light2: f64,
+    /// Variance that is known by itself.
+    known: f64,
 }
 
 impl NoiseBins {
@@ -43,8 +45,9 @@ impl NoiseBins {
         Self { noise, believed, bins: [Bin::default(); BINS], pixels: 0.0, solved_at: 0.0 }
     }
 
-    /// Adds a pixel with this much of a spot's light and this squared residual.
-    pub(super) fn add(&mut self, light: f32, square: f32) {
+    /// Adds a pixel with this much of a spot's light and this squared residual, of which so much is noise of its frame beyond the
+    /// camera's.
+    pub(super) fn add(&mut self, light: f32, square: f32, known: f32) {
         let light = f64::from(light.max(0.0));
         let octave = (light as u32 + 1).ilog2() as usize;
         let bin = &mut self.bins[octave.min(BINS - 1)];
@@ -52,6 +55,7 @@ impl NoiseBins {
         bin.squares += f64::from(square);
         bin.light += light;
         bin.light2 += light * light;
+        bin.known += f64::from(known);
         self.pixels += 1.0;
     }
 
@@ -77,7 +81,7 @@ impl NoiseBins {
             for bin in self.bins.iter().filter(|bin| bin.count > 0.0) {
                 let by =
                     Vector3::new(1.0, bin.light / bin.count, bin.light2 / bin.count).component_mul(&parts);
-                let variance = by.sum();
+                let variance = by.sum() + bin.known / bin.count;
                 let slope = by / variance;
                 let ratio = bin.squares / (bin.count * variance);
                 matrix += slope * slope.transpose() * (0.5 * bin.count);

@@ -61,7 +61,7 @@ impl Fitter {
             Pixel::new(0.5 * (both[0].guess.u + both[1].guess.u), 0.5 * (both[0].guess.v + both[1].guess.v));
         let radius_px = radius_px(both[0]).max(radius_px(both[1])) + 0.5 * gap_px(both[0], both[1]);
         let window_px = radius_px.min(WIDEST_PX as f64);
-        let around = surroundings_at(frame, both[0], middle, window_px);
+        let around = surroundings_at(frame, both[0], middle, window_px, &self.window.cut_off);
         self.read(frame, middle, window_px, &around, full_from);
         self.add_others(one, Some(other), window_px, near);
         let noise = self.pixel_noise(around);

@@ -26,6 +26,8 @@ pub(super) struct Part {
     pub(super) bright: u8,
     /// The level of the surroundings as the tile has it.
     pub(super) level: u8,
+    /// Noise of a dark pixel of the frame, about, grey levels.
+    pub(super) noise_dn: f64,
     /// Why it is not a marker, once that is known.
     pub(super) reason: Option<Reason>,
     /// Which of the frame's components that were split it is of, if any.
@@ -103,6 +105,7 @@ pub(super) fn outline(
         middle: middle_pixel(runs, area_px),
         bright,
         level: background.level(u, v),
+        noise_dn: background.noise_dn(background.level(u, v)),
         reason: None,
         split_from: None,
         clutter_odds: 0.0,

@@ -6,6 +6,7 @@
 use alloc::vec::Vec;
 use core::ops::Range;
 
+use super::cut_off::CutOff;
 use super::ring::{self, Sums};
 use crate::camera::Pixel;
 use crate::frame::FrameView;
@@ -13,6 +14,21 @@ use crate::lanes::{self, LANES, Lanes};
 
 /// Fewer background pixels tell no level.
 const FEWEST_PX: i32 = 8;
+
+/// A background that spreads by no more than this, or by this many sigmas of the frame's noise, is noise, grey levels.
+const CALM_DN: f32 = 3.0;
+const CALM_SIGMAS: f32 = 1.25;
+/// Noise from which on it matters that darkness is cut off at 0: less hides in the rounding to whole levels.
+pub(super) const NOISY_DN: f32 = 2.0;
+
+/// What is known of darkness before a ring is looked at.
+pub(super) struct Dark<'a> {
+    /// The lowest value that is bright.
+    pub(super) bright: u8,
+    /// Noise of a dark pixel of the frame, about, grey levels.
+    pub(super) noise_dn: f64,
+    pub(super) cut_off: &'a CutOff,
+}
 
 /// The background around a spot: a plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,6 +39,8 @@ pub(super) struct Surroundings {
     pub(super) slope: [f32; 2],
     /// Variance of a background pixel, grey levels^2.
     pub(super) variance: f32,
+    /// Whether noise reaches below 0, where it is cut off.
+    pub(super) is_cut_off: bool,
 }
 
 /// Signal above the background in a square window; zero outside the frame.
@@ -152,21 +170,31 @@ fn some_of_four(line: &[u8], first: i32, columns: &Range<i32>, level: Lanes) -> 
 /// The background from a ring of pixels just outside the window of `reach` around (`u`, `v`).
 ///
 /// Pixels that are bright themselves (another spot) are left out, and where the rest still spreads (its wings, a streak)
-/// those above the mean are left out as well.
+/// those above the mean are left out as well. What the frame's noise explains is no wing.
 pub(super) fn surroundings(
     frame: &FrameView<'_>,
     (u, v): (i32, i32),
     reach: i32,
-    bright: u8,
+    dark: &Dark<'_>,
 ) -> Option<Surroundings> {
-    let calm = 3.0 * 3.0;
-    let all = ring_sums(frame, (u, v), reach, bright)?;
+    let noise_dn = dark.noise_dn as f32;
+    let is_noisy = noise_dn >= NOISY_DN;
+    let calm_dn = if is_noisy { CALM_DN.max(CALM_SIGMAS * noise_dn) } else { CALM_DN };
+    let all = ring_sums(frame, (u, v), reach, dark.bright)?;
+    if is_noisy
+        && let Some((level, variance)) = dark.cut_off.darkness(&all)
+        && variance <= calm_dn * calm_dn
+    {
+        return Some(Surroundings { level, slope: [0.0; 2], variance, is_cut_off: true });
+    }
     let plane = all.plane();
-    if plane.variance <= calm {
+    if plane.variance <= calm_dn * calm_dn {
         return Some(plane);
     }
     let darker = (all.level().min(254.0) as u8) + 1;
-    Some(ring_sums(frame, (u, v), reach, darker).unwrap_or(all).even())
+    let even = ring_sums(frame, (u, v), reach, darker).unwrap_or(all).even();
+    let least = if is_noisy { noise_dn * noise_dn } else { 0.0 };
+    Some(Surroundings { variance: even.variance.max(least), ..even })
 }
 
 impl Sums {
@@ -178,7 +206,7 @@ impl Sums {
     fn even(&self) -> Surroundings {
         let level = self.level();
         let variance = (f64::from(self.ii) / f64::from(self.count) - level * level).max(0.0);
-        Surroundings { level: level as f32, slope: [0.0; 2], variance: variance as f32 }
+        Surroundings { level: level as f32, slope: [0.0; 2], variance: variance as f32, is_cut_off: false }
     }
 
     /// The plane of least squares.
@@ -198,6 +226,7 @@ impl Sums {
             level: (i - rise_u * x - rise_v * y).clamp(0.0, 255.0) as f32,
             slope: [rise_u as f32, rise_v as f32],
             variance: (ii - rise_u * xi - rise_v * yi).max(0.0) as f32,
+            is_cut_off: false,
         }
     }
 }
@@ -211,13 +240,17 @@ fn ring_sums(frame: &FrameView<'_>, middle: (i32, i32), reach: i32, below: u8) -
 mod tests {
     use super::*;
 
+    fn quiet(bright: u8, cut_off: &CutOff) -> Dark<'_> {
+        Dark { bright, noise_dn: 0.5, cut_off }
+    }
+
     #[test]
     fn the_background_is_that_of_the_dark_pixels_around() {
         let mut pixels = vec![20u8; 40 * 40];
         pixels[20 * 40 + 20] = 250;
         pixels[12 * 40 + 20] = 250;
         let frame = FrameView::packed(&pixels, 40, 40).unwrap();
-        let found = surroundings(&frame, (20, 20), 6, 60).unwrap();
+        let found = surroundings(&frame, (20, 20), 6, &quiet(60, &CutOff::default())).unwrap();
         assert!((found.level - 20.0).abs() < 1e-6 && found.variance < 1e-6, "{found:?}");
         assert!(found.slope.iter().all(|rise| rise.abs() < 1e-6), "{found:?}");
     }
@@ -227,12 +260,13 @@ mod tests {
         let pixels = vec![30u8; 20 * 20];
         let frame = FrameView::packed(&pixels, 20, 20).unwrap();
         let mut patch = Patch::default();
-        let around = Surroundings { level: 10.0, slope: [0.0; 2], variance: 0.0 };
+        let around = Surroundings { level: 10.0, slope: [0.0; 2], variance: 0.0, is_cut_off: false };
         patch.read(&frame, (0, 0), 3, &around);
         let total: f32 = patch.signal.iter().flat_map(|four| four.to_array()).sum();
         assert_eq!((patch.left, patch.top, total), (-3, -3, 20.0 * 16.0));
-        assert!(surroundings(&frame, (0, 0), 3, 60).is_some());
-        assert_eq!(surroundings(&frame, (0, 0), 40, 60), None);
+        let cut_off = CutOff::default();
+        assert!(surroundings(&frame, (0, 0), 3, &quiet(60, &cut_off)).is_some());
+        assert_eq!(surroundings(&frame, (0, 0), 40, &quiet(60, &cut_off)), None);
     }
 
     #[test]
@@ -241,7 +275,7 @@ mod tests {
         let pixels: Vec<u8> = (0..40 * 40).map(|i| value(i % 40, i / 40)).collect();
         let frame = FrameView::packed(&pixels, 40, 40).unwrap();
         for (u, v) in [(20, 20), (5, 20), (20, 35)] {
-            let found = surroundings(&frame, (u, v), 5, 255).unwrap();
+            let found = surroundings(&frame, (u, v), 5, &quiet(255, &CutOff::default())).unwrap();
             assert!((found.level - f32::from(value(u as usize, v as usize))).abs() < 1e-3, "{found:?}");
             assert!((found.slope[0] - 2.0).abs() < 1e-4 && (found.slope[1] - 1.0).abs() < 1e-4, "{found:?}");
             assert!(found.variance < 1e-3);

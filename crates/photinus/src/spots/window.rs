@@ -6,6 +6,7 @@
 
 use alloc::vec::Vec;
 
+use super::cut_off::CutOff;
 use super::patch::Surroundings;
 use crate::camera::Pixel;
 #[cfg(not(feature = "std"))]
@@ -48,6 +49,9 @@ pub(super) struct Window {
     /// Pixels that are full.
     pub(super) full_px: u32,
     pub(super) fours: Vec<Four>,
+    /// What noisy pixels read, and the signal at which they are cut off, grey levels; `None` where noise does not reach as low.
+    pub(super) cut_off: CutOff,
+    pub(super) floor_dn: Option<f32>,
     /// Signal of a full pixel in the middle of the window, grey levels.
     full_dn: f32,
     charge: Vec<f32>,
@@ -92,6 +96,7 @@ impl Window {
         let reach = (radius_px.max(1.0) as usize).min(WIDEST_PX) as i32;
         (self.middle, self.reach, self.full_px) = ((u, v), reach as usize, 0);
         self.full_dn = f32::from(full_from) - around.level;
+        self.floor_dn = around.is_cut_off.then_some(-around.level);
         self.fours.clear();
         self.given.clear();
         let side = 2 * reach + 1;

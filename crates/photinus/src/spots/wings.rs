@@ -47,7 +47,7 @@ pub(super) fn fit(
 ) -> Option<Fit> {
     let faintest = Lanes::splat(FAINTEST_DN.max(FAINTEST_SIGMAS * variance.dark.sqrt()));
     let saturation = Lanes::splat(saturation);
-    let (dark, shot) = (Lanes::splat(variance.dark), Lanes::splat(variance.shot));
+    let noise = variance.lanes();
     let mut normal = Normal::default();
     for columns in patch.near(patch.local(guess), radius_px) {
         let x = lanes::counting_from(columns.dx);
@@ -58,7 +58,7 @@ pub(super) fn fit(
             let near = lanes::less(across, Lanes::splat(radius_px * radius_px - y * y));
             let shows = lanes::less(faintest, signal) * lanes::less(signal, saturation) * near;
             if shows != Lanes::ZERO {
-                let weight = shows * (signal * signal) / (dark + shot * lanes::positive(signal));
+                let weight = shows * (signal * signal) / noise.of(signal);
                 sums.add(Lanes::splat(y), weight, lanes::ln(signal));
                 sums.pixels += shows;
             }

@@ -216,6 +216,9 @@ impl Lookout {
             let watched = self.tracker.rig().watched(camera);
             let faintest_light = located.faintest_light;
             let before = Before { watched, tracked: &self.tracked, faintest_light, power };
+            if self.tracker.is_of_another_clock(camera, time_s) {
+                blinking.followers.iter_mut().for_each(Follower::restart);
+            }
             (look.blinking, look.signals) = blinking.hear(glance, &before);
         }
         self.tracked.take_over(self.tracker.track(&look)?);
@@ -276,10 +279,7 @@ impl Blinking {
         glance: &Glance<'_>,
         before: &Before<'_>,
     ) -> (Option<tracking::Blinking<'_>>, &[Option<Signalled>]) {
-        let Before { watched, tracked, .. } = *before;
-        if (glance.time_s - tracked.time_s).abs() > Tracker::JUMP_S {
-            self.followers.iter_mut().for_each(Follower::restart);
-        }
+        let Before { watched, .. } = *before;
         let frame = Frame {
             time_s: glance.time_s,
             exposure_s: glance.exposure_s,

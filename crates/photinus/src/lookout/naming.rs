@@ -3,6 +3,7 @@
 //! ```text
 //! testimony   P(words of m | v, turn) = share * (which signal its marker carries) + 1 - share     for each marker track m that belongs to the vehicle
 //! vehicle     the product over its markers; those that ended count once more, as far as a memory goes
+//! nobody      words that are in no list look like one of them by chance, for all markers that blink the same at once: that counts once a word
 //! fleet       no two vehicles are one: messages between tracks and ids
 //! ```
 //!
@@ -57,6 +58,8 @@ struct File {
     remembered: Vec<f64>,
     /// What all said, by hypothesis, nats below the best.
     said: Vec<f64>,
+    /// How much likelier than nobody the best of the fleet is, if chance counts once a word, nats.
+    odds_nats: f64,
     /// Which turn of the symmetric airframe is the true one, where signals tell, or told last.
     turn: Option<usize>,
 }
@@ -80,6 +83,9 @@ pub(super) struct Naming {
     /// Weight, and place of track and vehicle, of each claim.
     claims: Vec<(f64, usize, usize)>,
     names: Vec<Name>,
+    /// What one marker says, and by word the most that a marker with it says for the fleet.
+    own: Vec<f64>,
+    surest: Vec<(usize, f64)>,
 }
 
 impl Naming {
@@ -107,6 +113,8 @@ impl Naming {
             association: Association::default(),
             claims: Vec::new(),
             names: Vec::new(),
+            own: Vec::new(),
+            surest: Vec::new(),
         }
     }
 
@@ -161,6 +169,7 @@ impl Naming {
             for own in belongings.of(file.track) {
                 self.add(own, &mut file.said);
             }
+            file.odds_nats = self.odds_by_chance(belongings, &file);
             settle(&mut file.said);
             file.turn = self.sure_turn(&file.said).or(file.turn);
             self.files[place] = file;
@@ -213,6 +222,39 @@ impl Naming {
         }
     }
 
+    /// How much likelier than nobody of the fleet the best of it is, nats, if a word that is in no list looks like one that is to all markers that blink it at once: of those the
+    /// surest tells. What tells against the fleet counts each time. Several words do not look like those of one vehicle by chance.
+    fn odds_by_chance(&mut self, belongings: &Belongings, file: &File) -> f64 {
+        let Some((nobody, of_fleet)) = file.said.split_last() else { return 0.0 };
+        let best = (0..of_fleet.len()).max_by(|&a, &b| of_fleet[a].total_cmp(&of_fleet[b]));
+        let Some(best) = best.filter(|&best| of_fleet[best] > *nobody) else { return 0.0 };
+        let words = &self.vehicles[best / self.turns].words;
+        if words.iter().any(|word| *word != words[0]) {
+            return f64::INFINITY;
+        }
+        let over_nobody = |said: &[f64]| said[best] - said[said.len() - 1];
+        let mut odds_nats = over_nobody(&file.remembered);
+        let mut own = core::mem::take(&mut self.own);
+        self.surest.clear();
+        for marker in belongings.of(file.track) {
+            let words = &marker.words;
+            let Some(word) = (0..words.len()).max_by(|&a, &b| words[a].total_cmp(&words[b])) else {
+                continue;
+            };
+            own.clear();
+            own.resize(file.said.len(), 0.0);
+            self.add(marker, &mut own);
+            let nats = over_nobody(&own);
+            match self.surest.iter_mut().find(|surest| surest.0 == word) {
+                _ if nats <= 0.0 => odds_nats += nats,
+                Some((_, surest)) => *surest = surest.max(nats),
+                None => self.surest.push((word, nats)),
+            }
+        }
+        self.own = own;
+        odds_nats + self.surest.iter().map(|surest| surest.1).sum::<f64>()
+    }
+
     /// The turn that is nearly certain.
     fn sure_turn(&self, said: &[f64]) -> Option<usize> {
         if self.turns == 1 {
@@ -255,14 +297,18 @@ impl Naming {
             let shared = 1.0 + (0..own.len()).map(free).sum::<f64>();
             let alone = 1.0 + own.iter().map(|claim| claim.0).sum::<f64>();
             let begun = names.len();
+            let by_chance =
+                libm::exp(-files[own[0].1].odds_nats) * vehicles.len() as f64 * (1.0 - KNOWN) / KNOWN;
+            let surest = 1.0 / (1.0 + by_chance);
             for (pair, &(weight, place, vehicle)) in own.iter().enumerate() {
-                let probability = free(pair) / shared;
+                let among_all = free(pair) / shared;
+                let probability = among_all.min(surest);
                 if probability > TOLD {
                     names.push(Name {
                         track: files[place].track,
                         id: vehicles[vehicle].id,
                         probability,
-                        is_contested: weight / alone > SURE && probability < UNSURE,
+                        is_contested: weight / alone > SURE && among_all < UNSURE,
                     });
                 }
             }

@@ -56,8 +56,14 @@ impl<'a> Measurement<'a> {
         normal
     }
 
-    /// What it costs, nats, that these markers are seen and the others are not.
-    pub(crate) fn visibility_nats(&self, pose: &Pose, log_power: Option<f64>) -> f64 {
-        Problem { settings: self.told, ..self.problem }.visibility_nats(pose, log_power)
+    /// What it costs, nats, that these markers are seen and the others are not. `tell` is told of each marker that is looked for how likely it was not to be
+    /// seen, `None` where it is.
+    pub(crate) fn visibility(
+        &self,
+        pose: &Pose,
+        log_power: Option<f64>,
+        tell: impl FnMut(usize, Option<f64>),
+    ) -> f64 {
+        Problem { settings: self.told, ..self.problem }.visibility(pose, log_power, tell)
     }
 }

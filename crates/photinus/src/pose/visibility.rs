@@ -25,6 +25,16 @@ impl Problem<'_> {
     /// What it costs, nats, that these markers are seen and the others are not, if an LED of intensity 1 at 1 m gives a light
     /// of this logarithm.
     pub(super) fn visibility_nats(&self, pose: &Pose, log_power: Option<f64>) -> f64 {
+        self.visibility(pose, log_power, |_, _| ())
+    }
+
+    /// The same. `tell` is told of each marker that is looked for how likely it was not to be seen, `None` where it is.
+    pub(super) fn visibility(
+        &self,
+        pose: &Pose,
+        log_power: Option<f64>,
+        mut tell: impl FnMut(usize, Option<f64>),
+    ) -> f64 {
         let camera_m = pose.camera_in_body_m();
         let faintest_light = self.known.visible.faintest_light;
         let half = match log_power {
@@ -35,11 +45,12 @@ impl Problem<'_> {
             _ => FAINTEST_SHARE,
         };
         let intensity = |marker: usize| self.airframe.intensity(marker, &camera_m);
-        let nats = |marker: usize| {
+        let mut nats = |marker: usize| {
             let shines = intensity(marker).max(1e-4);
             let lit = self.known.visible.lit.get(marker).copied().unwrap_or(1.0);
             let found = lit * (1.0 - self.settings.missed) * probability(odds(shines / half));
             if self.is_used(marker) {
+                tell(marker, None);
                 // How rarely a marker that is too faint is found all the same was never measured: it is taken to be no rarer than that a bright one is missed.
                 return -libm::log(found.max(self.settings.missed.max(1e-9)));
             }
@@ -52,9 +63,11 @@ impl Problem<'_> {
                 merged => merged * probability(odds(intensity(seen).max(1e-3) / shines)),
             };
             let merged = if self.merging { self.used().map(into).fold(0.0, f64::max) } else { 0.0 };
-            -libm::log(1.0 - found * (1.0 - merged) * (1.0 - self.merged_with_others(pose, marker)))
+            let unseen = 1.0 - found * (1.0 - merged) * (1.0 - self.merged_with_others(pose, marker));
+            tell(marker, Some(unseen));
+            -libm::log(unseen)
         };
-        (0..self.airframe.markers().len()).map(nats).sum::<f64>() + self.told_apart_nats(&camera_m)
+        (0..self.airframe.markers().len()).map(&mut nats).sum::<f64>() + self.told_apart_nats(&camera_m)
     }
 
     /// What it costs that markers beside each other are seen as two spots.

@@ -11,6 +11,7 @@ use super::component::{Component, Covariance, YAW_RATE};
 use super::doubting;
 use super::look::{Appearance, Moment};
 use super::reduction::reduce;
+use super::silent::Silent;
 use super::state::{MOST_TARGETS, State, Target};
 use super::step::Model;
 use crate::camera::Rig;
@@ -122,6 +123,7 @@ fn begin(model: &Model, mode: &Mode, first: Option<&Component>, turns: usize) ->
         velocity_m_s: nalgebra::Vector3::zeros(),
         yaw_rate_rad_s: 0.0,
         covariance,
+        silent: Silent::BEFOREHAND,
     };
     let turn = first.and_then(|first| turn_next_to(model, &begun.pose, &first.pose, turns));
     turn.map_or(begun, |turn| begun.turned(&model.symmetry.turn(turn)))

@@ -7,6 +7,7 @@ use nalgebra::{
     Matrix3, Matrix4, Matrix4x6, Matrix6, Rotation3, SMatrix, SVector, Vector3, Vector4, Vector6,
 };
 
+use super::silent::Silent;
 use crate::pose::{Pose, turn_of};
 
 /// Numbers of a state.
@@ -35,6 +36,8 @@ pub(super) struct Component {
     /// How fast it turns about its own vertical axis, rad/s.
     pub(super) yaw_rate_rad_s: f64,
     pub(super) covariance: Covariance,
+    /// Which of its markers may be silent.
+    pub(super) silent: Silent,
 }
 
 impl Component {
@@ -120,11 +123,17 @@ pub(super) fn merged<'a>(all: impl Iterator<Item = &'a Component> + Clone) -> Op
     if weight <= 0.0 {
         return Some(*heaviest);
     }
-    let (mut mean, mut square) = (Step::zeros(), Covariance::zeros());
+    let (mut mean, mut square, mut silent) = (Step::zeros(), Covariance::zeros(), Silent::NONE);
     for component in all {
         let (off, share) = (heaviest.step_to(component), component.weight / weight);
         mean += off * share;
+        silent.add(&component.silent, share);
         square += (component.covariance + off * off.transpose()) * share;
     }
-    Some(Component { weight, covariance: square - mean * mean.transpose(), ..heaviest.stepped(&mean) })
+    Some(Component {
+        weight,
+        covariance: square - mean * mean.transpose(),
+        silent,
+        ..heaviest.stepped(&mean)
+    })
 }

@@ -30,6 +30,8 @@ pub(super) struct History {
     /// Whether the first frame since the last reset is still kept.
     is_whole: bool,
     most_frames: usize,
+    /// By camera: the time of its last frame, if that had no place among its own.
+    misplaced_s: [Option<f64>; Rig::MOST],
 }
 
 impl History {
@@ -42,7 +44,33 @@ impl History {
             spare: Vec::with_capacity(most_frames + 1),
             nobody: State::empty(0.0, 0),
             is_whole: true,
+            misplaced_s: [None; Rig::MOST],
         }
+    }
+
+    /// Whether a frame is of another clock than those before: a second one in a row of its camera, each after the other, that has no place among its own.
+    pub(super) fn is_of_another_clock(&self, camera: usize, time_s: f64) -> bool {
+        let before = self.misplaced_s.get(camera).copied().flatten();
+        before.is_some_and(|before_s| time_s > before_s) && self.is_misplaced(camera, time_s)
+    }
+
+    /// Whether a frame that is late for its own camera lies where that has no gap: it is nearer to another one of it than half of the time between its frames; or it is
+    /// later than can be made up for.
+    fn is_misplaced(&self, camera: usize, time_s: f64) -> bool {
+        let own = || self.entries.iter().map(|entry| &entry.moment).filter(|own| own.camera == camera);
+        let Some(newest_s) = own().next_back().map(|own| own.time_s).filter(|newest_s| time_s < *newest_s)
+        else {
+            return false;
+        };
+        let between_s = |(a, b): (&Moment, &Moment)| b.time_s - a.time_s;
+        let usual_s = own().zip(own().skip(1)).map(between_s).fold(f64::INFINITY, f64::min);
+        let gap_s = own().map(|own| (own.time_s - time_s).abs()).fold(f64::INFINITY, f64::min);
+        newest_s - time_s > Tracker::MOST_LATE_S || gap_s < 0.5 * usual_s
+    }
+
+    /// Notes where a camera's frame stands among its own.
+    pub(super) fn note(&mut self, camera: usize, time_s: f64) {
+        self.misplaced_s[camera] = self.is_misplaced(camera, time_s).then_some(time_s);
     }
 
     /// What is believed after the newest frame.
@@ -60,6 +88,7 @@ impl History {
         self.nobody.next_id = self.newest().map_or(self.nobody.next_id, |state| state.next_id);
         self.spare.append(&mut self.entries);
         self.is_whole = true;
+        self.misplaced_s = [None; Rig::MOST];
     }
 
     /// Takes a frame in at its place.

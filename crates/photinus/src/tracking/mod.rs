@@ -32,6 +32,7 @@ mod look;
 mod motion;
 mod reduction;
 mod settings;
+mod silent;
 mod splitting;
 mod state;
 mod step;
@@ -123,27 +124,35 @@ impl Tracker {
 
     /// Takes a frame in, and tells the tracks at its time, in its camera's axes; after a late one, [`Self::at`] tells those of the newest. Frames up to
     /// [`Self::MOST_LATE_S`] behind the newest take their place; one that is more than [`Self::JUMP_S`] off is of another clock: all tracks are forgotten
-    /// first, and [`Tracked::placed`] says so.
+    /// first, and [`Tracked::placed`] says so. So is the second frame in a row, the one after the other, that lies among frames of its own camera where that has no gap, or
+    /// farther behind them than can be made up for: such frames are not late, their clock was set back.
     ///
     /// # Errors
-    /// [`TrackError`] for a time or a turn without meaning, a frame that is too late, and a second one of the same time; nothing is changed then.
+    /// [`TrackError`] for a time or a turn without meaning, a frame that is too late, and a second one of the same time; no track is changed then.
     pub fn track(&mut self, look: &Look<'_>) -> Result<&Tracked, TrackError> {
         look.check(&self.model.rig)?;
         let off_s = self.history.newest().map_or(0.0, |newest| look.time_s - newest.time_s);
         let placed = match off_s {
-            _ if off_s.abs() > Self::JUMP_S => Placed::Reset,
+            _ if self.is_of_another_clock(look.camera, look.time_s) => Placed::Reset,
             _ if off_s < 0.0 => Placed::Late,
             _ => Placed::Newest,
         };
         if placed == Placed::Reset {
             self.history.forget();
         }
+        self.history.note(look.camera, look.time_s);
         self.history.take_in(&mut self.stepper, &self.model, look)?;
         if let Some(state) = self.history.at(look.time_s) {
             self.tracked.tell(&self.model, state, None);
         }
         self.tracked.placed = placed;
         Ok(&self.tracked)
+    }
+
+    /// Whether a frame's time is of another clock: all tracks are forgotten before it.
+    pub(crate) fn is_of_another_clock(&self, camera: usize, time_s: f64) -> bool {
+        let off_s = self.history.newest().map_or(0.0, |newest| time_s - newest.time_s);
+        off_s.abs() > Self::JUMP_S || self.history.is_of_another_clock(camera, time_s)
     }
 
     /// Where everybody is at a time: carried on from the last frame before it, in that frame's axes.

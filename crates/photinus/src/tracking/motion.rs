@@ -140,7 +140,14 @@ impl Motion {
         let pose =
             Pose { position_m, camera_from_body: camera_from_body * Rotation3::new(upright * (1.0 - keeps)) };
         let yaw_rate_rad_s = turning.keeps * before.yaw_rate_rad_s;
-        Component { weight: before.weight, pose, velocity_m_s, yaw_rate_rad_s, covariance }
+        Component {
+            weight: before.weight,
+            pose,
+            velocity_m_s,
+            yaw_rate_rad_s,
+            covariance,
+            silent: before.silent.after(interval_s),
+        }
     }
 
     /// Makes a vehicle that another camera showed less sure, by how far this one may see it elsewhere: about each axis, rad^2, and along each, m^2.

@@ -218,6 +218,7 @@ impl Stepper {
         let with = existence.with(unseen, ways.unseen_if_shown(vehicle));
         let (first_member, mut log_power, mut best) = (after.members.len(), before.log_power, 0.0);
         reduced.clear();
+        ways.count_once(vehicle, &mut joint.probability);
         for (index, way) in ways.of(vehicle) {
             let probability = joint.probability[index];
             reduced.push(Component { weight: probability, ..way.component });

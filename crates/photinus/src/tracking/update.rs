@@ -35,6 +35,8 @@ pub(super) struct Updated {
     pub(super) component: Component,
     /// Logarithm of the density of all the frame's observations.
     pub(super) log_evidence: f64,
+    /// What of it is for how wide the prediction is: the narrower, the more.
+    pub(super) log_spread: f64,
     /// Logarithm of the light of an LED of intensity 1 at 1 m, where a spot has a light.
     pub(super) log_power: Option<f64>,
 }
@@ -48,8 +50,14 @@ impl Prior {
         Some(Self { component: *component, information, log_determinant, rates_by_pose })
     }
 
-    /// The state with a measurement, the nearest to `start`; `None` also where its evidence is certain to be less than `least`.
-    pub(super) fn update(&self, measurement: &Measurement<'_>, start: &Pose, least: f64) -> Option<Updated> {
+    /// The state with a measurement, the nearest to `start`; `None` also where it counts for nothing with certainty, which is asked of the most that the evidence can
+    /// be: of what the width of the prediction gives, and of the rest.
+    pub(super) fn update(
+        &self,
+        measurement: &Measurement<'_>,
+        start: &Pose,
+        is_nothing: impl Fn(f64, f64) -> bool,
+    ) -> Option<Updated> {
         let mut here = self.at(measurement, *start);
         for _ in 0..MOST_STEPS {
             let factor = here.information().cholesky()?;
@@ -60,7 +68,7 @@ impl Prior {
             }
             // The summit is about half of `gain` away, or all of it along Huber's lines; markers that are not seen add no evidence.
             let log_spread = 0.5 * self.log_determinant - log_root(factor.l_dirty());
-            if log_spread - (here.nats - gain) < least {
+            if is_nothing(log_spread, gain - here.nats) {
                 return None;
             }
             let mut length = 1.0;
@@ -79,13 +87,17 @@ impl Prior {
             }
         }
         let (covariance, log_determinant) = inverse(here.information())?;
-        let unseen = measurement.visibility_nats(&here.pose, here.normal.log_power);
-        let log_evidence = 0.5 * (self.log_determinant + log_determinant) - here.nats - unseen;
-        if !log_evidence.is_finite() || log_evidence < least {
+        let mut silent = self.component.silent;
+        let unseen = measurement.visibility(&here.pose, here.normal.log_power, |marker, unseen| {
+            silent.learn(marker, unseen);
+        });
+        let log_spread = 0.5 * (self.log_determinant + log_determinant);
+        let log_evidence = log_spread - here.nats - unseen;
+        if !log_evidence.is_finite() || is_nothing(log_spread, -here.nats - unseen) {
             return None;
         }
-        let component = self.with(&here, &covariance);
-        Some(Updated { component, log_evidence, log_power: here.normal.log_power })
+        let component = Component { silent, ..self.with(&here, &covariance) };
+        Some(Updated { component, log_evidence, log_spread, log_power: here.normal.log_power })
     }
 
     fn at(&self, measurement: &Measurement<'_>, pose: Pose) -> Here<'_> {

@@ -10,6 +10,7 @@
 mod any;
 #[path = "../hash/mod.rs"]
 mod hash;
+mod order;
 mod plain;
 mod same;
 mod score;

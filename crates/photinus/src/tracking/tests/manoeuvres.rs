@@ -215,7 +215,8 @@ fn ways_that_are_given_up_count_for_nothing() {
         }
         println!("{worst:.1e} sigma, {tried:?}");
         assert!(worst < 0.01, "{worst} sigma");
-        assert!(tried[0] < 0.7 * tried[1], "{tried:?}");
+        // More ways count since how wide predictions are counts once: it was 0.7 before.
+        assert!(tried[0] < 0.8 * tried[1], "{tried:?}");
     }
 }
 

@@ -10,6 +10,7 @@ use super::super::branches::Pairs;
 use super::super::component::{Component, Covariance, Step, pose_step};
 use super::super::doubting::WRONG;
 use super::super::look::Appearance;
+use super::super::silent::Silent;
 use super::super::state::Target;
 use super::super::step::Model;
 use super::super::update::Prior;
@@ -141,5 +142,6 @@ fn anew(model: &Model, mode: &Mode) -> Component {
         velocity_m_s: Vector3::zeros(),
         yaw_rate_rad_s: 0.0,
         covariance,
+        silent: Silent::BEFOREHAND,
     }
 }

@@ -10,11 +10,13 @@
 //! trying       each with its Kalman update and its weight, but      update
 //!              those that are certain to count for nothing
 //! blinking     which markers are lit at a pose, for both
+//! repeated     what frames repeat, counted once
 //! ```
 
 mod blinking;
 mod candidates;
 mod located;
+mod repeated;
 mod screening;
 mod trying;
 
@@ -80,6 +82,8 @@ pub(super) struct Way {
     pub(super) component: Component,
     pub(super) pairs: Pairs,
     pub(super) log_power: Option<f64>,
+    /// What of its weight other frames repeat, nats.
+    repeated_nats: f64,
     /// Which of the priors it comes from; `None` for none of them.
     from: Option<usize>,
 }
@@ -113,6 +117,8 @@ pub(super) struct Ways {
     /// How likely each marker of a vehicle is lit as told, and as a pose has it.
     told_lit: Vec<f64>,
     lit: Vec<f64>,
+    /// Which markers another vehicle may hide.
+    screened: Vec<bool>,
     blinking: Blinking,
     screens: Screens,
     branches: Branches,
@@ -159,6 +165,7 @@ impl Ways {
             who: None,
             told_lit: Vec::with_capacity(markers),
             lit: Vec::with_capacity(markers),
+            screened: Vec::with_capacity(markers),
             blinking: Blinking::default(),
             screens: Screens::default(),
             branches: Branches::with_room(markers),
@@ -316,14 +323,17 @@ impl Ways {
         }
     }
 
-    /// How likely each marker of a vehicle is lit at a pose, and not behind another vehicle.
+    /// How likely each marker of a vehicle is lit at a pose, not silent, and not behind another vehicle.
     fn light(&mut self, scene: &Scene<'_>, vehicle: usize, from: &Component, pose: &Pose) {
         self.lit.clone_from(&self.told_lit);
         if let Some(others_lit) = scene.moment.others_lit {
             self.blinking.light(scene.model, pose, others_lit, &mut self.lit);
         }
+        from.silent.dim(&mut self.lit);
+        self.screened.clear();
+        self.screened.resize(self.lit.len(), false);
         if is_known_aside(from, scene.model.airframe.max_radius_m()) {
-            self.screens.dim(vehicle, &scene.model.airframe, pose, &mut self.lit);
+            self.screens.dim(vehicle, &scene.model.airframe, pose, &mut self.lit, &mut self.screened);
         }
     }
 
@@ -334,7 +344,7 @@ impl Ways {
         self.markers.resize(self.observations.len(), None);
         self.gather_others(scene, &component.pose);
         let nats = self.measured(scene, &component.pose, |measurement| {
-            measurement.visibility_nats(&component.pose, target.log_power[scene.moment.camera])
+            measurement.visibility(&component.pose, target.log_power[scene.moment.camera], |_, _| ())
         });
         libm::exp(-nats)
     }

@@ -38,8 +38,15 @@ impl Screens {
         }
     }
 
-    /// Lowers how likely each marker of a vehicle shows at a pose by who is before it.
-    pub(super) fn dim(&self, vehicle: usize, airframe: &Airframe, pose: &Pose, lit: &mut [f64]) {
+    /// Lowers how likely each marker of a vehicle shows at a pose by who is before it, and says which these are.
+    pub(super) fn dim(
+        &self,
+        vehicle: usize,
+        airframe: &Airframe,
+        pose: &Pose,
+        lit: &mut [f64],
+        screened: &mut [bool],
+    ) {
         let radius_m = airframe.max_radius_m();
         let range_m = pose.position_m.norm();
         let may_hide = |screen: &&Screen| {
@@ -49,11 +56,12 @@ impl Screens {
                 && (screen.ahead * range_m - pose.position_m).norm() < reach * range_m
         };
         for screen in self.0.iter().filter(may_hide) {
-            for (marker, lit) in airframe.markers().iter().zip(lit.iter_mut()) {
+            for ((marker, lit), screened) in airframe.markers().iter().zip(lit.iter_mut()).zip(&mut *screened)
+            {
                 let place_m = pose.camera_from_body * marker.position_m + pose.position_m;
                 let before_m = screen.ahead * (screen.ahead.dot(&place_m));
                 if (place_m - before_m).norm() * screen.distance_m < radius_m * before_m.norm() {
-                    *lit *= SHOWS;
+                    (*lit, *screened) = (*lit * SHOWS, true);
                 }
             }
         }

@@ -6,7 +6,7 @@
 
 use super::super::component::Component;
 use super::super::joint::{Choice, Spots};
-use super::super::update::Prior;
+use super::super::update::{Prior, Updated};
 use super::candidates::Candidate;
 use super::{Scene, Way, Ways, signal_nats};
 
@@ -53,7 +53,16 @@ impl Ways {
         let log_weight = log_weight + self.clutter_nats - signals;
         let instead = self.likeliest_instead(vehicle, spots).max(self.worth_to_others(vehicle, spots));
         let least = instead - self.nothing_nats - log_weight;
-        let updated = self.measured(scene, start, |measurement| prior.update(measurement, start, least));
+        // Beside those with the same spots a way counts for more where its prediction is wide.
+        let counts = 1.0 / self.repeats;
+        let beside = self.best_beside(vehicle, spots).map(|(all, once)| {
+            let together = (all - instead).min(0.0);
+            once - together - self.nothing_nats - log_weight
+        });
+        let is_nothing = |spread: f64, rest: f64| {
+            spread + rest < least && beside.is_none_or(|least| counts * spread + rest < least)
+        };
+        let updated = self.measured(scene, start, |measurement| prior.update(measurement, start, is_nothing));
         let Some(updated) = updated else { return };
         if self.own(vehicle).any(|(choice, way)| {
             (choice.spots, way.from) == (spots, from) && is_same(&way.component, &updated.component)
@@ -61,7 +70,15 @@ impl Ways {
             return;
         }
         let log_weight = log_weight + updated.log_evidence;
-        self.all.push(Way { component: updated.component, pairs, log_power: updated.log_power, from });
+        let repeated_nats = (1.0 - counts) * updated.log_spread;
+        let Updated { mut component, log_power, .. } = updated;
+        if self.others.is_empty() {
+            component.silent.keep(&prior.component.silent, &self.screened);
+        } else {
+            // Whose spots these are is in doubt where others are near.
+            component.silent = prior.component.silent;
+        }
+        self.all.push(Way { component, pairs, log_power, repeated_nats, from });
         self.choices.push(Choice { vehicle, spots, log_weight, way: self.all.len() - 1 });
     }
 
@@ -91,6 +108,13 @@ impl Ways {
         let free = spots | !others.fold(0, |all, (_, reach)| all | reach);
         let instead = self.own(vehicle).filter(|(choice, _)| choice.spots & !free == 0);
         instead.map(|(choice, _)| choice.log_weight).fold(self.log_unseen[vehicle], f64::max)
+    }
+
+    /// Logarithm of the largest weight of the ways so far with these spots, and of the largest with what frames repeat counted once.
+    fn best_beside(&self, vehicle: usize, spots: Spots) -> Option<(f64, f64)> {
+        let beside = self.own(vehicle).filter(|(choice, _)| choice.spots == spots);
+        let weights = beside.map(|(choice, way)| (choice.log_weight, choice.log_weight - way.repeated_nats));
+        weights.reduce(|a, b| (a.0.max(b.0), a.1.max(b.1)))
     }
 
     /// The ways so far of the vehicle that is tried.

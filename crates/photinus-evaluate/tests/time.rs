@@ -1,0 +1,55 @@
+//! Tracks and names on rendered frames while something is wrong, and while LEDs are dark: short runs of the example `time`, on seeds that it was developed on.
+
+#![allow(dead_code, reason = "the example prints more than the test looks at")]
+#![allow(clippy::print_stdout, reason = "the example prints its tables")]
+
+#[path = "../examples/time/dark.rs"]
+mod dark;
+#[path = "../examples/time/fault.rs"]
+mod fault;
+#[path = "../examples/time/flight.rs"]
+mod flight;
+#[path = "../examples/time/scene.rs"]
+mod scene;
+#[path = "../examples/time/score.rs"]
+mod score;
+
+use fault::FAULTS;
+use scene::{HEXAROTOR, SIGNALLED};
+use score::Score;
+
+fn fly(seed: u64, name: &str) -> Score {
+    let fault = FAULTS.iter().find(|fault| fault.name == name).expect("a fault of the table");
+    let score = flight::fly(seed, HEXAROTOR, fault);
+    println!("{}", score.line(HEXAROTOR, name));
+    score
+}
+
+/// A pose that needs a dead LED pays for it once: this flight had NEES of 22 while it paid in every frame.
+#[test]
+fn a_dead_led_makes_nobody_surely_wrong() {
+    let [seen, predicted, velocity] = fly(2, "a dead LED each").nees();
+    assert!(seen < 4.0 && predicted < 4.0 && velocity < 4.0, "{seen} {predicted} {velocity}");
+}
+
+/// Frames of a clock that was set back by less than late frames may be are no late frames: all is begun anew, and said so.
+#[test]
+fn a_clock_that_is_set_back_is_told() {
+    let score = fly(1, "times 0.3 s back");
+    assert_eq!((score.resets, score.late), (1, 0));
+    assert!(score.nees().iter().all(|nees| *nees < 4.0), "{:?}", score.nees());
+}
+
+/// A hexarotor that blinks has a track in every frame after its first second, also where one LED is lit or none, and is told 1.5 times as far off as with steady LEDs at most.
+#[test]
+fn who_blinks_is_found_in_every_frame() {
+    let [steady, one, six] = [(HEXAROTOR, &[][..]), (HEXAROTOR, &[0]), (SIGNALLED, &[0, 1, 2, 3, 4, 5])]
+        .map(|(airframe, words)| dark::fly(1, airframe, words));
+    let whole = |rows: &dark::Rows| dark::whole(rows);
+    for rows in [&one, &six] {
+        assert_eq!(whole(rows).frames, whole(rows).tracked);
+        assert_eq!(rows[0].tracked, rows[0].predicted, "who shows nothing is said to be predicted");
+        assert!(whole(rows).rms_m() < 1.5 * whole(&steady).rms_m());
+    }
+    assert!(six[1].frames > 10, "frames with one LED");
+}

@@ -12,8 +12,6 @@ use super::context::Context;
 use super::explanation::Explanation;
 use super::grouping::Groups;
 use super::kinds::Kinds;
-#[cfg(not(feature = "std"))]
-use crate::float::Float as _;
 
 /// This many of the nearest observations are put together with one.
 const NEAREST: usize = 6;

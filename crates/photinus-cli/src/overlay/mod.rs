@@ -114,6 +114,14 @@ impl Overlay {
         let picture = self.drawing.draw(camera, record, frame, gravity, truth_m)?;
         self.place.write(picture, &self.palette, record, &mut self.bytes)
     }
+
+    /// Takes note of a record that is not drawn: names stay, and tails have it.
+    pub(crate) fn pass(&mut self, camera: usize, record: &FrameRecord) {
+        if let Some(last) = self.drawing.last.get_mut(camera) {
+            let called = last.names.follow(record);
+            last.tails.follow(record, &called.tracks);
+        }
+    }
 }
 
 impl Drawing {

@@ -16,12 +16,14 @@ use crate::terminal::Terminal;
 use photinus_run::Clock;
 
 const PICTURES: &str = "figure-17";
+/// Between pictures, s.
+const STEP_S: f64 = 1.0;
 /// Pictures of a quick run.
 const QUICK: usize = 4;
 
 /// Numbers of the frames that are drawn.
 pub(super) fn numbers(scene: &Scene, effort: Effort) -> Vec<u64> {
-    let mut pace = Pace::default();
+    let mut pace = Pace::every(STEP_S);
     let due = (0..scene.frames).filter(|&number| pace.is_due(number as f64 / scene.rate_hz));
     match effort {
         Effort::Full => due.collect(),

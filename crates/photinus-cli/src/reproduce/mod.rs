@@ -21,7 +21,7 @@ use std::time::Instant;
 use photinus_io::Error;
 use photinus_reproduce::{Effort, Experiment, Figure, Report, ReproduceError, Rig};
 
-use crate::demo::carried;
+use crate::demo::carried::OUTDOOR_FLIGHT;
 use crate::failure::Failure;
 use crate::targets::{Targets, WriteArgs};
 use crate::terminal::Terminal;
@@ -93,7 +93,8 @@ pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> Result<(), Failure> {
     let making = target.whole().map_err(Failure::input)?;
     let folder = making.path();
     let broken = |error| Failure::running(making.tell(error));
-    let scene = carried::unpack(&folder.join("scene")).map_err(|error| Failure::input(making.tell(error)))?;
+    let scene =
+        OUTDOOR_FLIGHT.unpack(&folder.join("scene")).map_err(|error| Failure::input(making.tell(error)))?;
     let rig = Rig::new(scene).map_err(|error| Failure::Running(error.to_string()))?;
     let wanted: BTreeSet<Experiment> =
         Figure::ALL.into_iter().filter(|figure| args.wants(*figure)).map(Figure::experiment).collect();

@@ -164,7 +164,15 @@ fn runs(
             _ => {}
         }
     }
-    // One point has no area.
+    runs.retain(|run| !run.is_empty());
+    // One point has no area: it is as wide as a frame is long.
+    let steps = there.windows(2).map(|pair| pair[1].1 - pair[0].1);
+    let half_s = 0.5 * steps.fold(f64::INFINITY, f64::min);
+    for run in &mut runs {
+        if let ([(time_s, min, max)], true) = (run.as_slice(), half_s.is_finite()) {
+            *run = vec![(time_s - half_s, *min, *max), (time_s + half_s, *min, *max)];
+        }
+    }
     runs.retain(|run| run.len() > 1);
     runs
 }

@@ -6,6 +6,7 @@ use kuva::plot::scatter::MarkerShape;
 use kuva::prelude::Plot;
 use photinus_evaluate::{Evaluation, Pair};
 use photinus_io::dataset::TruthFrame;
+use photinus_io::results::Distance;
 
 use super::Figure;
 use crate::plots::style::{
@@ -16,6 +17,9 @@ use crate::plots::style::{
 const MOST_TIMES: f64 = 8.0;
 /// The axis begins at this share of the nearest bound or truth.
 const BELOW: f64 = 0.8;
+
+/// Who blinks is dark no longer than this, s.
+const LONGEST_DARK_S: f64 = 0.1;
 
 /// What was found of a neighbour, by frame.
 type Found<'a> = BTreeMap<u64, &'a Pair<'a>>;
@@ -47,10 +51,11 @@ pub(super) fn figures(
 fn distance(id: u32, whose: &str, there: &[(u64, f64, f64)], found: &Found<'_>) -> Figure {
     let (nearest_m, farthest_m) =
         there.iter().fold((f64::INFINITY, 0.0_f64), |(near, far), at| (near.min(at.2), far.max(at.2)));
-    let bounds = || found.values().map(|pair| &pair.found.distance_m);
-    let lowest_m = BELOW * bounds().map(|bounds| bounds.min).filter(|&m| m > 0.0).fold(nearest_m, f64::min);
+    let bounds = || found.values().map(|pair| (pair.time_s, &pair.found.distance_m));
+    let lowest_m =
+        BELOW * bounds().map(|(_, bounds)| bounds.min).filter(|&m| m > 0.0).fold(nearest_m, f64::min);
     let highest_m = bounds()
-        .filter_map(|bounds| bounds.max)
+        .filter_map(|(_, bounds)| bounds.max)
         .fold(1.2 * farthest_m, f64::max)
         .min(MOST_TIMES * farthest_m);
     // An axis from tick to tick has two of them at least.
@@ -60,7 +65,7 @@ fn distance(id: u32, whose: &str, there: &[(u64, f64, f64)], found: &Found<'_>) 
         values.filter(|point| (lowest_m..=highest_m).contains(&point.1)).collect()
     };
     let mut plots: Vec<Plot> = Vec::new();
-    for (number, run) in runs(there, found, [lowest_m, highest_m]).iter().enumerate() {
+    for (number, run) in runs(bounds(), [lowest_m, highest_m]).iter().enumerate() {
         let shown = band(run, BOUNDS);
         plots.push(if number == 0 { shown.with_legend("bounds") } else { shown }.into());
     }
@@ -146,33 +151,21 @@ fn tick_above(value: f64) -> f64 {
 /// Truth, drawn wide, beneath what is to be seen on it.
 const PALE: &str = "#B8BDC2";
 
-/// Bounds as (time, min, max), in runs of frames in which it was found: a gap shows as a gap.
-fn runs(
-    there: &[(u64, f64, f64)],
-    found: &Found<'_>,
+/// Bounds as (time, min, max), in runs of frames in which it was found: a gap that is longer than words are dark shows as a gap.
+fn runs<'a>(
+    found: impl Iterator<Item = (f64, &'a Distance)>,
     [lowest_m, highest_m]: [f64; 2],
 ) -> Vec<Vec<(f64, f64, f64)>> {
-    let mut runs = vec![Vec::new()];
-    for (frame, time_s, _) in there {
-        match (found.get(frame), runs.last_mut()) {
-            (Some(pair), Some(run)) => {
-                let bounds = &pair.found.distance_m;
-                let max = bounds.max.unwrap_or(highest_m).min(highest_m);
-                run.push((*time_s, bounds.min.clamp(lowest_m, highest_m), max));
-            }
-            (None, Some(run)) if !run.is_empty() => runs.push(Vec::new()),
-            _ => {}
+    let mut runs: Vec<Vec<(f64, f64, f64)>> = Vec::new();
+    for (time_s, bounds) in found {
+        let max = bounds.max.unwrap_or(highest_m).min(highest_m);
+        let own = (time_s, bounds.min.clamp(lowest_m, highest_m), max);
+        match runs.last_mut() {
+            Some(run) if run.last().is_some_and(|last| time_s - last.0 <= LONGEST_DARK_S) => run.push(own),
+            _ => runs.push(vec![own]),
         }
     }
-    runs.retain(|run| !run.is_empty());
-    // One point has no area: it is as wide as a frame is long.
-    let steps = there.windows(2).map(|pair| pair[1].1 - pair[0].1);
-    let half_s = 0.5 * steps.fold(f64::INFINITY, f64::min);
-    for run in &mut runs {
-        if let ([(time_s, min, max)], true) = (run.as_slice(), half_s.is_finite()) {
-            *run = vec![(time_s - half_s, *min, *max), (time_s + half_s, *min, *max)];
-        }
-    }
+    // One point has no area.
     runs.retain(|run| run.len() > 1);
     runs
 }
@@ -180,6 +173,17 @@ fn runs(
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn bounds_go_on_while_a_word_is_dark_and_end_where_nobody_is_found() {
+        let told =
+            Distance { estimate: None, sigma: None, min: 2.0, max: None, perpendicular: None, inline: None };
+        // Lit in every other frame, and gone for a second.
+        let lit_s = (0..10).map(|n| f64::from(n) / 30.0).chain((0..10).map(|n| 1.5 + f64::from(n) / 30.0));
+        let runs = runs(lit_s.map(|time_s| (time_s, &told)), [1.0, 9.0]);
+        assert_eq!(runs.iter().map(Vec::len).collect::<Vec<_>>(), [10, 10]);
+        assert!(runs.iter().flatten().all(|&(_, min, max)| [min, max] == [2.0, 9.0]));
+    }
 
     #[test]
     fn an_axis_ends_at_the_ticks_around_its_values() {

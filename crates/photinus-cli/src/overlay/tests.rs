@@ -251,12 +251,17 @@ fn who_is_followed_is_drawn_with_a_tail_also_unseen() {
     let folder = Folder::new("followed");
     std::fs::create_dir_all(&folder.0).unwrap();
     let mut overlay = Overlay::new(Place::folder(folder.0.clone()), vec![camera()]).unwrap();
-    let mut picture = |frame: u64, time_s: f64, position_m: [f64; 3]| {
+    let followed = |frame: u64, time_s: f64, position_m: [f64; 3]| {
         let tracks = vec![track(position_m)];
-        let source = String::new();
-        let record = FrameRecord { frame: Some(frame), time_s: Some(time_s), source, tracks, ..record() };
-        overlay.draw(0, &record, None, None, &[]).unwrap();
+        FrameRecord { frame: Some(frame), time_s: Some(time_s), source: String::new(), tracks, ..record() }
+    };
+    let drawn = |overlay: &mut Overlay, record: &FrameRecord| {
+        overlay.draw(0, record, None, None, &[]).unwrap();
+        let frame = record.frame.unwrap();
         read_image(folder.0.join(format!("overlay-{frame:06}.png"))).unwrap().image
+    };
+    let mut picture = |frame: u64, time_s: f64, position_m: [f64; 3]| {
+        drawn(&mut overlay, &followed(frame, time_s, position_m))
     };
     let begun = picture(0, 0.0, [-1.0, 0.5, 4.0]);
     let gone_on = picture(1, 1.0, [0.0, 0.5, 4.5]);
@@ -266,4 +271,10 @@ fn who_is_followed_is_drawn_with_a_tail_also_unseen() {
     let [before, after] = [&begun, &gone_on].map(marked);
     assert!(after > before + 100, "the tail shows where it was: {before}, {after}");
     assert!(marked(&later) < marked(&gone_on), "and is forgotten after two seconds");
+
+    let mut other = Overlay::new(Place::folder(folder.0.clone()), vec![camera()]).unwrap();
+    other.pass(0, &followed(0, 0.0, [-1.0, 0.5, 4.0]));
+    let passed = drawn(&mut other, &followed(3, 1.0, [0.0, 0.5, 4.5]));
+    let tail = |image: &GreyImage| image.pixels()[image.width() * 40..].to_vec();
+    assert!(tail(&passed) == tail(&gone_on), "where it was in a frame that was not drawn shows, too");
 }

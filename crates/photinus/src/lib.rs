@@ -58,6 +58,7 @@ pub mod lookout;
 pub mod optics;
 pub mod pose;
 pub mod ranging;
+pub mod solve;
 pub mod spots;
 pub mod tracking;
 

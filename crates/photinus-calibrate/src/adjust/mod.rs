@@ -12,6 +12,7 @@ mod pose;
 mod step;
 
 use nalgebra::{Isometry3, Vector2, Vector3};
+use photinus::solve::descend;
 
 use crate::lens::{Lens, MOST_PARAMETERS};
 
@@ -105,7 +106,8 @@ impl Task<'_> {
 
     /// Adjusts `first`; `None` when it cannot even be evaluated.
     pub(crate) fn adjust(&self, first: &Scene) -> Option<Adjusted> {
-        step::descend(self, first)
+        let (scene, cost) = descend(self, first.clone(), self.most_steps)?;
+        Some(Adjusted { scene, cost })
     }
 
     /// The cost of a scene; `None` where a point has no image.

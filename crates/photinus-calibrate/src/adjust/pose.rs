@@ -2,9 +2,13 @@
 
 use nalgebra::{Isometry3, Matrix6, Vector3, Vector6};
 
+use photinus::solve::{Descent, descend, step};
+
 use super::step::moved_pose;
 use super::{Loss, View};
 use crate::lens::Lens;
+
+const MOST_STEPS: u32 = 40;
 
 /// What one view costs; `None` where a point has no image.
 pub(crate) fn pose_cost(
@@ -31,34 +35,37 @@ pub(crate) fn fit_pose(
     first: &Isometry3<f64>,
     loss: Loss,
 ) -> Option<(Isometry3<f64>, f64)> {
-    let mut pose = *first;
-    let mut cost = pose_cost(lens, board_m, view, &pose, loss)?;
-    let mut damping = 1e-3;
-    for _ in 0..40 {
-        let (matrix, gradient) = normal(lens, board_m, view, &pose, loss)?;
-        let before = cost;
-        while damping < 1e9 {
-            let mut damped = matrix;
-            for k in 0..6 {
-                damped[(k, k)] += damping * damped[(k, k)] + 1e-12;
-            }
-            if let Some(cholesky) = damped.cholesky() {
-                let next = moved_pose(&pose, &cholesky.solve(&gradient));
-                if let Some(next_cost) =
-                    pose_cost(lens, board_m, view, &next, loss).filter(|next| *next < cost)
-                {
-                    (pose, cost) = (next, next_cost);
-                    damping = (damping * 0.1_f64).max(1e-12);
-                    break;
-                }
-            }
-            damping *= 8.0;
-        }
-        if before - cost <= 1e-9 * cost {
-            break;
-        }
+    descend(&Photo { lens, board_m, view, loss }, *first, MOST_STEPS)
+}
+
+/// One photo, with the lens and the board as they are.
+struct Photo<'a> {
+    lens: &'a Lens,
+    board_m: &'a [Vector3<f64>],
+    view: &'a View,
+    loss: Loss,
+}
+
+impl Descent for Photo<'_> {
+    type Place = Isometry3<f64>;
+    type Normal = (Matrix6<f64>, Vector6<f64>);
+
+    fn cost(&self, pose: &Isometry3<f64>) -> Option<f64> {
+        pose_cost(self.lens, self.board_m, self.view, pose, self.loss)
     }
-    Some((pose, cost))
+
+    fn normal(&self, pose: &Isometry3<f64>) -> Option<Self::Normal> {
+        normal(self.lens, self.board_m, self.view, pose, self.loss)
+    }
+
+    fn stepped(
+        &self,
+        pose: &Isometry3<f64>,
+        (normal, downhill): &Self::Normal,
+        damping: f64,
+    ) -> Option<Isometry3<f64>> {
+        step(normal, downhill, damping).map(|step| moved_pose(pose, &step))
+    }
 }
 
 fn normal(

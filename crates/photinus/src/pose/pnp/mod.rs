@@ -14,13 +14,9 @@ use core::array;
 use nalgebra::{Isometry3, Matrix3, Matrix6, Translation3, UnitQuaternion, Vector3, Vector6};
 
 use super::p3p::{P3pSolutions, p3p_with_near_misses};
+use crate::solve::{Descent, descend, step};
 
-const MAX_STEPS: usize = 30;
-/// Marquardt's damping, a share of the normal matrix's diagonal.
-const DAMPING: f64 = 1e-4;
-const MAX_DAMPING: f64 = 1e6;
-/// A step that lowers the cost by less than this share ends the refinement.
-const CONVERGED: f64 = 1e-9;
+const MAX_STEPS: u32 = 30;
 
 /// The pose `camera_from_body` with the least sum of squared errors between `bearings` (unit vectors, camera
 /// frame, any direction) and the directions to `points_m` (body frame, m), to which they belong in their
@@ -32,12 +28,13 @@ pub fn pnp(bearings: &[Vector3<f64>], points_m: &[Vector3<f64>]) -> Option<Isome
     if bearings.len() < 4 || bearings.len() != points_m.len() {
         return None;
     }
-    let view = View { bearings, points_m };
+    let view = View::new(bearings, points_m);
     let mut best = None;
     let mut least = f64::INFINITY;
     for start in view.starts().iter() {
-        let (pose, cost) = view.refined(*start);
-        if cost < least {
+        if let Some((pose, cost)) = descend(&view, *start, MAX_STEPS)
+            && cost < least
+        {
             (best, least) = (Some(pose), cost);
         }
     }
@@ -48,9 +45,16 @@ pub fn pnp(bearings: &[Vector3<f64>], points_m: &[Vector3<f64>]) -> Option<Isome
 struct View<'a> {
     bearings: &'a [Vector3<f64>],
     points_m: &'a [Vector3<f64>],
+    /// What turns are about, which keeps them apart from shifts.
+    centroid_m: Vector3<f64>,
 }
 
-impl View<'_> {
+impl<'a> View<'a> {
+    fn new(bearings: &'a [Vector3<f64>], points_m: &'a [Vector3<f64>]) -> Self {
+        let centroid_m = points_m.iter().sum::<Vector3<f64>>() / points_m.len() as f64;
+        Self { bearings, points_m, centroid_m }
+    }
+
     /// The poses of the best of the triangles between four far points.
     fn starts(&self) -> P3pSolutions {
         let corners = self.corners();
@@ -62,7 +66,7 @@ impl View<'_> {
                 &triangle.map(|i| self.bearings[i]),
                 &triangle.map(|i| self.points_m[i]),
             );
-            let cost = poses.iter().map(|pose| self.cost(pose)).fold(f64::INFINITY, f64::min);
+            let cost = poses.iter().map(|pose| self.chords(pose)).fold(f64::INFINITY, f64::min);
             if cost < least {
                 (best, least) = (poses, cost);
             }
@@ -74,8 +78,7 @@ impl View<'_> {
     /// largest triangle with both, and the one farthest from the three.
     fn corners(&self) -> [usize; 4] {
         let points = self.points_m;
-        let middle_m = self.centroid_m();
-        let a = self.largest(|p| (p - middle_m).norm_squared());
+        let a = self.largest(|p| (p - self.centroid_m).norm_squared());
         let b = self.largest(|p| (p - points[a]).norm_squared());
         let c = self.largest(|p| (p - points[a]).cross(&(points[b] - points[a])).norm_squared());
         let nearest = |p: &Vector3<f64>, corners: [usize; 3]| {
@@ -96,12 +99,8 @@ impl View<'_> {
         best.0
     }
 
-    fn centroid_m(&self) -> Vector3<f64> {
-        self.points_m.iter().sum::<Vector3<f64>>() / self.points_m.len() as f64
-    }
-
     /// Sum of the squared chords between the bearings and where the pose shows the points.
-    fn cost(&self, pose: &Isometry3<f64>) -> f64 {
+    fn chords(&self, pose: &Isometry3<f64>) -> f64 {
         let chord = |(bearing, point_m): (&Vector3<f64>, &Vector3<f64>)| {
             let p = pose.rotation * point_m + pose.translation.vector;
             (p / p.norm() - bearing).norm_squared()
@@ -109,45 +108,15 @@ impl View<'_> {
         self.bearings.iter().zip(self.points_m).map(chord).sum()
     }
 
-    /// Levenberg-Marquardt from a pose: a pose and its cost. The turn is about the centroid, which keeps it apart from the shift.
-    fn refined(&self, start: Isometry3<f64>) -> (Isometry3<f64>, f64) {
-        let centroid_m = self.centroid_m();
-        let (mut pose, mut cost, mut damping) = (start, self.cost(&start), DAMPING);
-        for _ in 0..MAX_STEPS {
-            let (normal, gradient) = self.normal_equations(&pose, &centroid_m);
-            let (next, next_cost) = loop {
-                let mut damped = normal;
-                damped.set_diagonal(&(normal.diagonal() * (1.0 + damping)));
-                let step = damped.cholesky().map(|factors| -factors.solve(&gradient));
-                let next = step.map(|step| turned(&pose, &centroid_m, &step));
-                match next.map(|next| (next, self.cost(&next))) {
-                    Some((next, next_cost)) if next_cost <= cost => break (next, next_cost),
-                    _ if damping < MAX_DAMPING => damping *= 10.0,
-                    _ => return (pose, cost),
-                }
-            };
-            let gain = cost - next_cost;
-            (pose, cost, damping) = (next, next_cost, damping * 0.1);
-            if gain <= CONVERGED * cost {
-                break;
-            }
-        }
-        (pose, cost)
-    }
-
     /// J'J and J'e of the chords e by a turn (rad) about the centroid and a shift (m), both in the camera
     /// frame. With p the point, u = p/|p| and r from the centroid to the point, de = (I - u u')/|p| dp and
     /// dp = turn x r + shift.
-    fn normal_equations(
-        &self,
-        pose: &Isometry3<f64>,
-        centroid_m: &Vector3<f64>,
-    ) -> (Matrix6<f64>, Vector6<f64>) {
+    fn normal_equations(&self, pose: &Isometry3<f64>) -> (Matrix6<f64>, Vector6<f64>) {
         let (mut by_turn, mut mixed, mut by_shift) = (Matrix3::zeros(), Matrix3::zeros(), Matrix3::zeros());
         let (mut turn, mut shift) = (Vector3::zeros(), Vector3::zeros());
-        let centre = pose.rotation * centroid_m + pose.translation.vector;
+        let centre = pose.rotation * self.centroid_m + pose.translation.vector;
         for (bearing, point_m) in self.bearings.iter().zip(self.points_m) {
-            let arm = pose.rotation * (point_m - centroid_m);
+            let arm = pose.rotation * (point_m - self.centroid_m);
             let p = centre + arm;
             let distance = p.norm();
             let u = p / distance;
@@ -167,6 +136,28 @@ impl View<'_> {
         normal.fixed_view_mut::<3, 3>(3, 0).copy_from(&mixed.transpose());
         normal.fixed_view_mut::<3, 3>(3, 3).copy_from(&by_shift);
         (normal, Vector6::new(turn.x, turn.y, turn.z, shift.x, shift.y, shift.z))
+    }
+}
+
+impl Descent for View<'_> {
+    type Place = Isometry3<f64>;
+    type Normal = (Matrix6<f64>, Vector6<f64>);
+
+    fn cost(&self, pose: &Isometry3<f64>) -> Option<f64> {
+        Some(self.chords(pose)).filter(|cost| cost.is_finite())
+    }
+
+    fn normal(&self, pose: &Isometry3<f64>) -> Option<Self::Normal> {
+        Some(self.normal_equations(pose))
+    }
+
+    fn stepped(
+        &self,
+        pose: &Isometry3<f64>,
+        (normal, gradient): &Self::Normal,
+        damping: f64,
+    ) -> Option<Isometry3<f64>> {
+        step(normal, &-gradient, damping).map(|step| turned(pose, &self.centroid_m, &step))
     }
 }
 

@@ -80,9 +80,9 @@ fn noise_moves_the_pose_by_what_six_unknowns_take() {
         for _ in 0..trials {
             let (truth, points_m) = (draw.pose(3.0), draw.points_m(count, flat));
             let bearings = draw.seen(&truth, &points_m, sigma_rad);
-            let view = View { bearings: &bearings, points_m: &points_m };
+            let view = View::new(&bearings, &points_m);
             let pose = pnp(&bearings, &points_m).unwrap();
-            taken += (view.cost(&truth) - view.cost(&pose)) / (sigma_rad * sigma_rad);
+            taken += (view.chords(&truth) - view.chords(&pose)) / (sigma_rad * sigma_rad);
         }
         // chi-square of 6: 3.5 of its sigmas.
         let mean = taken / f64::from(trials);
@@ -97,9 +97,9 @@ fn truth_never_explains_noisy_bearings_better() {
         let (count, flat) = ([4, 6, 20][case % 3], case % 2 == 0);
         let (truth, points_m) = (draw.pose([2.0, 5.0, 15.0][case / 6 % 3]), draw.points_m(count, flat));
         let bearings = draw.seen(&truth, &points_m, 1e-3);
-        let view = View { bearings: &bearings, points_m: &points_m };
+        let view = View::new(&bearings, &points_m);
         let pose = pnp(&bearings, &points_m).unwrap();
-        assert!(view.cost(&pose) <= view.cost(&truth), "{case}: {count} points");
+        assert!(view.chords(&pose) <= view.chords(&truth), "{case}: {count} points");
     }
 }
 
@@ -109,10 +109,9 @@ fn normal_equations_are_those_of_finite_differences() {
     for _ in 0..50 {
         let (pose, points_m) = (draw.pose(2.5), draw.points_m(5, false));
         let bearings = draw.seen(&pose, &points_m, 0.05);
-        let view = View { bearings: &bearings, points_m: &points_m };
-        let centroid_m = view.centroid_m();
+        let view = View::new(&bearings, &points_m);
         let errors = |step: &Vector6<f64>| {
-            let pose = turned(&pose, &centroid_m, step);
+            let pose = turned(&pose, &view.centroid_m, step);
             let seen = directions(&pose, &points_m);
             nalgebra::SMatrix::<f64, 15, 1>::from_fn(|i, _| seen[i / 3][i % 3] - bearings[i / 3][i % 3])
         };
@@ -122,7 +121,7 @@ fn normal_equations_are_those_of_finite_differences() {
             step[k] = 1e-6;
             jacobian.set_column(k, &((errors(&step) - errors(&-step)) / 2e-6));
         }
-        let (normal, gradient) = view.normal_equations(&pose, &centroid_m);
+        let (normal, gradient) = view.normal_equations(&pose);
         let expected = jacobian.transpose() * jacobian;
         assert!((normal - expected).norm() < 1e-8 * (1.0 + expected.norm()), "{normal} {expected}");
         assert!((gradient - jacobian.transpose() * errors(&Vector6::zeros())).norm() < 1e-8);

@@ -8,7 +8,7 @@
 
 #![allow(clippy::print_stdout, reason = "a program that reports")]
 
-#[path = "../tests/flight/mod.rs"]
+#[path = "../tests/calibrate/flight/mod.rs"]
 mod flight;
 
 use flight::{Built, Distances, distances, known, learn, powers_off};

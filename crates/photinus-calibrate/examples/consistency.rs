@@ -6,7 +6,7 @@
 
 #![allow(clippy::print_stdout, reason = "a program that reports")]
 
-#[path = "../tests/simulation/mod.rs"]
+#[path = "../tests/calibrate/simulation/mod.rs"]
 mod simulation;
 
 use photinus_calibrate::camera::Calibration;

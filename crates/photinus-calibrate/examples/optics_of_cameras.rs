@@ -6,7 +6,7 @@
 
 #![allow(clippy::print_stdout, reason = "the table is what it is for")]
 
-#[path = "../tests/rendered_leds/mod.rs"]
+#[path = "../tests/calibrate/rendered_leds/mod.rs"]
 mod rendered_leds;
 
 use photinus::camera::Pixel;

@@ -3,18 +3,16 @@
 
 #![allow(clippy::print_stdout, reason = "the measured numbers are worth reading")]
 
-mod simulation;
-
 use std::io::Write;
 use std::process::{Command, Stdio};
 
+use crate::simulation::{Dice, SIZE_PX, lens, pose, seen};
 use nalgebra::Point3;
 use photinus::camera::Model;
 use photinus_calibrate::adjust::View;
 use photinus_calibrate::camera::{BoardChoice, Calibration, Choices, calibrate};
 use photinus_calibrate::grid::Grid;
 use photinus_testing::python_with;
-use simulation::{Dice, SIZE_PX, lens, pose, seen};
 
 /// Photos of an exact board.
 fn photos(grid: &Grid) -> Vec<View> {
@@ -77,7 +75,7 @@ fn parameters(calibration: &Calibration) -> [f64; 6] {
 
 /// What a method of the script makes of the points.
 fn by(mut python: Command, method: &str, points: &str) -> Theirs {
-    let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/independent.py");
+    let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/calibrate/independent.py");
     let piped = python.args([script, method]).stdin(Stdio::piped()).stdout(Stdio::piped());
     let mut child = piped.spawn().expect("a Python that ran before");
     // The script reads everything before it writes; what it did not read shows in how it ends.

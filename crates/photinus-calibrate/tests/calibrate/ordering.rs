@@ -1,11 +1,9 @@
 //! Labels of simulated grids: any roll, tilted to 70 deg, to 70 deg off the axis, LEDs missing, foreign spots.
 
-mod simulation;
-
+use crate::simulation::{Dice, SIZE_PX, lens, pose};
 use nalgebra::{Point3, Vector2, Vector3};
 use photinus::camera::Bearing;
 use photinus_calibrate::grid::{Grid, order};
-use simulation::{Dice, SIZE_PX, lens, pose};
 
 /// How labels came out.
 #[derive(Debug, Default)]

@@ -1,13 +1,11 @@
 //! What is learned of the optics of rendered cameras against what they were rendered with. All cameras at full length:
 //! `cargo run --release -p photinus-calibrate --example optics_of_cameras`.
 
-mod rendered_leds;
-
+use crate::rendered_leds::{Eye, difference};
 use photinus::camera::Pixel;
 use photinus::optics::Measured;
 use photinus_calibrate::optics::{Collection, LearnError, Learned, Unseen, learn};
 use photinus_sim::sensor::{ColumnSmear, Response};
-use rendered_leds::{Eye, difference};
 
 const SIZE: (usize, usize) = (320, 240);
 

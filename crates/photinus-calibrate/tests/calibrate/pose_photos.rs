@@ -8,12 +8,10 @@
 
 #![allow(clippy::print_stdout, reason = "its table is for the documentation")]
 
-mod grid_photos;
-
 use std::collections::BTreeSet;
 use std::f64::consts::PI;
 
-use grid_photos::{Set, seven_by_five};
+use crate::grid_photos::{Set, seven_by_five};
 use nalgebra::{Isometry3, Matrix3, Rotation3, Unit, UnitQuaternion, Vector3};
 use photinus::airframe::{Airframe, Led, Lobe};
 use photinus::camera::{Bearing, Camera, Pixel};

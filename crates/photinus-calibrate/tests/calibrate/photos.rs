@@ -1,8 +1,6 @@
 //! Real photos of an LED grid: what a calibration reaches on them. Skips without the data.
 
-mod grid_photos;
-
-use grid_photos::{Set, eight_by_six, seven_by_five};
+use crate::grid_photos::{Set, eight_by_six, seven_by_five};
 use nalgebra::Vector2;
 use photinus::spots::{Detector, Settings};
 use photinus_calibrate::adjust::View;

@@ -1,6 +1,6 @@
 //! A calibration is as far off as it says.
 
-mod simulation;
+use crate::simulation;
 
 #[test]
 fn errors_of_bearings_have_the_covariance_that_is_claimed() {

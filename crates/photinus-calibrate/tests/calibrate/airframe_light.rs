@@ -1,8 +1,6 @@
 //! Rendered flights: learned lobes and powers take away the bias of distance that a wrong airframe file makes.
 
-mod flight;
-
-use flight::{Built, distances, known, learn, powers_off};
+use crate::flight::{Built, distances, known, learn, powers_off};
 use photinus::locator::Settings;
 
 /// LEDs as narrow as cos^3, with powers that spread by 20 %, told as equal cosines.

@@ -1,0 +1,4 @@
+//! The page from outside.
+
+mod browser;
+mod traffic;

@@ -3,6 +3,7 @@
 mod files;
 
 use std::collections::BTreeSet;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use crate::stage::Stage;
 use files::Store;
@@ -102,15 +103,29 @@ fn every_example_does_what_it_says() {
     let is_walked = |example: &&String| LEFT_OUT.iter().all(|(left_out, _)| left_out != example);
     let walked: Vec<&String> = all.iter().filter(is_walked).collect();
     assert!(walked.len() >= 66, "{}", walked.len());
-    let store = Store::new();
-    for (number, example) in walked.into_iter().enumerate() {
-        let stage = Stage::new(&format!("walk-{number}"));
-        store.provide(&stage, example, &written(example));
-        let done =
-            stage.shell(&format!("HOME=$PWD; photinus() {{ \"$photinus\" \"$@\"; }}; {OTHERS}; {example}"));
-        assert_eq!(done.code, 0, "{example}\n{}{}", done.out, done.err);
-        for name in written(example).iter().filter(|name| *name != "-") {
-            assert!(stage.path(name).exists(), "{example} leaves no {name}");
+    let (store, next) = (Store::new(), AtomicUsize::new(0));
+    std::thread::scope(|scope| {
+        // Most examples keep one processor busy.
+        for _ in 0..std::thread::available_parallelism().map_or(1, usize::from) {
+            scope.spawn(|| {
+                loop {
+                    let number = next.fetch_add(1, Ordering::Relaxed);
+                    let Some(example) = walked.get(number) else { break };
+                    walk(&store, number, example);
+                }
+            });
         }
+    });
+}
+
+/// Runs an example, which must come through and leave what it says.
+fn walk(store: &Store, number: usize, example: &str) {
+    let stage = Stage::new(&format!("walk-{number}"));
+    store.provide(&stage, example, &written(example));
+    let done =
+        stage.shell(&format!("HOME=$PWD; photinus() {{ \"$photinus\" \"$@\"; }}; {OTHERS}; {example}"));
+    assert_eq!(done.code, 0, "{example}\n{}{}", done.out, done.err);
+    for name in written(example).iter().filter(|name| *name != "-") {
+        assert!(stage.path(name).exists(), "{example} leaves no {name}");
     }
 }

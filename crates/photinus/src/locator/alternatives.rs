@@ -14,11 +14,9 @@ use super::grouping::Groups;
 use super::kinds::Kinds;
 
 /// This many of the nearest observations are put together with one.
-const NEAREST: usize = 6;
+pub(super) const NEAREST: usize = 6;
 /// Most handfuls that are weighed in full.
-const MOST_WEIGHED: usize = 8;
-/// Observations of a frame that is no clutter.
-const FEW: usize = 64;
+pub(super) const MOST_WEIGHED: usize = 8;
 /// A handful that is this much less likely by a first look than what its observations are already, nats, is not weighed: first looks are as good.
 pub(super) const POOR_GAIN: f64 = -8.0;
 
@@ -129,25 +127,24 @@ impl Alternatives {
         let most = Most::of(asked.context, &self.window, kinds);
         let mut pairs = [None; 1 + NEAREST];
         let mut looks = 1;
-        let is_few = asked.context.sightings.len() <= FEW;
         for mask in (1usize..1 << self.window.len()).step_by(2) {
-            if turn.left >> mask & 1 == 0 || (!is_few && most.is_poor && mask > 1) {
+            if turn.left >> mask & 1 == 0 || (most.is_poor && mask > 1) {
                 continue;
             }
             self.gather(mask);
             let [mut at_most, further] = most.of_look(asked.context, mask, kinds);
-            if !is_few && !asked.is_worth(&self.handful, at_most) {
+            if !asked.is_worth(&self.handful, at_most) {
                 continue;
             }
             // What is no neighbour with one of the others is none with more of them.
-            if !is_few && self.handful.len() > 2 && at_most.is_finite() {
+            if self.handful.len() > 2 && at_most.is_finite() {
                 let mut others = (1..self.window.len()).filter(|bit| mask >> bit & 1 == 1);
                 let is_poor = others.any(|bit| {
                     let pair = *pairs[bit].get_or_insert_with(|| {
                         looks += 1;
                         let mut pair = [observation, self.window[bit]];
                         pair.sort_unstable();
-                        kinds.log_density(asked.context, &pair).unwrap_or(f64::NEG_INFINITY)
+                        kinds.most_of_pair(asked.context, &pair)
                     });
                     at_most = at_most.min(pair + (self.handful.len() - 2) as f64 * further);
                     !asked.is_worth(&self.handful, at_most)
@@ -188,13 +185,12 @@ impl Alternatives {
             self.handful.push(observation);
             self.handful.extend_from_slice(asked.groups.group_of(nearest));
             self.handful.sort_unstable();
-            // A look says little of what only joins at a pinch: where there are few, all are weighed.
-            let is_few = asked.context.sightings.len() <= FEW;
-            let is_worth = is_few
-                || asked.is_worth(&self.handful, kinds.most_in_full(asked.context, &self.handful)) && {
-                    let look = kinds.log_density_in_any_light(asked.context, &self.handful);
-                    asked.is_worth(&self.handful, look)
-                };
+            let most = kinds.most_in_full(asked.context, &self.handful);
+            // A look says little of what only joins at a pinch.
+            let is_worth = asked.is_worth(&self.handful, most) && {
+                let look = kinds.log_density_in_any_light(asked.context, &self.handful);
+                asked.is_worth(&self.handful, look)
+            };
             if !is_worth {
                 self.handful.clear();
             }

@@ -40,6 +40,8 @@ const FEWEST_BESIDE: usize = 16;
 const LOOKS: usize = 4;
 /// An observation that is likelier than this to be clutter may be another neighbour's.
 const DOUBTFUL: f64 = 0.05;
+/// A neighbour that is likelier than this tells the light of the LEDs.
+const SURE: f64 = 0.98;
 /// Rounds of looking for other ways to put observations together, each at what the one before left.
 const ROUNDS: usize = 2;
 /// However seldom neighbours were, there are this many per frame.
@@ -80,6 +82,8 @@ pub(super) struct Inference {
     /// The same from the other supposition.
     other_clutter: Clutter,
     other_explanation: Explanation,
+    /// Logarithms of the light of sure neighbours.
+    log_powers: Vec<f64>,
     telling: Telling,
 }
 
@@ -112,6 +116,7 @@ impl Inference {
             explanation: Explanation::with_room(most),
             other_clutter: Clutter::new(size, with_light),
             other_explanation: Explanation::with_room(most),
+            log_powers: Vec::with_capacity(most),
             telling: Telling::with_room(most),
         })
     }
@@ -152,7 +157,6 @@ impl Inference {
         let cells = (self.besides.cells(), frame_px);
         self.places.find(sightings, cells, &self.fixtures, input.sun, self.with_light);
         self.look(&context);
-        let clear_power = self.groups.clear_log_power(&context, &mut self.kinds);
         input.tell(Stage::Grouping);
         let context = Context { power: self.memory.power().or(of_frame), ..context };
         let mut work = Work { left: self.budget };
@@ -165,7 +169,8 @@ impl Inference {
             self.settle();
         }
         self.fixtures.remember(sightings, |spot| self.explanation.clutter(spot));
-        self.memory.remember(self.clutter.counts(), self.explanation.neighbours(), clear_power);
+        let log_power = self.log_power(&context);
+        self.memory.remember(self.clutter.counts(), self.explanation.neighbours(), log_power);
         located.is_complete = work.left > 0 && besides.is_empty();
         self.telling.tell(
             &self.candidates,
@@ -261,6 +266,21 @@ impl Inference {
                 }
             }
         }
+    }
+
+    /// What neighbours that are sure tell of the light of the frame's LEDs: the median of their logarithms, as they look whatever power was known before. A
+    /// first look at how observations lie beside each other is not sure: it takes a lamp that goes along with a neighbour for its marker time and again.
+    fn log_power(&mut self, context: &Context<'_>) -> Option<f64> {
+        let Self { log_powers, candidates, explanation, kinds, .. } = self;
+        log_powers.clear();
+        for index in (0..candidates.len()).filter(|&index| explanation.probability(index) > SURE) {
+            let members = candidates.members(index);
+            if members.len() > 1 {
+                log_powers.extend(kinds.log_power(context, members));
+            }
+        }
+        log_powers.sort_unstable_by(f64::total_cmp);
+        log_powers.get(log_powers.len() / 2).copied()
     }
 
     /// Explains the frame by its candidates, with clutter and neighbours as dense as the explanation itself has them.

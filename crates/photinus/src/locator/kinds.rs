@@ -134,6 +134,12 @@ impl Kinds {
         looks.fold([f64::NEG_INFINITY; 2], |a, b| [a[0].max(b[0]), a[1].max(b[1])])
     }
 
+    /// The most that a look at two spots and others can have of these two, as any kind.
+    pub(super) fn most_of_pair(&mut self, context: &Context<'_>, pair: &[usize]) -> f64 {
+        let most = |kind: &mut Looked| kind.matcher.most_of_pair(context, pair);
+        self.each.iter_mut().map(most).fold(f64::NEG_INFINITY, f64::max)
+    }
+
     /// The most that a full look can make of a group of at least two, as any kind.
     pub(super) fn most_in_full(&self, context: &Context<'_>, group: &[usize]) -> f64 {
         let most = |kind: &Looked| kind.matcher.most_in_full(context, group);

@@ -13,6 +13,8 @@ use crate::camera::{Ideal, IdealLaw, Model, Pixel};
 use crate::pose;
 use crate::spots::Extent;
 
+mod alternatives;
+mod beside;
 mod most;
 
 const SIGMA_PX: f64 = 0.1;

@@ -26,8 +26,6 @@ use tree::Tree;
 
 /// Groups of this many spots tell their distance and so the light of their LEDs.
 pub(super) const CLEAR_SPOTS: usize = 3;
-/// A group that is less likely clutter than this by a first look tells the light of the LEDs.
-const CLEAR_SHARE: f64 = 0.02;
 /// Gains over clutter are cut off here, nats.
 const LARGEST_GAIN: f64 = 50.0;
 /// Most rounds of partitioning in one frame: the time of a frame is bounded.
@@ -168,19 +166,6 @@ impl Groups {
     /// How many groups are neighbours, by that look.
     pub(super) fn neighbours(&self) -> f64 {
         (0..self.list.len()).map(|group| 1.0 - self.clutter[self.list.group(group)[0]]).sum()
-    }
-
-    /// What neighbours that are clear by that look tell of the light of the frame's LEDs: the median of their logarithms.
-    pub(super) fn clear_log_power(&mut self, context: &Context<'_>, kinds: &mut Kinds) -> Option<f64> {
-        self.powers.clear();
-        for group in 0..self.list.len() {
-            let members = self.list.group(group);
-            if members.len() > 1 && self.clutter[members[0]] < CLEAR_SHARE {
-                self.powers.extend(kinds.log_power(context, members));
-            }
-        }
-        self.powers.sort_unstable_by(f64::total_cmp);
-        self.powers.get(self.powers.len() / 2).copied()
     }
 
     /// How many there are.

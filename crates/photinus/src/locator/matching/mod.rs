@@ -221,21 +221,33 @@ impl Matcher {
         if group.len() > self.views.most_visible {
             return None;
         }
-        let sightings = context.sightings;
         let likeness = self.likeness(context, group)?;
-        let lit = group.iter().filter(|&&spot| sightings[spot].log_light.is_some()).count();
+        Some(
+            self.log_density_of_views(context, group, &likeness)
+                - power_nats(context, group, &likeness)
+                - size_nats(context.sightings, group, likeness.distance_m),
+        )
+    }
+
+    /// The most that a look at two spots and others can have of these two, before the others add to it: as likely as all views together have them, at
+    /// whatever distance. The view that two look most like may be much nearer than the one that they are seen in with others, and their power speaks
+    /// against that one alone.
+    pub(super) fn most_of_pair(&mut self, context: &Context<'_>, pair: &[usize]) -> f64 {
+        let likeness = self.likeness(context, pair);
+        likeness.map_or(f64::NEG_INFINITY, |likeness| self.log_density_of_views(context, pair, &likeness))
+    }
+
+    /// The part of a look that does not depend on how far away a group is.
+    fn log_density_of_views(&self, context: &Context<'_>, group: &[usize], likeness: &Likeness) -> f64 {
+        let lit = group.iter().filter(|&&spot| context.sightings[spot].log_light.is_some()).count();
         let light = if lit == 0 {
             0.0
         } else {
             -(lit as f64 - 1.0) * likeness.log_light_width - libm::log(POWER_RANGE)
         };
-        Some(
-            self.log_density_of_places(context, group.len(), &likeness) + light
-                - likeness.views_nats
-                - power_nats(context, group, &likeness)
-                - size_nats(sightings, group, likeness.distance_m)
-                - libm::log(LOG_RANGE),
-        )
+        self.log_density_of_places(context, group.len(), likeness) + light
+            - likeness.views_nats
+            - libm::log(LOG_RANGE)
     }
 
     /// The part of it that the places of so many spots have.

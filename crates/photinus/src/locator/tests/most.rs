@@ -46,11 +46,7 @@ fn check(
     closest: &mut [f64; 2],
 ) -> usize {
     let camera = camera();
-    let sight = |spot: &Spot| sighting::sight(&camera, None, spot, None);
-    let mut sightings: Vec<Sighting> = spots.iter().filter_map(sight).collect();
-    brightness::tell(&mut sightings, None, usize::MAX, [752, 480], &mut ByCell::default());
-    let mut near = Near::default();
-    near.sort(&sightings, 16);
+    let (sightings, near) = sighted(&camera, spots);
     let density = vec![0.0; sightings.len()];
     let mut handfuls = 0;
     for power in [None, Some(LogLight { value: libm::log(POWER), sigma: 0.35 })] {
@@ -74,6 +70,13 @@ fn check(
             handfuls += 1;
             let [most, _] = kinds.most_of_look(&context, group.len(), widest2, true);
             assert!(look <= most, "{group:?}: {look}, at most {most}");
+            let [_, further] = kinds.most_of_look(&context, group.len(), widest2, true);
+            for (place, &a) in group.iter().enumerate().filter(|_| group.len() > 2) {
+                for &b in &group[..place] {
+                    let most = kinds.most_of_pair(&context, &[b, a]) + (group.len() - 2) as f64 * further;
+                    assert!(look <= most, "{group:?}: {look}, of {b} and {a} at most {most}");
+                }
+            }
             closest[0] = closest[0].min(most - look);
             let mut candidates = Candidates::with_room(4);
             kinds.weigh(&context, &group, &mut candidates, || true);
@@ -85,4 +88,14 @@ fn check(
         }
     }
     handfuls
+}
+
+/// The spots as a frame's observations.
+pub(super) fn sighted(camera: &Camera, spots: &[Spot]) -> (Vec<Sighting>, Near) {
+    let sight = |spot: &Spot| sighting::sight(camera, None, spot, None);
+    let mut sightings: Vec<Sighting> = spots.iter().filter_map(sight).collect();
+    brightness::tell(&mut sightings, None, usize::MAX, [752, 480], &mut ByCell::default());
+    let mut near = Near::default();
+    near.sort(&sightings, 16);
+    (sightings, near)
 }

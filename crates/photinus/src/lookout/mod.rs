@@ -45,6 +45,7 @@ use crate::airframe::Airframe;
 use crate::camera::{Mounted, Rig, RigError, Watched};
 use crate::following::{self, Follower, Frame, MarkerTrack};
 use crate::frame::Mask;
+use crate::identity::Properties;
 use crate::identity::decoder::{self, Decoder, DecoderError};
 use crate::locator::{self, Located};
 use crate::pose::{LogLight, SettingsError};
@@ -121,6 +122,8 @@ struct Blinking {
     naming: Naming,
     /// Where they are expected in a frame, and whether lit.
     followed: Vec<Followed>,
+    /// No LED is dark for longer, s.
+    longest_dark_s: f64,
     /// Where the LEDs of a vehicle blink differently.
     parts: Option<Parts>,
 }
@@ -270,7 +273,9 @@ impl Blinking {
         let followers = rig.cameras().iter().map(follower).collect::<Result<_, _>>()?;
         let parts = fleet.has_several_signals().then(|| Parts::new(airframe, locator, fleet)).transpose()?;
         let (belongings, followed) = (Belongings::default(), Vec::new());
-        Ok(Self { followers, is_heard: false, belongings, naming, followed, parts })
+        // Exposures stand anywhere in a bit.
+        let longest_dark_s = (Properties::of(fleet.book()).longest_dark + 1) as f64 / fleet.bit_rate_hz();
+        Ok(Self { followers, is_heard: false, belongings, naming, followed, longest_dark_s, parts })
     }
 
     /// Follows the markers, and says where each is and whether it must be lit in this frame, and what sightings blink.
@@ -305,7 +310,8 @@ impl Blinking {
             }
             None => (None, &[][..]),
         };
-        (Some(tracking::Blinking { followed: &self.followed, others: ANY_BIT, appearing }), signals)
+        let (followed, longest_dark_s) = (&self.followed[..], self.longest_dark_s);
+        (Some(tracking::Blinking { followed, others: ANY_BIT, longest_dark_s, appearing }), signals)
     }
 
     /// Gives the markers of the frame's camera to the vehicles, names these, and turns them as their signals say.

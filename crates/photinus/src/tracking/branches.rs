@@ -5,10 +5,12 @@
 
 use alloc::vec::Vec;
 
-use nalgebra::{Matrix2, Matrix2x6, Matrix3, Matrix3x6, Matrix6, Matrix6x2, Vector2, Vector3};
+use nalgebra::{Matrix2, Matrix2x6, Matrix3, Matrix3x6, Matrix6, Matrix6x2, Rotation3, Vector2, Vector3};
 
-use super::component::{Component, pose_after};
+use super::component::{Component, YAW, pose_after};
 use crate::airframe::Airframe;
+#[cfg(not(feature = "std"))]
+use crate::float::Float as _;
 use crate::pose::{Observation, Pose, Whitened};
 
 /// Ways that are gone on with.
@@ -19,8 +21,9 @@ const HOPELESS_NATS: f64 = 14.0;
 const GATE: f64 = 36.0;
 /// Most spots of one vehicle.
 pub(super) const MOST_SPOTS: usize = 16;
-/// A marker with less light than this towards the camera is not looked for, one with less than that may be too faint.
+/// A marker with less light than this towards the camera is looked for only where it has more within so many standard deviations of the yaw; one with less than that may be too faint.
 const DARK: f64 = 0.02;
+const PERHAPS_SIGMA: f64 = 2.0;
 const BRIGHT: f64 = 0.3;
 
 /// Which spots are which markers of one vehicle, in the order in which they were found.
@@ -110,11 +113,17 @@ impl Branches {
     ) {
         let airframe = around.airframe;
         let camera_m = component.pose.camera_in_body_m();
+        let beside_rad = PERHAPS_SIGMA * component.covariance[(YAW, YAW)].sqrt();
+        let beside_m = [beside_rad, -beside_rad]
+            .map(|yaw_rad| Rotation3::from_axis_angle(&Vector3::z_axis(), yaw_rad) * camera_m);
         self.markers.clear();
         self.markers.extend(
             (0..airframe.markers().len()).map(|marker| (airframe.intensity(marker, &camera_m), marker)),
         );
-        self.markers.retain(|&(intensity, _)| intensity > DARK);
+        self.markers.retain(|&(intensity, marker)| {
+            let shines = |camera_m: &Vector3<f64>| airframe.intensity(marker, camera_m) > DARK;
+            intensity > DARK || beside_m.iter().any(shines)
+        });
         self.markers.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
         self.all.clear();
         self.all.push(Branch {
@@ -126,7 +135,12 @@ impl Branches {
         for place in 0..self.markers.len() {
             let (intensity, marker) = self.markers[place];
             let lit = around.lit.get(marker).copied().unwrap_or(1.0);
-            let found = lit * if intensity < BRIGHT { 0.5 } else { 1.0 - around.missed };
+            let found = match intensity {
+                dark if dark <= DARK => around.missed,
+                faint if faint < BRIGHT => 0.5,
+                _ => 1.0 - around.missed,
+            };
+            let found = lit * found;
             self.look_for(around, marker, found, &signal_nats);
         }
     }

@@ -50,6 +50,8 @@ pub struct Blinking<'a> {
     pub followed: &'a [Followed],
     /// How likely any other marker is lit.
     pub others: f64,
+    /// No LED that blinks is dark for longer, s.
+    pub longest_dark_s: f64,
     /// Where the LEDs of a vehicle blink differently: who appears, by what is heard. A frame shows parts of such vehicles, and what looks like a neighbour in
     /// it may be parts of several, so that nobody appears who is only seen. `None` where the LEDs of a vehicle blink alike.
     pub appearing: Option<Appearing<'a>>,
@@ -210,6 +212,10 @@ pub(super) struct Moment {
     pub(super) share_lit: f64,
     /// How likely markers are lit that are not among them; `None` where they do not blink.
     pub(super) others_lit: Option<f64>,
+    /// No marker is dark for longer, s.
+    pub(super) longest_dark_s: f64,
+    /// Whether all LEDs of a vehicle blink alike.
+    pub(super) blinks_alike: bool,
 }
 
 impl Moment {
@@ -254,6 +260,8 @@ impl Moment {
         self.members.clear();
         self.modes.clear();
         let appearing = blinking.and_then(|blinking| blinking.appearing);
+        self.longest_dark_s = blinking.map_or(f64::INFINITY, |blinking| blinking.longest_dark_s);
+        self.blinks_alike = blinking.is_some() && appearing.is_none();
         self.share_lit = appearing.and(self.others_lit).unwrap_or(1.0).max(LEAST_LIT);
         let is_stranger = |spot: &usize| {
             appearing.is_none_or(|Appearing { strangers, .. }| strangers.get(*spot).copied().unwrap_or(false))

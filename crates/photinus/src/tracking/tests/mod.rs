@@ -1,6 +1,7 @@
 //! Tracks against truth: vehicles flown by [`simulator`], located by the real locator.
 
 mod accuracy;
+mod blinking;
 mod manoeuvres;
 mod order;
 mod parts;

@@ -29,8 +29,34 @@ impl Blinking {
         self.near.extend(near);
     }
 
-    /// Fills in how likely each marker is lit at a pose.
+    /// How likely the LEDs of a vehicle that blink alike are lit, at a pose: those that are known to be its own tell it, else those that are where its markers must
+    /// be and are not known to be another's.
+    pub(super) fn alike(&mut self, model: &Model, pose: &Pose, others_lit: f64) -> f64 {
+        self.find(model, pose);
+        let is_own = |own: &usize| self.signal(*own).is_some();
+        let is_free = |own: &usize| self.near[*own].signal.is_none();
+        let there = self.found.iter().flatten().copied();
+        let own = self.mean_lit((0..self.near.len()).filter(is_own));
+        own.or_else(|| self.mean_lit(there.filter(is_free))).unwrap_or(others_lit)
+    }
+
+    fn mean_lit(&self, markers: impl Iterator<Item = usize>) -> Option<f64> {
+        let (lit, count) = markers.fold((0.0, 0), |(lit, count), own| (lit + self.near[own].lit, count + 1));
+        (count > 0).then(|| lit / f64::from(count))
+    }
+
+    /// Fills in how likely each marker is lit at a pose, where LEDs blink each for itself.
     pub(super) fn light(&mut self, model: &Model, pose: &Pose, others_lit: f64, lit: &mut [f64]) {
+        self.find(model, pose);
+        let turn = self.likeliest_turn(model);
+        for (marker, lit) in lit.iter_mut().enumerate() {
+            let own = self.found[marker].map(|own| self.near[own].lit);
+            *lit = own.or_else(|| self.same_signal(model, marker, turn?)).unwrap_or(others_lit);
+        }
+    }
+
+    /// Finds the followed marker that is where each of the airframe's must be at a pose.
+    fn find(&mut self, model: &Model, pose: &Pose) {
         let Self { near, found, .. } = self;
         let reach = SAME_PLACE_RADII * model.airframe.max_radius_m() / pose.position_m.norm().max(1e-3);
         found.clear();
@@ -41,11 +67,6 @@ impl Blinking {
                 .filter(|nearest| nearest.1 < reach * reach)
                 .map(|nearest| nearest.0)
         }));
-        let turn = self.likeliest_turn(model);
-        for (marker, lit) in lit.iter_mut().enumerate() {
-            let own = self.found[marker].map(|own| self.near[own].lit);
-            *lit = own.or_else(|| self.same_signal(model, marker, turn?)).unwrap_or(others_lit);
-        }
     }
 
     /// The signal that a followed marker of this vehicle blinks, where it is known.

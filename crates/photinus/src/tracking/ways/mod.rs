@@ -53,6 +53,9 @@ const ANY_MARKER: f64 = 1e-3;
 const WRONG_MARKER: f64 = 1e-4;
 /// LEDs of a fleet differ in power by so much from vehicle to vehicle, as a logarithm, with what distances leave of it.
 pub(super) const POWER_SIGMA: f64 = 0.3;
+/// This share of exposures straddles an edge of what an LED blinks, and a marker that shines for a part of one shows so likely.
+const PARTLY: f64 = 0.06;
+const DIM_SHOWS: f64 = 0.5;
 /// Spots within so many radii of a vehicle may hide its markers.
 const NEAR_RADII: f64 = 3.0;
 
@@ -112,8 +115,9 @@ pub(super) struct Ways {
     power: Option<LogLight>,
     repeats: f64,
     whitened: Vec<Whitened>,
-    /// Who the vehicle is, where it was heard.
+    /// Who the vehicle is, where it was heard, and how long ago it was seen, s.
     who: Option<u32>,
+    unseen_s: f64,
     /// How likely each marker of a vehicle is lit as told, and as a pose has it.
     told_lit: Vec<f64>,
     lit: Vec<f64>,
@@ -163,6 +167,7 @@ impl Ways {
             repeats: 1.0,
             whitened: Vec::new(),
             who: None,
+            unseen_s: 0.0,
             told_lit: Vec::with_capacity(markers),
             lit: Vec::with_capacity(markers),
             screened: Vec::with_capacity(markers),
@@ -291,23 +296,29 @@ impl Ways {
         left.max_by(|a, b| a.1.total_cmp(&b.1).then(b.0.cmp(&a.0))).map(|(vehicle, _)| vehicle)
     }
 
-    /// What spots are against this vehicle, whose markers are where the airframe says but for the prior's sigma.
-    fn prepare(&mut self, scene: &Scene<'_>, target: &Target, components: &[Component]) {
-        let Scene { model, moment, .. } = *scene;
-        self.repeats = model.repeats_of(target, moment, scene.own_interval_s);
-        let widening = self.repeats.sqrt();
+    /// What spots are against a vehicle so far away, where so many frames err alike.
+    fn look_from(&mut self, scene: &Scene<'_>, repeats: f64, distance_m: f64) {
+        let Scene { model, .. } = *scene;
+        let widening = repeats.sqrt();
+        self.repeats = repeats;
         self.power = self.log_power.map(|value| LogLight { value, sigma: POWER_SIGMA * widening });
         self.per_frame = pose::Settings {
             unit_sigma: model.pose.unit_sigma * widening,
             lobe_sigma: model.pose.lobe_sigma * widening,
             ..model.pose
         };
-        let distance_m = components.first().map_or(1.0, |first| first.pose.position_m.norm()).max(1e-3);
         let angle_rad = model.pose.marker_sigma_m / distance_m;
-        let extra_rad2 = self.repeats * angle_rad * angle_rad;
+        let extra_rad2 = repeats * angle_rad * angle_rad;
         self.whitened.clear();
         self.whitened.extend(self.observations.iter().map(|seen| Whitened::of(seen, extra_rad2)));
-        self.who = target.vehicle;
+    }
+
+    /// What spots are against this vehicle, whose markers are where the airframe says but for the prior's sigma.
+    fn prepare(&mut self, scene: &Scene<'_>, target: &Target, components: &[Component]) {
+        let Scene { model, moment, .. } = *scene;
+        let distance_m = components.first().map_or(1.0, |first| first.pose.position_m.norm()).max(1e-3);
+        self.look_from(scene, model.repeats_of(target, moment, scene.own_interval_s), distance_m);
+        (self.who, self.unseen_s) = (target.vehicle, moment.time_s - target.seen_s);
         self.told_lit.clear();
         self.told_lit.resize(model.airframe.markers().len(), 1.0);
         for told in moment.lit.iter().filter(|told| told.track == target.id) {
@@ -323,11 +334,19 @@ impl Ways {
         }
     }
 
-    /// How likely each marker of a vehicle is lit at a pose, not silent, and not behind another vehicle.
-    fn light(&mut self, scene: &Scene<'_>, vehicle: usize, from: &Component, pose: &Pose) {
+    /// How likely each marker of a vehicle is lit at a pose while those that blink alike are, not silent, and not behind another vehicle; returns how likely those
+    /// that blink alike are lit.
+    fn light(&mut self, scene: &Scene<'_>, vehicle: usize, from: &Component, pose: &Pose) -> f64 {
         self.lit.clone_from(&self.told_lit);
-        if let Some(others_lit) = scene.moment.others_lit {
-            self.blinking.light(scene.model, pose, others_lit, &mut self.lit);
+        let mut alike = 1.0;
+        match scene.moment.others_lit {
+            Some(others_lit) if scene.moment.blinks_alike => {
+                // Who was dark for as long as anybody is shines now.
+                let others_lit = if self.unseen_s > scene.moment.longest_dark_s { 1.0 } else { others_lit };
+                alike = self.blinking.alike(scene.model, pose, others_lit);
+            }
+            Some(others_lit) => self.blinking.light(scene.model, pose, others_lit, &mut self.lit),
+            None => {}
         }
         from.silent.dim(&mut self.lit);
         self.screened.clear();
@@ -335,18 +354,28 @@ impl Ways {
         if is_known_aside(from, scene.model.airframe.max_radius_m()) {
             self.screens.dim(vehicle, &scene.model.airframe, pose, &mut self.lit, &mut self.screened);
         }
+        alike
+    }
+
+    /// Where LEDs that blink alike are lit so likely: how likely one of them shows, and, each lowered by it, how likely the others are lit if one does. An exposure
+    /// that straddles an edge shows some of them, dimly.
+    fn dim_beside_seen(&mut self, alike: f64) -> f64 {
+        let shows = (1.0 - PARTLY) * alike + PARTLY * DIM_SHOWS;
+        let beside = ((1.0 - PARTLY) * alike + PARTLY * DIM_SHOWS * DIM_SHOWS) / shows;
+        self.lit.iter_mut().for_each(|lit| *lit *= beside);
+        shows
     }
 
     /// How likely no marker of a vehicle is seen that nothing hides.
     fn unseen(&mut self, scene: &Scene<'_>, vehicle: usize, target: &Target, component: &Component) -> f64 {
-        self.light(scene, vehicle, component, &component.pose);
+        let alike = self.light(scene, vehicle, component, &component.pose);
         self.markers.clear();
         self.markers.resize(self.observations.len(), None);
         self.gather_others(scene, &component.pose);
         let nats = self.measured(scene, &component.pose, |measurement| {
             measurement.visibility(&component.pose, target.log_power[scene.moment.camera], |_, _| ())
         });
-        libm::exp(-nats)
+        1.0 - alike + alike * libm::exp(-nats)
     }
 
     /// Does something with what the spots say under the assignment in `markers`.
@@ -409,4 +438,23 @@ fn signal_nats(model: &Model, moment: &Moment, who: Option<u32>, spot: usize, ma
     let Some(told) = told else { return 0.0 };
     let probability = if carries(told.signal) { told.probability } else { 1.0 - told.probability };
     (-libm::log(probability.max(1e-9))).clamp(0.0, WRONG_SIGNAL_NATS)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tracking::tests::simulator::hexarotor;
+
+    #[test]
+    fn beside_one_that_shows_the_others_shine_but_where_the_exposure_straddles_an_edge() {
+        let mut ways = Ways::with_room(&hexarotor());
+        let mut beside = |alike: f64| {
+            ways.lit = alloc::vec![1.0; 6];
+            (ways.dim_beside_seen(alike), ways.lit[0])
+        };
+        let (shows, others) = beside(0.5);
+        assert!((0.45..0.55).contains(&shows) && others > 0.9, "{shows} {others}");
+        let (shows, others) = beside(0.0);
+        assert!((0.01..0.05).contains(&shows) && (others - 0.5).abs() < 1e-9, "{shows} {others}");
+    }
 }

@@ -49,8 +49,10 @@ impl Ways {
             signals += signal_nats(model, moment, self.who, usize::from(spot), usize::from(marker));
         }
         self.gather_others(scene, start);
-        self.light(scene, vehicle, &prior.component, start);
-        let log_weight = log_weight + self.clutter_nats - signals;
+        let alike = self.light(scene, vehicle, &prior.component, start);
+        let shows = if moment.blinks_alike { self.dim_beside_seen(alike) } else { 1.0 };
+        let lit_nats = -libm::log(shows);
+        let log_weight = log_weight + self.clutter_nats - signals - lit_nats;
         let instead = self.likeliest_instead(vehicle, spots).max(self.worth_to_others(vehicle, spots));
         let least = instead - self.nothing_nats - log_weight;
         // Beside those with the same spots a way counts for more where its prediction is wide.

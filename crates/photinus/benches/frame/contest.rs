@@ -133,7 +133,7 @@ impl<'a> Contest<'a> {
 }
 
 /// Whether instructions are counted, not times: `--count`.
-fn is_counting() -> bool {
+pub(crate) fn is_counting() -> bool {
     std::env::args().any(|argument| argument == "--count")
 }
 

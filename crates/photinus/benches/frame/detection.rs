@@ -10,8 +10,8 @@ use std::hint::black_box;
 use photinus::frame::FrameView;
 use photinus::spots::{Brightness, Detector, Settings};
 
-use crate::contest::{self, Contender};
-use crate::frames::{self, Scene, Size};
+use crate::contest::{self, Contender, Contest};
+use crate::frames::{self, PAPER, Scene, Size};
 
 /// Taken for the size of the last-level cache where the system does not tell it, bytes.
 const UNTOLD_CACHE: usize = 64 << 20;
@@ -22,6 +22,9 @@ const SCENES: [(&str, usize, bool); 4] =
     [("empty", 0, false), ("30 markers", 30, false), ("120 markers", 120, false), ("30, the sun", 30, true)];
 
 pub(crate) fn run() {
+    if contest::is_counting() {
+        return count();
+    }
     for size in [Size { width: 752, height: 480 }, Size { width: 1920, height: 1200 }] {
         for (place, bytes) in [("in cache", 0), ("out of cache", last_level_cache() / 4 * 5)] {
             println!("\n{:<28}{:>20}{:>27}{:>27}", "", "floors, us", "fixed threshold", "contrast");
@@ -44,11 +47,32 @@ pub(crate) fn run() {
     }
 }
 
+/// The detectors alone, for their instructions to be counted.
+fn count() {
+    let mut contest = Contest::beside_maximum("Detecting, 752x480");
+    for (name, markers, sun) in SCENES {
+        let frames = frames::markers(&Scene { size: PAPER, markers, sun });
+        for (law, mut detector) in ["fixed", "contrast"].into_iter().zip(detectors()) {
+            let frames = frames.clone();
+            contest.add(&format!("{name}, {law}"), move |i| {
+                let frame = FrameView::packed(&frames[i % frames.len()], PAPER.width, PAPER.height);
+                black_box(detector.detect(&frame.expect("a frame"), None).expect("no mask"));
+            });
+        }
+    }
+    contest.run();
+}
+
+/// By a fixed threshold and by contrast.
+fn detectors() -> [Detector; 2] {
+    [Brightness::Threshold(200), Brightness::default()]
+        .map(|brightness| Detector::new(Settings { brightness, ..Settings::default() }).expect("settings"))
+}
+
 /// Times floors and detectors on the frames of one scene.
 fn row(name: &str, supply: &Supply) {
     let mut copy = vec![0; supply.size.pixels()];
-    let mut detectors = [Brightness::Threshold(200), Brightness::default()]
-        .map(|brightness| Detector::new(Settings { brightness, ..Settings::default() }).expect("settings"));
+    let mut detectors = detectors();
     let mut contenders: Vec<Contender<'_>> = vec![
         Box::new(|round| {
             black_box(supply.next(round).iter().fold(0, |high: u8, &pixel| high.max(pixel)));

@@ -146,9 +146,10 @@ impl PointSpread {
             return 0.0;
         }
         let (column, row) = (x_px.round(), y_px.round());
-        let placed = self.placed((column - x_px) as f32, (row - y_px) as f32, 0);
         // The window of one pixel lies in the middle; others are this many pixels further.
-        f64::from(placed.shifted(column as isize, row as isize).four(0, 0).share.to_array()[0])
+        let across = Along::new((column - x_px) as f32, 0).shifted(column as isize);
+        let down = Along::new((row - y_px) as f32, 0).shifted(row as isize);
+        f64::from(Placed::new(&self.planes, across, down).four(0, 0).share.to_array()[0])
     }
 
     /// How far apart two points of the same light must be that the middle between them is darker than both by an eighth, px: the
@@ -208,7 +209,7 @@ impl PointSpread {
     /// The spread around a point that is (`u`, `v`) px from the middle of a window of `2 reach + 1` pixels. Point and window stay within
     /// reach of the table: what is further is taken for as far as that.
     pub(crate) fn placed(&self, u: f32, v: f32, reach: usize) -> Placed<'_> {
-        Placed { planes: &self.planes, across: Along::new(u, reach), down: Along::new(v, reach) }
+        Placed::new(&self.planes, Along::new(u, reach), Along::new(v, reach))
     }
 }
 
@@ -250,7 +251,8 @@ impl Along {
 /// A point spread around a point, ready for the pixels of a window.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Placed<'a> {
-    planes: &'a [f32],
+    /// The planes of the coefficients, each from that of the first pixel on, down and across.
+    planes: [[&'a [f32]; 4]; 4],
     across: Along,
     down: Along,
 }
@@ -266,21 +268,30 @@ pub(crate) struct Shares {
     pub(crate) by_variance: Lanes,
 }
 
-impl Placed<'_> {
+impl<'a> Placed<'a> {
+    fn new(planes: &'a [f32], across: Along, down: Along) -> Self {
+        const LENGTH: usize = PointSpread::PLANE * PointSpread::PLANE;
+        let planes = core::array::from_fn(|b| {
+            let y = down.first + b;
+            core::array::from_fn(|a| {
+                let x = across.first + a;
+                let plane = (y % PER_PX) * PER_PX + x % PER_PX;
+                let first = y / PER_PX * PointSpread::PLANE + x / PER_PX;
+                planes.get(plane * LENGTH + first..(plane + 1) * LENGTH).unwrap_or_default()
+            })
+        });
+        Self { planes, across, down }
+    }
+
     /// The shares in four pixels from `column` on in `row` of the window.
     #[inline(always)]
     pub(crate) fn four(&self, row: usize, column: usize) -> Shares {
+        let at = row * PointSpread::PLANE + column;
         let [mut share, mut by_u, mut by_v, mut by_uu, mut by_vv] = [Lanes::ZERO; 5];
-        for b in 0..4 {
-            let y = self.down.first + b;
-            let plane_row = (y % PER_PX) * PER_PX;
-            let line = (y / PER_PX + row) * PointSpread::PLANE + column;
+        for (b, planes) in self.planes.iter().enumerate() {
             let [mut along, mut slope, mut curvature] = [Lanes::ZERO; 3];
-            for a in 0..4 {
-                let x = self.across.first + a;
-                let plane = plane_row + x % PER_PX;
-                let at = plane * PointSpread::PLANE * PointSpread::PLANE + line + x / PER_PX;
-                let four = self.planes[at..].first_chunk::<LANES>();
+            for (a, plane) in planes.iter().enumerate() {
+                let four = plane.get(at..at + LANES).and_then(<[f32]>::first_chunk::<LANES>);
                 let four = four.map_or(Lanes::ZERO, |&four| Lanes::new(four));
                 along += self.across.values[a] * four;
                 slope += self.across.slopes[a] * four;
@@ -293,11 +304,6 @@ impl Placed<'_> {
             by_vv += self.down.curvatures[b] * along;
         }
         Shares { share, by_u, by_v, by_variance: Lanes::splat(0.5) * (by_uu + by_vv) }
-    }
-
-    /// The same for a window this many pixels further on.
-    fn shifted(self, columns: isize, rows: isize) -> Self {
-        Self { across: self.across.shifted(columns), down: self.down.shifted(rows), ..self }
     }
 }
 

@@ -24,6 +24,9 @@ const STEPS: usize = 8;
 const STEPS_OF_FULL: usize = 12;
 /// Steps that are never damped.
 const UNDAMPED: usize = 3;
+/// A step that undoes more of the one before than this overshoots; one that repeats more of it than this was too short.
+const UNDOES: f64 = 0.25;
+const REPEATS: f64 = 0.5;
 /// Longest step of the centre, px.
 const LONGEST_PX: f64 = 0.5;
 /// A step shorter than this is the last, px and sigmas, if it changes the light by less than this share.
@@ -142,27 +145,35 @@ const BRIGHTER: [f64; 2] = [3.0, 10.0];
 pub(super) const GOOD_FIT: f64 = 1.5;
 /// Lights spread evenly in space are as many per light as light^-5/2: what that adds to the cost per logarithm of light.
 const COUNTS: f64 = 5.0;
+/// A share of the excess from which on it counts that it spills.
+const SPILLS: f64 = 0.05;
 /// Fewer full pixels hide little.
 const HIDING_PX: u32 = 2;
 
 /// Fits `shape` from a first guess (u, v, light); `None` where it does not settle.
+///
+/// Where pixels are full there may be several answers: one with light as the wings have it at first sight, one with no more than what shows.
 pub(super) fn fit<const N: usize>(
     window: &mut Window,
     shape: &mut impl Shape<N>,
     (u, v, light): (f64, f64, f64),
     noise: PixelNoise,
 ) -> Option<Fitted<N>> {
-    let first = fit_from(window, shape, (u, v, light), noise);
-    if window.full_px < HIDING_PX || first.as_ref().is_some_and(Fitted::fits) {
-        return first;
+    let mut found: [Option<Fitted<N>>; BRIGHTER.len() + 2] = [None; BRIGHTER.len() + 2];
+    if let Some(seen) = light_there(window, shape, (u, v)) {
+        found[0] = fit_from(window, shape, (u, v), seen, noise);
     }
-    let mut found: [Option<Fitted<N>>; BRIGHTER.len() + 1] = [None; BRIGHTER.len() + 1];
-    found[BRIGHTER.len()] = first;
-    for (found, brighter) in found.iter_mut().zip(BRIGHTER) {
-        *found = fit_from(window, shape, (u, v, brighter * light), noise);
-        if found.as_ref().is_some_and(Fitted::fits) {
+    // What keeps its charge, or hides little, has one answer.
+    let is_plain = window.full_px < HIDING_PX || shape.spill(&believed(shape, (u, v))).share <= SPILLS;
+    if found[0].as_ref().is_some_and(|first| window.full_px == 0 || (is_plain && first.fits())) {
+        return found[0];
+    }
+    found[1] = fit_from(window, shape, (u, v), (light, 0.0), noise);
+    for (tried, brighter) in BRIGHTER.into_iter().enumerate() {
+        if window.full_px < HIDING_PX || found.iter().flatten().any(Fitted::fits) {
             break;
         }
+        found[tried + 2] = fit_from(window, shape, (u, v), (brighter * light, 0.0), noise);
     }
     // Where nothing fits well, misfits count for less.
     let misfits = found.iter().flatten().map(|fitted| fitted.chi2 / fitted.freedom);
@@ -175,14 +186,12 @@ pub(super) fn fit<const N: usize>(
 fn fit_from<const N: usize>(
     window: &mut Window,
     shape: &mut impl Shape<N>,
-    (u, v, light): (f64, f64, f64),
+    (u, v): (f64, f64),
+    (light, level): (f64, f64),
     noise: PixelNoise,
 ) -> Option<Fitted<N>> {
-    let mut numbers = SVector::<f64, N>::zeros();
-    (numbers[U], numbers[V], numbers[LIGHT]) = (u, v, light);
-    for number in WIDTH..N {
-        numbers[number] = shape.believed(number).0;
-    }
+    let mut numbers = believed(shape, (u, v));
+    (numbers[LIGHT], numbers[LEVEL]) = (light, level);
     let steps = if window.full_px > 0 { STEPS_OF_FULL } else { STEPS };
     let (mut last, mut previous, mut gain) = (None, SVector::<f64, N>::zeros(), 1.0_f64);
     for step_number in 0..steps {
@@ -198,6 +207,10 @@ fn fit_from<const N: usize>(
         right[LEVEL] -= level * numbers[LEVEL];
         // A step changes the light by no more than this much: where light, level and widths tell little apart, sums in 32 bits do not.
         matrix[(LIGHT, LIGHT)] += 1.0 / (LIGHT_STEP * LIGHT_STEP * numbers[LIGHT] * numbers[LIGHT]);
+        // Where charge spills, full pixels and what they give on say the same of much light and of light without bounds.
+        if window.full_px > 0 && shape.spill(&numbers).share > SPILLS {
+            right[LIGHT] -= 0.5 * COUNTS / numbers[LIGHT];
+        }
         for number in WIDTH..N {
             let (mean, weight) = shape.believed(number);
             matrix[(number, number)] += weight;
@@ -214,12 +227,15 @@ fn fit_from<const N: usize>(
         let before = numbers[LIGHT];
         // Light neither vanishes nor explodes in a step: far from the answer slopes say little.
         step[LIGHT] = step[LIGHT].clamp(-0.6 * before, 4.0 * before);
-        // Weights follow the model: what overshoots once goes half as far from then on.
-        if step_number >= UNDAMPED
-            && (0..N)
-                .any(|number| step[number] * previous[number] < -0.25 * previous[number] * previous[number])
-        {
-            gain *= 0.5;
+        // Weights follow the model: what overshoots goes half as far, until it no longer does.
+        if step_number >= UNDAMPED {
+            let again = (step.transpose() * matrix * previous)[0];
+            let before = (previous.transpose() * matrix * previous)[0];
+            if again < -UNDOES * before {
+                gain *= 0.5;
+            } else if again > REPEATS * before {
+                gain = (2.0 * gain).min(1.0);
+            }
         }
         // No covariance is less than one over the information.
         let (mut step_px, mut sigmas) = (0.0_f64, 0.0_f64);
@@ -256,6 +272,39 @@ fn fit_from<const N: usize>(
         freedom,
         rest_of_cost: cost,
     })
+}
+
+/// What is believed beforehand of a spot at a place.
+fn believed<const N: usize>(shape: &impl Shape<N>, (u, v): (f64, f64)) -> SVector<f64, N> {
+    let mut numbers = SVector::<f64, N>::zeros();
+    (numbers[U], numbers[V]) = (u, v);
+    for number in WIDTH..N {
+        numbers[number] = shape.believed(number).0;
+    }
+    numbers
+}
+
+/// Light and level of least squares of a spot at a place, by the pixels that are not full; `None` where they tell of no light.
+fn light_there<const N: usize>(
+    window: &Window,
+    shape: &mut impl Shape<N>,
+    place: (f64, f64),
+) -> Option<(f64, f64)> {
+    let numbers = believed(shape, place);
+    shape.place(&numbers, window.reach);
+    let mut sums = [Lanes::ZERO; 5];
+    for four in &window.fours {
+        let tells = four.counts * (Lanes::ONE - four.full);
+        let share = shape.shares(four.row, four.column, &numbers).0;
+        let (own, signal) = (tells * share, four.signal - four.others);
+        for (sum, term) in sums.iter_mut().zip([tells, own, own * share, tells * signal, own * signal]) {
+            *sum += term;
+        }
+    }
+    let [n, s, ss, y, sy] = sums.map(|sum| f64::from(lanes::sum(sum)));
+    let light = (n * sy - s * y) / (n * ss - s * s);
+    let level = (y - light * s) / n;
+    (light > 0.0 && light.is_finite()).then_some((light, level))
 }
 
 fn sums<const N: usize>(

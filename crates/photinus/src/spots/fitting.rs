@@ -51,8 +51,12 @@ const WHOLE: f64 = 0.5;
 const WINGS: f64 = 1.0;
 /// Error of a centre that a wrong shape makes, px; it grows with the square of the shape's error.
 const MISSHAPEN_PX: f64 = 1.0;
-/// Error of the light of a spot whose charge spills, over the light and the share that spills.
+/// Error of the light of a spot whose charge spills, over the light and the share that spills: where that share was measured, and where it
+/// was learnt from such spots, most of whose light and spill are told by the same few pixels.
 const SPILT_LIGHT: f64 = 0.1;
+const SPILT_LEARNT: f64 = 0.5;
+/// Error of a centre that a share that was learnt makes, px, over how much of what is seen has spilled.
+const SPILT_PX: f64 = 0.2;
 /// How often the light of others is taken away: their places are better known the second time.
 const PASSES_BESIDE: usize = 2;
 
@@ -76,6 +80,8 @@ pub(super) struct Model {
     pub(super) fits: bool,
     /// Whether it was fitted together with a twin.
     pub(super) is_of_pair: bool,
+    /// How much of what is seen has spilled over from full pixels by a law that nobody measured, 0 to 1.
+    pub(super) spilt: f64,
 }
 
 /// Fits the parts of frames.
@@ -414,11 +420,14 @@ impl Fitter {
         let shape = f64::from(noise.shape);
         let is_full = self.window.full_px > 0;
         let spills = if is_full { self.window.spilled_share() } else { 0.0 };
-        let unsure = point.light * (shape * if is_full { WINGS } else { WHOLE } + SPILT_LIGHT * spills);
+        let spilt = if self.optics.is_some() { 0.0 } else { spills };
+        let spilt_light = if self.optics.is_some() { SPILT_LIGHT } else { SPILT_LEARNT };
+        let unsure = point.light * (shape * if is_full { WINGS } else { WHOLE } + spilt_light * spills);
         let seen = if self.optics.is_some() { 1.0 } else { self.belief.seen_share() };
         let full_px = f64::from(self.window.full_px);
         let blur_px2 = 0.25 * spills * SATURATION_BLUR_PX * SATURATION_BLUR_PX / (full_px + 4.0)
-            + (MISSHAPEN_PX * shape * shape) * (MISSHAPEN_PX * shape * shape);
+            + (MISSHAPEN_PX * shape * shape) * (MISSHAPEN_PX * shape * shape)
+            + (SPILT_PX * spilt) * (SPILT_PX * spilt);
         Some(Model {
             centre: point.centre,
             covariance_px2: point.covariance_px2 * noisier + Matrix2::from_diagonal_element(blur_px2),
@@ -430,6 +439,7 @@ impl Fitter {
             moved_px: [0.0; 2],
             fits: misfit < fit::GOOD_FIT,
             is_of_pair: false,
+            spilt,
         })
     }
 }

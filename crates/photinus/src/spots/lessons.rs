@@ -23,7 +23,7 @@ const SAME_LEVEL_DN: u8 = 4;
 /// Share of the light of its brightest pixel that the eight around it get of a point, at least.
 const LEAST_AROUND: f32 = 0.12;
 /// Share of spilled charge in a spot from which its residuals say nothing of noise.
-const LEAST_SPILT: f64 = 0.02;
+pub(super) const LEAST_SPILT: f64 = 0.02;
 /// Spots of a frame that are learnt from, at most.
 const MOST_TELLING: usize = 40;
 /// Rounds in which a frame's spots and the point spread are fitted to each other.

@@ -13,6 +13,7 @@ use super::Spot;
 use super::centroid;
 use super::cut_off::CutOff;
 use super::fitting::{Fitter, Model, SATURATION_BLUR_PX, reach_px, surroundings};
+use super::lessons::LEAST_SPILT;
 use super::neighbourhood::Neighbourhood;
 use super::part::Part;
 use super::patch::{Patch, Surroundings};
@@ -120,7 +121,7 @@ impl Meter {
     }
 
     /// A point's light by its fit, or by its wings where that is surer: of a Gaussian that is full in the middle it tells all that there is,
-    /// whatever spills there.
+    /// whatever spills there. Where much spills, nobody knows how, and neither is as sure, by its window.
     fn surer(
         &self,
         part: &Part,
@@ -130,12 +131,24 @@ impl Meter {
         model: &Model,
     ) -> (Pixel, Matrix2<f64>) {
         let by_fit = (model.centre, model.covariance_px2);
-        let is_alone = part.outline.saturated_px > 0 && !part.outline.cut && room_px >= part.most_room_px();
-        let by_wings = if is_alone { self.wings(part, window_px, around) } else { None };
+        let is_alone = !part.outline.cut && room_px >= part.most_room_px();
+        let has_wings = is_alone && part.outline.saturated_px > 0;
+        let by_wings = if has_wings { self.wings(part, window_px, around) } else { None };
         let is_surer = |fit: &Fit| {
             fit.misfit < GAUSSIAN_MISFIT && fit.covariance_px2.trace() < model.covariance_px2.trace()
         };
-        by_wings.filter(is_surer).map_or(by_fit, |fit| (fit.centre, fit.covariance_px2))
+        if let Some(fit) = by_wings.filter(is_surer) {
+            return (fit.centre, fit.covariance_px2);
+        }
+        // Charge that spills keeps its middle, by whatever law.
+        if !is_alone || model.spilt < LEAST_SPILT || self.fitter.motion.is_some() {
+            return by_fit;
+        }
+        let mut by_window = self.shapeless(part, room_px, window_px, around);
+        if part.outline.saturated_px == 0 {
+            by_window.1 += Matrix2::from_diagonal_element(blur_px2(part));
+        }
+        if by_window.1.trace() < by_fit.1.trace() { by_window } else { by_fit }
     }
 
     /// By the parabola through the logarithm of the light that shows, of a spot that is full in the middle or cut by the border.
@@ -162,8 +175,7 @@ impl Meter {
     ) -> (Pixel, Matrix2<f64>) {
         let variance = self.fitter.told_noise(around);
         let outline = &part.outline;
-        let blur_px2 =
-            SATURATION_BLUR_PX * SATURATION_BLUR_PX / (f64::from(outline.saturated_px.max(5)) + 4.0);
+        let blur_px2 = blur_px2(part);
         let width_px = part.width_px(around.level);
         let is_crowded = room_px < part.most_room_px().min(3.5 * width_px);
         let has_wings = outline.cut || outline.saturated_px > 0 || is_crowded;
@@ -191,6 +203,11 @@ impl Meter {
         };
         (centre, covariance + Matrix2::from_diagonal_element(missing_px2))
     }
+}
+
+/// Variance of the centre of what is full in the middle, px^2.
+fn blur_px2(part: &Part) -> f64 {
+    SATURATION_BLUR_PX * SATURATION_BLUR_PX / (f64::from(part.outline.saturated_px.max(5)) + 4.0)
 }
 
 /// A window as wide as the spot is, or as its wings where it is saturated, with the background around it.

@@ -1,0 +1,160 @@
+//! Centres and light of spots whose charge spills, before a detector that knows nothing of the camera.
+//!
+//! Gaussian spots narrower than a pixel, integrated over pixels by the error function, with as much light as LEDs at 2 to 10 m; charge above a
+//! full well goes to the four neighbours but for what is drained, until no pixel has more. Checked: errors over what is claimed of them.
+
+#![allow(clippy::print_stdout, reason = "the measured numbers are worth reading")]
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+
+use photinus::camera::Pixel;
+use photinus::frame::FrameView;
+use photinus::spots::{Detector, Settings};
+use rand_distr::{Distribution, StandardNormal, Uniform};
+use rand_pcg::Pcg64;
+
+const SIDE: usize = 160;
+const SPACING: usize = 40;
+const DARK_DN: f64 = 6.0;
+/// Frames to learn from, and those that count.
+const LEARNT: usize = 60;
+const COUNTED: usize = 100;
+
+/// A camera whose full pixels give on what is too much.
+#[derive(Clone, Copy, Debug)]
+struct Camera {
+    sigma_px: f64,
+    well_dn: f64,
+    spill: f64,
+    spots: usize,
+    brightest: f64,
+}
+
+impl Camera {
+    /// Charge of a frame with these spots: place and light.
+    fn charge(&self, spots: &[(Pixel, f64)]) -> Vec<f64> {
+        let mut charge = vec![0.0; SIDE * SIDE];
+        let below = |edge: f64| 0.5 * libm::erfc(-edge / (self.sigma_px * std::f64::consts::SQRT_2));
+        let within = |from_px: f64| below(from_px + 0.5) - below(from_px - 0.5);
+        for (centre, light) in spots {
+            for (index, charge) in charge.iter_mut().enumerate() {
+                let (du, dv) = ((index % SIDE) as f64 - centre.u, (index / SIDE) as f64 - centre.v);
+                if du.abs() < 10.0 && dv.abs() < 10.0 {
+                    *charge += light * within(du) * within(dv);
+                }
+            }
+        }
+        charge
+    }
+
+    /// Gives on what is above a full well, pixel by pixel, until none is.
+    fn overflow(&self, charge: &mut [f64]) {
+        let well = self.well_dn - DARK_DN;
+        loop {
+            let full: Vec<usize> = (0..charge.len()).filter(|&at| charge[at] > well + 0.1).collect();
+            if full.is_empty() {
+                return;
+            }
+            for at in full {
+                let part = 0.25 * self.spill * (charge[at] - well);
+                charge[at] = well;
+                for beside in [at - 1, at + 1, at - SIDE, at + SIDE] {
+                    charge[beside] += part;
+                }
+            }
+        }
+    }
+}
+
+/// Squared errors over variances of centres and of the logarithm of light, of spots with full pixels.
+struct Claims {
+    centres: f64,
+    lights: f64,
+    rms_px: f64,
+    share_told: f64,
+}
+
+fn claims(camera: Camera, seed: u64) -> Claims {
+    let mut rng = Pcg64::new(seed.into(), 0x5b11);
+    let (off, even) = (Uniform::new(-3.0, 3.0).unwrap(), Uniform::new(0.0, 1.0).unwrap());
+    let mut detector = Detector::new(Settings::default()).unwrap();
+    let (mut count, mut told, mut all) = (0.0, 0.0, 0.0);
+    let (mut centres, mut lights, mut squares) = (0.0, 0.0, 0.0);
+    for number in 0..LEARNT + COUNTED {
+        let spots: Vec<(Pixel, f64)> = (0..camera.spots)
+            .map(|spot| {
+                let place = |at: usize| (at * SPACING + SPACING / 2) as f64;
+                let (u, v) = (place(spot % 4) + off.sample(&mut rng), place(spot / 4) + off.sample(&mut rng));
+                let farther = 1.0 + 4.0 * even.sample(&mut rng);
+                (Pixel::new(u, v), camera.brightest / (farther * farther))
+            })
+            .collect();
+        let mut charge = camera.charge(&spots);
+        let quantum = 1.0 / 40.0;
+        for charge in &mut charge {
+            let noise: f64 = StandardNormal.sample(&mut rng);
+            *charge += noise * (*charge * quantum).sqrt();
+        }
+        camera.overflow(&mut charge);
+        let mut value = |charge: f64| {
+            let noise: f64 = StandardNormal.sample(&mut rng);
+            (DARK_DN + charge + 0.6 * noise).round().clamp(0.0, 255.0) as u8
+        };
+        let pixels: Vec<u8> = charge.into_iter().map(&mut value).collect();
+        let frame = FrameView::packed(&pixels, SIDE, SIDE).unwrap();
+        let found = detector.detect(&frame, None).unwrap();
+        for &(centre, light) in spots.iter().filter(|_| number >= LEARNT) {
+            let near = |spot: &&photinus::spots::Spot| {
+                libm::hypot(spot.centre.u - centre.u, spot.centre.v - centre.v) < 3.0
+            };
+            let Some(spot) = found.spots.iter().find(near) else { continue };
+            if f64::from(spot.peak) < camera.well_dn.min(255.0) - 3.0 {
+                continue;
+            }
+            all += 1.0;
+            for (error, axis) in [(spot.centre.u - centre.u, 0), (spot.centre.v - centre.v, 1)] {
+                centres += error * error / spot.covariance_px2[(axis, axis)];
+                squares += error * error;
+                count += 1.0;
+            }
+            if let Some(measured) = spot.light {
+                lights += (libm::log(measured.value / light) * measured.value / measured.sigma).powi(2);
+                told += 1.0;
+            }
+        }
+    }
+    let claims = Claims {
+        centres: centres / count,
+        lights: lights / told,
+        rms_px: libm::sqrt(squares / count),
+        share_told: told / all,
+    };
+    println!(
+        "{camera:?} seed {seed}: centres {:.2} of claim, {:.3} px; light {:.2} of claim, told {:.2} of {all}",
+        claims.centres, claims.rms_px, claims.lights, claims.share_told
+    );
+    claims
+}
+
+/// Seeds 1 to 4 are of those that limits were set on, 51 and 52 are not.
+const SEEDS: [u64; 6] = [1, 2, 3, 4, 51, 52];
+
+#[test]
+fn centres_of_spots_that_spill_are_within_their_claim() {
+    for (sigma_px, well_dn, spill) in [(0.4, 256.0, 0.5), (0.5, 250.0, 1.0)] {
+        for (spots, seed) in SEEDS.into_iter().flat_map(|seed| [(4, seed), (12, seed)]) {
+            let found = claims(Camera { sigma_px, well_dn, spill, spots, brightest: 8000.0 }, seed);
+            assert!(found.centres < 2.5, "seed {seed}: {}", found.centres);
+            assert!(found.rms_px < 0.04, "seed {seed}: {} px", found.rms_px);
+        }
+    }
+}
+
+#[test]
+fn light_beyond_full_pixels_that_keep_their_charge_is_told_by_the_wings() {
+    for (spots, seed) in SEEDS.into_iter().flat_map(|seed| [(4, seed), (12, seed)]) {
+        let camera = Camera { sigma_px: 0.4, well_dn: 400.0, spill: 0.0, spots, brightest: 8000.0 };
+        let found = claims(camera, seed);
+        assert!((0.7..1.7).contains(&found.centres), "seed {seed}: {}", found.centres);
+        assert!(found.lights < 2.5 && found.share_told > 0.99, "seed {seed}: light {}", found.lights);
+    }
+}

@@ -15,6 +15,7 @@ use super::cut_off::CutOff;
 use super::fitting::{Fitter, Model, SATURATION_BLUR_PX, reach_px, surroundings};
 use super::lessons::LEAST_SPILT;
 use super::neighbourhood::Neighbourhood;
+use super::odds;
 use super::part::Part;
 use super::patch::{Patch, Surroundings};
 use super::rejection::Reason;
@@ -38,16 +39,21 @@ const LARGEST_MISFIT: f64 = 5.0;
 /// Radius around the summit of a spot that the border cuts, or that stands in the light of another, in which its light tells, px.
 const SUMMIT_PX: f64 = 1.8;
 
+/// The centre of a light of its own is no farther than this from its pixels, px.
+const FARTHEST_ASIDE_PX: f64 = 1.0;
+
 /// Measures the light of the parts of one frame after the other.
 #[derive(Debug)]
 pub(super) struct Meter {
     fitter: Fitter,
     patch: Patch,
+    /// Whether the part measured last is a step on a slope: the light around it is balanced elsewhere.
+    is_step: bool,
 }
 
 impl Meter {
     pub(super) fn new(settings: &Settings, optics: Option<Arc<Optics>>) -> Self {
-        Self { fitter: Fitter::new(settings, optics), patch: Patch::default() }
+        Self { fitter: Fitter::new(settings, optics), patch: Patch::default(), is_step: false }
     }
 
     /// Whether frames still tell something of the camera.
@@ -94,6 +100,14 @@ impl Meter {
             Some(model) => self.surer(part, room_px, window_px, around, &model),
             None => self.shapeless(part, room_px, window_px, around),
         };
+        self.is_step = model.is_none()
+            && !outline.cut
+            && outline.saturated_px == 0
+            && outline.extent.gap_px(centre) > FARTHEST_ASIDE_PX;
+        let (centre, covariance_px2) = match self.is_step {
+            true => (part.guess, Matrix2::from_diagonal_element(part.radius_px * part.radius_px)),
+            false => (centre, covariance_px2),
+        };
         let anywhere = Matrix2::from_diagonal_element(WITHIN_A_PIXEL * WITHIN_A_PIXEL);
         Ok(Spot {
             centre,
@@ -110,8 +124,11 @@ impl Meter {
         })
     }
 
-    /// Odds that the part measured last is a hot pixel.
-    pub(super) fn hot_pixel_odds(&self, part: &Part) -> f64 {
+    /// Odds that the part measured last is clutter by what is around it: a hot pixel, or a step on a slope of light.
+    pub(super) fn clutter_odds(&self, part: &Part) -> f64 {
+        if self.is_step {
+            return odds::STEP;
+        }
         let outline = &part.outline;
         if outline.area_px > 1 || outline.cut {
             return 0.0;

@@ -132,6 +132,12 @@ impl Extent {
     pub fn height(&self) -> u32 {
         self.bottom - self.top + 1
     }
+
+    /// How far a place is from the nearest of these pixels, px; 0 among them.
+    pub(crate) fn gap_px(&self, place: Pixel) -> f64 {
+        let gap = |at: f64, first: u32, last: u32| (f64::from(first) - at).max(at - f64::from(last)).max(0.0);
+        libm::hypot(gap(place.u, self.left, self.right), gap(place.v, self.top, self.bottom))
+    }
 }
 
 /// A bright region that is not a marker, and why.

@@ -12,6 +12,8 @@ use super::{Detections, Spot};
 pub(super) const BESIDE_SUN: f64 = 50.0;
 /// Odds for clutter of what is as long and thin as a streak, yet no longer than a marker that moves during the exposure.
 pub(super) const LONG_AND_THIN: f64 = 20.0;
+/// Odds for clutter of what is bright beside more light than its own, as glare and edges are.
+pub(super) const STEP: f64 = 20.0;
 
 /// Markers are fewer by e per this much less of the logarithm of light (rendered flights of one to twelve neighbours).
 const MARKERS_FALL: f64 = 1.3;

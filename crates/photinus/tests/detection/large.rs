@@ -63,6 +63,13 @@ fn the_sun_is_rejected_and_the_markers_beside_it_are_found() {
             // The rest is glare, and known as such.
             let likely = found.spots.iter().filter(|spot| spot.marker_log_odds > 0.0).count();
             assert_eq!(likely, places.len(), "{sun:?} {rule:?}");
+            // What is on its slope stays where it shows.
+            for spot in found.spots.iter().filter(|spot| spot.saturated_px == 0) {
+                let (u, v, extent) = (spot.centre.u, spot.centre.v, spot.extent);
+                let across = f64::from(extent.left) - 1.0..=f64::from(extent.right) + 1.0;
+                let down = f64::from(extent.top) - 1.0..=f64::from(extent.bottom) + 1.0;
+                assert!(across.contains(&u) && down.contains(&v), "{sun:?} {rule:?} {spot:?}");
+            }
         }
     }
 }

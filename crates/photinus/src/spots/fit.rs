@@ -207,8 +207,10 @@ fn fit_from<const N: usize>(
         right[LEVEL] -= level * numbers[LEVEL];
         // A step changes the light by no more than this much: where light, level and widths tell little apart, sums in 32 bits do not.
         matrix[(LIGHT, LIGHT)] += 1.0 / (LIGHT_STEP * LIGHT_STEP * numbers[LIGHT] * numbers[LIGHT]);
-        // Where charge spills, full pixels and what they give on say the same of much light and of light without bounds.
-        if window.full_px > 0 && shape.spill(&numbers).share > SPILLS {
+        // Where charge spills, full pixels and what they give on say the same of much light and of light without bounds. While it is being learnt how much
+        // spills, less light would be taken for charge that does.
+        let spill = shape.spill(&numbers);
+        if window.full_px > 0 && spill.share > SPILLS && spill.numbers.is_none() {
             right[LIGHT] -= 0.5 * COUNTS / numbers[LIGHT];
         }
         for number in WIDTH..N {

@@ -36,11 +36,7 @@ pub(crate) fn table(seeds: RangeInclusive<u64>) {
         ("six words", SIGNALLED, &[0, 1, 2, 3, 4, 5]),
     ];
     for (name, airframe, words) in all {
-        let mut rows = Rows::default();
-        for seed in seeds.clone() {
-            let own = fly(seed, airframe, words);
-            rows.iter_mut().zip(&own).for_each(|(row, own)| *row = row.with(own));
-        }
+        let rows = of_seeds(seeds.clone(), airframe, words);
         let whole = whole(&rows);
         if words.is_empty() {
             steady_m = whole.rms_m();
@@ -84,8 +80,16 @@ pub(crate) fn whole(rows: &Rows) -> Row {
     rows.iter().fold(Row::default(), Row::with)
 }
 
-/// The flight of a seed, each signal of the vehicle with a word.
-pub(crate) fn fly(seed: u64, airframe: Airframe, words: &[usize]) -> Rows {
+/// The flights of these seeds, each signal of the vehicle with a word.
+pub(crate) fn of_seeds(seeds: RangeInclusive<u64>, airframe: Airframe, words: &[usize]) -> Rows {
+    seeds.map(|seed| fly(seed, airframe, words)).fold(Rows::default(), |mut rows, own| {
+        rows.iter_mut().zip(&own).for_each(|(row, own)| *row = row.with(own));
+        rows
+    })
+}
+
+/// The flight of a seed.
+fn fly(seed: u64, airframe: Airframe, words: &[usize]) -> Rows {
     let mut rows = Rows::default();
     let mut random = Pcg64::new(u128::from(seed), 0xda2c);
     let mut between = |low: f64, high: f64| between(&mut random, low, high);

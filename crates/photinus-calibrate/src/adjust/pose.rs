@@ -1,7 +1,6 @@
 //! One photo alone: its cost, and its pose with the lens and the board as they are.
 
 use nalgebra::{Isometry3, Matrix6, Vector3, Vector6};
-
 use photinus::solve::{Descent, descend, step};
 
 use super::step::moved_pose;

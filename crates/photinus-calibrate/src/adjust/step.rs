@@ -1,7 +1,6 @@
 //! Where the normal equations of a scene lead to.
 
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3, Vector6};
-
 use photinus::solve::Descent;
 
 use super::cholesky::Cholesky;

@@ -420,10 +420,11 @@ impl Fitter {
         let shape = f64::from(noise.shape);
         let is_full = self.window.full_px > 0;
         let spills = if is_full { self.window.spilled_share() } else { 0.0 };
-        let spilt = if self.optics.is_some() { 0.0 } else { spills };
-        let spilt_light = if self.optics.is_some() { SPILT_LIGHT } else { SPILT_LEARNT };
+        let (spilt, spilt_light, seen) = match self.optics {
+            Some(_) => (0.0, SPILT_LIGHT, 1.0),
+            None => (spills, SPILT_LEARNT, self.belief.seen_share()),
+        };
         let unsure = point.light * (shape * if is_full { WINGS } else { WHOLE } + spilt_light * spills);
-        let seen = if self.optics.is_some() { 1.0 } else { self.belief.seen_share() };
         let full_px = f64::from(self.window.full_px);
         let blur_px2 = 0.25 * spills * SATURATION_BLUR_PX * SATURATION_BLUR_PX / (full_px + 4.0)
             + (MISSHAPEN_PX * shape * shape) * (MISSHAPEN_PX * shape * shape)

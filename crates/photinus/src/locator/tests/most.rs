@@ -68,9 +68,8 @@ fn check(
             let widest2 = gaps.map(|(a, b)| (direction(a) - direction(b)).norm_squared()).fold(0.0, f64::max);
             let Some(look) = kinds.log_density(&context, &group) else { continue };
             handfuls += 1;
-            let [most, _] = kinds.most_of_look(&context, group.len(), widest2, true);
+            let [most, further] = kinds.most_of_look(&context, group.len(), widest2, true);
             assert!(look <= most, "{group:?}: {look}, at most {most}");
-            let [_, further] = kinds.most_of_look(&context, group.len(), widest2, true);
             for (place, &a) in group.iter().enumerate().filter(|_| group.len() > 2) {
                 for &b in &group[..place] {
                     let most = kinds.most_of_pair(&context, &[b, a]) + (group.len() - 2) as f64 * further;

@@ -296,28 +296,22 @@ impl Ways {
         left.max_by(|a, b| a.1.total_cmp(&b.1).then(b.0.cmp(&a.0))).map(|(vehicle, _)| vehicle)
     }
 
-    /// What spots are against a vehicle so far away, where so many frames err alike.
-    fn look_from(&mut self, scene: &Scene<'_>, repeats: f64, distance_m: f64) {
-        let Scene { model, .. } = *scene;
-        let widening = repeats.sqrt();
-        self.repeats = repeats;
+    /// What spots are against this vehicle, whose markers are where the airframe says but for the prior's sigma.
+    fn prepare(&mut self, scene: &Scene<'_>, target: &Target, components: &[Component]) {
+        let Scene { model, moment, .. } = *scene;
+        self.repeats = model.repeats_of(target, moment, scene.own_interval_s);
+        let widening = self.repeats.sqrt();
         self.power = self.log_power.map(|value| LogLight { value, sigma: POWER_SIGMA * widening });
         self.per_frame = pose::Settings {
             unit_sigma: model.pose.unit_sigma * widening,
             lobe_sigma: model.pose.lobe_sigma * widening,
             ..model.pose
         };
+        let distance_m = components.first().map_or(1.0, |first| first.pose.position_m.norm()).max(1e-3);
         let angle_rad = model.pose.marker_sigma_m / distance_m;
-        let extra_rad2 = repeats * angle_rad * angle_rad;
+        let extra_rad2 = self.repeats * angle_rad * angle_rad;
         self.whitened.clear();
         self.whitened.extend(self.observations.iter().map(|seen| Whitened::of(seen, extra_rad2)));
-    }
-
-    /// What spots are against this vehicle, whose markers are where the airframe says but for the prior's sigma.
-    fn prepare(&mut self, scene: &Scene<'_>, target: &Target, components: &[Component]) {
-        let Scene { model, moment, .. } = *scene;
-        let distance_m = components.first().map_or(1.0, |first| first.pose.position_m.norm()).max(1e-3);
-        self.look_from(scene, model.repeats_of(target, moment, scene.own_interval_s), distance_m);
         (self.who, self.unseen_s) = (target.vehicle, moment.time_s - target.seen_s);
         self.told_lit.clear();
         self.told_lit.resize(model.airframe.markers().len(), 1.0);

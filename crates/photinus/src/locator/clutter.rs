@@ -43,8 +43,10 @@ pub(super) struct Clutter {
     frame_px: f64,
     with_light: bool,
     log_density: Vec<f64>,
-    /// How likely each observation is clutter that comes and goes.
+    /// How likely each observation is clutter that comes and goes, of no kind of its own.
     shares: Vec<f64>,
+    /// The same of hot pixels.
+    hot: Vec<f64>,
     counts: Counts,
     /// Counts of the observations before one.
     before: Counts,
@@ -58,6 +60,7 @@ impl Clutter {
             with_light,
             log_density: Vec::new(),
             shares: Vec::new(),
+            hot: Vec::new(),
             counts: Counts::of(size),
             before: Counts::of(size),
         }
@@ -81,17 +84,16 @@ impl Clutter {
         share: impl Fn(usize) -> f64,
     ) {
         let Surroundings { places, besides, companions, .. } = *frame;
-        self.shares.clear();
-        self.shares
-            .extend(places.iter().enumerate().map(|(index, place)| share(index) * place.comes_and_goes));
+        self.share_out(places, share);
         self.counts.list.copy_from_slice(&besides.list);
-        for (place, &share) in places.iter().zip(&self.shares) {
-            self.counts.add(place, share);
+        for index in 0..places.len() {
+            self.count(places, index, 1.0);
         }
         self.log_density.clear();
         self.log_density.resize(places.len(), 0.0);
         for members in (0..groups.len()).map(|group| groups.group(group)) {
-            members.iter().for_each(|&index| self.counts.add(&places[index], -self.shares[index]));
+            members.iter().for_each(|&index| self.count(places, index, -1.0));
+            let hot_pixels = self.counts.hot_pixels(frame.memory);
             let mean = match *members {
                 [only] => {
                     let beside: f64 =
@@ -101,10 +103,27 @@ impl Clutter {
                 _ => self.mean_of_group(frame, members),
             };
             for &index in members {
-                self.log_density[index] = places[index].with_what_stands(mean);
-                self.counts.add(&places[index], self.shares[index]);
+                self.log_density[index] = places[index].with_what_stands(mean, hot_pixels);
+                self.count(places, index, 1.0);
             }
         }
+    }
+
+    /// Shares out how likely each observation is clutter: what comes and goes is a hot pixel or not.
+    fn share_out(&mut self, places: &[Place], share: impl Fn(usize) -> f64) {
+        self.shares.clear();
+        self.hot.clear();
+        for (index, place) in places.iter().enumerate() {
+            let all = share(index) * place.comes_and_goes;
+            let hot = all * place.is_hot();
+            self.shares.push(all - hot);
+            self.hot.push(hot);
+        }
+    }
+
+    /// Counts an observation as clutter so many times.
+    fn count(&mut self, places: &[Place], index: usize, times: f64) {
+        self.counts.add(&places[index], times * self.shares[index], times * self.hot[index]);
     }
 
     /// The same of what comes and goes, for a group: the mean over its observations, one after the other.
@@ -127,17 +146,16 @@ impl Clutter {
     /// after all others, but a frame is drawn one after the other (chain rule).
     pub(super) fn excess(&mut self, frame: &Surroundings<'_>, share: impl Fn(usize) -> f64) -> f64 {
         let Surroundings { places, besides, companions, .. } = *frame;
-        self.shares.clear();
-        self.shares
-            .extend(places.iter().enumerate().map(|(index, place)| share(index) * place.comes_and_goes));
+        self.share_out(places, &share);
         self.before.list.copy_from_slice(&besides.list);
         let mut excess = 0.0;
         for (index, place) in places.iter().enumerate() {
             let earlier = companions.of(index).iter().filter(|near| near.observation < index);
             let beside: f64 = earlier.map(|near| near.density_at(&self.shares)).sum();
-            let first = place.with_what_stands(self.log_per_sr(&self.before, frame, place, 0.0, beside));
+            let by_itself = self.log_per_sr(&self.before, frame, place, 0.0, beside);
+            let first = place.with_what_stands(by_itself, self.before.hot_pixels(frame.memory));
             excess += share(index) * (self.log_density[index] - first);
-            self.before.add(place, self.shares[index]);
+            self.before.add(place, self.shares[index], self.hot[index]);
         }
         excess
     }
@@ -186,7 +204,7 @@ impl Clutter {
     }
 }
 
-/// Clutter by cell of the image, then by step of light, then in all.
+/// Clutter by cell of the image, then by step of light, then in all; then hot pixels.
 #[derive(Debug)]
 pub(super) struct Counts {
     cells: Cells,
@@ -197,7 +215,7 @@ impl Counts {
     /// None, in images of `size` (width, height) px.
     pub(super) fn of(size: [usize; 2]) -> Self {
         let cells = Cells::new(size, CELL_PX);
-        Self { cells, list: vec![0.0; cells.count() + LIGHT_STEPS + 1] }
+        Self { cells, list: vec![0.0; cells.count() + LIGHT_STEPS + 2] }
     }
 
     /// Its cells.
@@ -216,18 +234,29 @@ impl Counts {
 
     /// All of it, with what is remembered.
     fn total(&self, memory: &Memory) -> f64 {
-        let place = self.list.len() - 1;
+        self.at(self.list.len() - 2, memory)
+    }
+
+    /// Hot pixels of a frame.
+    fn hot_pixels(&self, memory: &Memory) -> f64 {
+        self.at(self.list.len() - 1, memory) / (1.0 + memory.frames() as f64 + WORTH_FRAMES)
+    }
+
+    fn at(&self, place: usize, memory: &Memory) -> f64 {
         (self.list[place] + memory.clutter_by_cell()[place]).max(0.0)
     }
 
-    /// Counts an observation by this much.
-    fn add(&mut self, place: &Place, share: f64) {
+    /// Counts an observation by this much, and as a hot pixel by that.
+    fn add(&mut self, place: &Place, share: f64, hot: f64) {
         self.add_at(place.cell, place.light_step, share);
+        if let Some(all) = self.list.last_mut() {
+            *all += hot;
+        }
     }
 
     fn add_at(&mut self, cell: [usize; 2], light_step: Option<usize>, share: f64) {
         self.list[self.cells.index(cell)] += share;
-        let total = self.list.len() - 1;
+        let total = self.list.len() - 2;
         self.list[total] += share;
         if let Some(step) = light_step {
             self.list[self.cells.count() + step] += share;

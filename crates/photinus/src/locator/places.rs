@@ -8,9 +8,12 @@ use super::cells::Cells;
 use super::clutter::{BEFOREHAND, LIGHT_RANGE};
 use super::fixtures::Fixtures;
 use super::sun::Sun;
+use crate::spots::HOT_BEFOREHAND;
 
 /// Clutter that blinks one of our signals is so rare among clutter, as a logarithm: one in a hundred.
 const BLINKS_BY_CHANCE: f64 = 4.6;
+/// No reflection has larger odds for clutter by its look: a single pixel that has is a hot one.
+const REFLECTION_ODDS: f64 = 8.0;
 /// The light that clutter has is counted in steps of its logarithm.
 pub(super) const LIGHT_STEP: f64 = 0.5;
 pub(super) const LIGHT_STEPS: usize = 32;
@@ -26,6 +29,10 @@ pub(super) struct Place {
     pub(super) rad2_per_px2: f64,
     /// How much of it, if it is clutter, is clutter that comes and goes: what stays where it is and the sun tell nothing of other places.
     pub(super) comes_and_goes: f64,
+    /// Odds that it is a hot pixel, if it is clutter.
+    hot_odds: f64,
+    /// How dense clutter is there for each hot pixel that the frame has.
+    hot_density: f64,
     /// Density of the sun, whose light may be any, where one is expected.
     sun: Option<f64>,
     /// Density of what was there before, and the logarithm of the odds that it is clutter.
@@ -60,6 +67,8 @@ impl Places {
                 rad2_per_px2,
                 comes_and_goes: (1.0 - fixtures.share(observation)) * beforehand
                     / (beforehand + suns.unwrap_or(0.0)),
+                hot_odds: hot_odds(sighting),
+                hot_density: hot_odds(sighting) / (HOT_BEFOREHAND * frame_px * rad2_per_px2 * of_light),
                 sun: suns.map(|per_sr| per_sr / of_light),
                 fixture: fixtures.density(sighting, observation) / rad2_per_px2,
                 fixture_log_odds: fixtures.log_odds(observation).max(0.0),
@@ -77,8 +86,20 @@ impl Places {
 }
 
 impl Place {
-    /// Logarithm of the density of clutter there, of what comes and goes, of the sun and of what stays where it is, as it looks.
-    pub(super) fn with_what_stands(&self, log_of_others: f64) -> f64 {
+    /// How likely it is a hot pixel, if it is clutter: how many there are tells nothing of what looks otherwise.
+    pub(super) fn is_hot(&self) -> f64 {
+        self.hot_odds / (1.0 + self.hot_odds)
+    }
+
+    /// Logarithm of the density of clutter there, of what comes and goes, of the sun, of what stays where it is and of so many hot pixels in a frame, as it
+    /// looks.
+    pub(super) fn with_what_stands(&self, log_of_others: f64, hot_pixels: f64) -> f64 {
+        let log_density = self.with_fixtures(log_of_others);
+        let of_hot = hot_pixels * self.hot_density;
+        if of_hot > 0.0 { libm::log(libm::exp(log_density) + of_hot) } else { log_density }
+    }
+
+    fn with_fixtures(&self, log_of_others: f64) -> f64 {
         let log_of_others = match self.sun {
             Some(sun) => libm::log(libm::exp(log_of_others) + sun),
             None => log_of_others,
@@ -93,6 +114,12 @@ impl Place {
 
 fn rad2_per_px2(sighting: &Sighting) -> f64 {
     (sighting.rad_per_px * sighting.rad_per_px).max(1e-12)
+}
+
+/// Odds that an observation is a hot pixel, if it is clutter.
+fn hot_odds(sighting: &Sighting) -> f64 {
+    let of_look = libm::exp(-sighting.spot.marker_log_odds) - REFLECTION_ODDS;
+    if sighting.spot.area_px == 1 { of_look.max(0.0) } else { 0.0 }
 }
 
 fn log_of_look(sighting: &Sighting) -> f64 {

@@ -15,6 +15,7 @@ use crate::spots::Extent;
 
 mod alternatives;
 mod beside;
+mod hot_pixels;
 mod most;
 
 const SIGMA_PX: f64 = 0.1;

@@ -158,7 +158,9 @@ impl Detector {
             match measured {
                 Ok(spot) => {
                     self.detections.spots.push(spot);
-                    self.clutter_odds.push(part.clutter_odds + self.meter.clutter_odds(&part));
+                    self.clutter_odds.push(
+                        part.clutter_odds + self.meter.clutter_odds(&part, [frame.width(), frame.height()]),
+                    );
                 }
                 Err(reason) => self.detections.rejected.push(Rejected {
                     centre: part.guess,

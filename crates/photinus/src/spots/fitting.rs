@@ -13,7 +13,7 @@ use super::centroid::PixelVariance;
 use super::cut_off::CutOff;
 use super::fit::{self, Fitted, PixelNoise, PointSource};
 use super::full_level::FullLevel;
-use super::hot_pixel::{self, LonePixels};
+use super::hot_pixel::{self, Lone, LonePixels};
 use super::learning::{Belief, UNKNOWNS};
 use super::lessons::LEARNT_FRAMES;
 use super::neighbourhood::Neighbourhood;
@@ -325,14 +325,22 @@ impl Fitter {
         PixelNoise { dark: noise.dark.max(around.variance), ..noise }
     }
 
-    /// Odds that a single bright pixel, with its signal and that of the eight around it, is a hot one.
-    pub(super) fn hot_pixel_odds(&self, (u, v): (u32, u32), own: f32, around: f32) -> f64 {
-        let Some(optics) = &self.optics else { return self.lone_pixels.odds((u, v)) };
+    /// Odds that a single bright pixel, in a column and row, is a hot one.
+    pub(super) fn hot_pixel_odds(&self, (u, v): (u32, u32), pixel: Lone) -> f64 {
         let place = Pixel::new(f64::from(u), f64::from(v));
         let dark = Surroundings { level: 0.0, slope: [0.0; 2], variance: 0.0, is_cut_off: false };
-        let beforehand =
-            if optics.hot_pixels.at(u, v).is_some() { hot_pixel::KNOWN } else { hot_pixel::BEFOREHAND };
-        beforehand * hot_pixel::odds(own, around, optics.spread.at(place), self.pixel_noise(dark))
+        let by_look = |spread: &PointSpread| hot_pixel::odds(pixel, spread, self.pixel_noise(dark));
+        match self.optics.as_deref() {
+            Some(optics) => {
+                let is_known = optics.hot_pixels.at(u, v).is_some();
+                let beforehand = if is_known { hot_pixel::KNOWN } else { hot_pixel::BEFOREHAND };
+                beforehand * by_look(optics.spread.at(place))
+            }
+            None if self.is_sharp() && self.belief.noise().shape < SHAPELESS => {
+                self.lone_pixels.odds((u, v)).max(hot_pixel::BEFOREHAND * by_look(self.belief.spread()))
+            }
+            None => self.lone_pixels.odds((u, v)),
+        }
     }
 
     /// What becomes of charge above a full well.

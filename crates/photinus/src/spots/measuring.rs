@@ -13,6 +13,7 @@ use super::Spot;
 use super::centroid;
 use super::cut_off::CutOff;
 use super::fitting::{Fitter, Model, SATURATION_BLUR_PX, reach_px, surroundings};
+use super::hot_pixel::Sides;
 use super::lessons::LEAST_SPILT;
 use super::neighbourhood::Neighbourhood;
 use super::odds;
@@ -124,17 +125,16 @@ impl Meter {
         })
     }
 
-    /// Odds that the part measured last is clutter by what is around it: a hot pixel, or a step on a slope of light.
-    pub(super) fn clutter_odds(&self, part: &Part) -> f64 {
+    /// Odds that the part measured last, in an image of `size` (width, height) px, is clutter by what is around it: a hot pixel, or a step on a slope of
+    /// light.
+    pub(super) fn clutter_odds(&self, part: &Part, size: [usize; 2]) -> f64 {
         if self.is_step {
             return odds::STEP;
         }
-        let outline = &part.outline;
-        if outline.area_px > 1 || outline.cut {
+        if part.outline.area_px > 1 {
             return 0.0;
         }
-        let (own, around) = self.patch.pixel_and_around(part.middle);
-        self.fitter.hot_pixel_odds(part.middle, own, around)
+        self.fitter.hot_pixel_odds(part.middle, self.patch.lone(part.middle, Sides::of(part.middle, size)))
     }
 
     /// A point's light by its fit, or by its wings where that is surer: of a Gaussian that is full in the middle it tells all that there is,

@@ -66,6 +66,7 @@ use crate::float::Float as _;
 use crate::optics::Measured;
 
 pub use detector::Detector;
+pub(crate) use hot_pixel::BEFOREHAND as HOT_BEFOREHAND;
 pub use rejection::Reason;
 pub use settings::{Brightness, Noise, Settings, SettingsError, Shape};
 

@@ -7,6 +7,7 @@ use alloc::vec::Vec;
 use core::ops::Range;
 
 use super::cut_off::CutOff;
+use super::hot_pixel::{Lone, Sides};
 use super::ring::{self, Sums};
 use crate::camera::Pixel;
 use crate::frame::FrameView;
@@ -125,9 +126,9 @@ impl Patch {
         ((place.u - f64::from(self.left)) as f32, (place.v - f64::from(self.top)) as f32)
     }
 
-    /// The signal in a pixel of the image, and the sum of that in the eight around it; what lies outside the patch has none.
-    pub(super) fn pixel_and_around(&self, (u, v): (u32, u32)) -> (f32, f32) {
-        let at = |du: i32, dv: i32| {
+    /// The signal in a pixel of the image, and that around it; what lies outside the patch has none.
+    pub(super) fn lone(&self, (u, v): (u32, u32), sides: Sides) -> Lone {
+        let at = |[du, dv]: [i32; 2]| {
             let (column, row) = (u as i32 + du - self.left, v as i32 + dv - self.top);
             let inside = |at: i32| (0..self.rows as i32).contains(&at);
             if inside(column) && inside(row) {
@@ -137,8 +138,7 @@ impl Patch {
                 0.0
             }
         };
-        let all: f32 = (0..9).map(|i| at(i % 3 - 1, i / 3 - 1)).sum();
-        (at(0, 0), all - at(0, 0))
+        Lone { own: at([0, 0]), around: sides.each().map(at).sum(), sides }
     }
 
     /// Signal within `radius_px` of `centre`, grey levels.

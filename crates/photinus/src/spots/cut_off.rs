@@ -69,6 +69,12 @@ impl CutOff {
         Read { mean: sigma * Lanes::new(mean), slope: Lanes::new(slope), variance: Lanes::new(variance) }
     }
 
+    /// How much more than their level dark pixels read on average, grey levels.
+    pub(super) fn excess(&self, level: f32, variance: f32) -> f64 {
+        let sigma = variance.sqrt().max(f32::MIN_POSITIVE);
+        f64::from(sigma * self.at(level / sigma).mean - level)
+    }
+
     fn at(&self, t: f32) -> Entry {
         let farthest = FARTHEST as f32;
         if t >= farthest {

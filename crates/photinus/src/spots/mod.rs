@@ -66,6 +66,7 @@ use crate::float::Float as _;
 use crate::optics::Measured;
 
 pub use detector::Detector;
+pub(crate) use measuring::{HIDDEN_LOG, HIDDEN_SIGMA};
 pub use rejection::Reason;
 pub use settings::{Brightness, Noise, Settings, SettingsError, Shape};
 

@@ -142,7 +142,7 @@ impl Fitter {
     /// Whether a part may be a point's light, as far as that can be told: where nobody measured the point spread, not what the border cuts, and
     /// nothing at all where points are of no shape that is known.
     pub(super) fn may_be_point(&self, part: &Part) -> bool {
-        let knows_shape = || !part.outline.cut && self.belief.noise().shape < SHAPELESS;
+        let knows_shape = || !part.outline.cut && self.unknown_shape() == 0.0;
         part.reason.is_none() && part.radius_px <= WIDEST_POINT_PX && (self.optics.is_some() || knows_shape())
     }
 
@@ -306,7 +306,8 @@ impl Fitter {
     /// How wrong any point spread is, as a share of the light in a pixel, where points are of no shape that is known; 0 where they are.
     pub(super) fn unknown_shape(&self) -> f32 {
         let shape = self.belief.noise().shape;
-        if self.optics.is_none() && shape >= SHAPELESS { shape } else { 0.0 }
+        let is_unknown = shape >= SHAPELESS || self.belief.is_too_sharp();
+        if self.optics.is_none() && is_unknown { shape.max(SHAPELESS) } else { 0.0 }
     }
 
     /// How wrong the point spread is, as a share of the light in a pixel.

@@ -248,10 +248,12 @@ impl Meter {
         let anywhere = Matrix2::from_diagonal_element(WITHIN_A_PIXEL * WITHIN_A_PIXEL);
         let balanced = centroid::balance(&self.patch, part.guess, window_px as f32, variance);
         let (centre, covariance) = balanced.unwrap_or((part.guess, anywhere));
+        let full_share = f64::from(outline.saturated_px) / f64::from(outline.area_px);
         let unclear = is_crowded || width_px < NARROW_PX;
         let missing_px2 = match (outline.cut, outline.saturated_px > 0) {
             (true, _) => part.radius_px * part.radius_px / 4.0,
-            (false, true) => blur_px2,
+            // Where all that is bright is full, no flank tells where in a pixel the light fell.
+            (false, true) => blur_px2 + full_share * full_share * WITHIN_A_PIXEL * WITHIN_A_PIXEL,
             (false, false) if unclear => SHAPELESS_PX * SHAPELESS_PX,
             (false, false) => 0.0,
         };

@@ -13,7 +13,7 @@ use super::cells::{ByCell, Cells};
 use crate::float::Float as _;
 use crate::optics::Vignetting;
 use crate::pose::LogLight;
-use crate::spots::{self, Brightness, Spot};
+use crate::spots::{self, Brightness, HIDDEN_LOG, HIDDEN_SIGMA, Spot};
 
 /// Error of a logarithm of light against others of the frame that all spots have: where in a pixel they fall, how much of the
 /// halo is in the window.
@@ -29,10 +29,6 @@ const NEGLIGIBLE_LOG: f64 = -12.0;
 /// Error where another spot makes the window narrow, at no distance, and how far away that is, px.
 const NARROWED: f64 = 0.25;
 const NARROWED_PX: f64 = 4.2;
-/// Logarithm of the light of a saturated spot over what its pixels show, where no point spread told it, and its error: several times as much
-/// may be hidden.
-const HIDDEN_LOG: f64 = 0.3;
-const HIDDEN_SIGMA: f64 = 0.6;
 
 /// Light of a spot that is found half of the time over the step that makes a pixel bright, px (rendered frames).
 const FAINTEST_PX: f64 = 2.5;

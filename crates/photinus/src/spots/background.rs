@@ -7,19 +7,26 @@
 //! darkest pixel. A marker raises the darkest pixel of no tile, so dense markers leave it alone; the sun covers less
 //! than half of 80 x 80 pixels, so it stays the bright thing there. What noise adds is measured from the spread that
 //! three quarters of all tiles exceed, each without its brightest columns, so that even a marker in every tile does not
-//! count as noise.
+//! count as noise. Where darkness at 0 cuts half of the noise off, that spread tells neither how wide it is nor from where: there the pixels
+//! themselves are asked, so that no more than about one of them is bright by noise.
 
 use alloc::vec::Vec;
 
 use wide::u8x16;
 
+use super::cut_off::CutOff;
 use super::settings::Brightness;
 use super::tiles::{Block, TILE_PX, Tiles};
+#[cfg(not(feature = "std"))]
+use crate::float::Float as _;
 use crate::frame::FrameView;
 
 /// The spread that a quarter of the tiles of Gaussian noise do not exceed, in its sigmas; the same where half of it is cut off at 0.
 const SIGMAS: f64 = 3.1;
 const SIGMAS_CUT_OFF: f64 = 1.25;
+/// How far above the darkest pixel of a tile its mean is, sigmas of Gaussian noise.
+const DARKEST_SIGMAS: f64 = 2.4;
+const ROOT_OF_TAU: f64 = 2.506_628_274_631_000_2;
 
 /// Thresholds of one frame, tile by tile, and the room to compute them in.
 #[derive(Debug, Default)]
@@ -32,11 +39,15 @@ pub(super) struct Background {
     step: u8,
     /// How far noise spreads in a tile; 0 where the threshold is a fixed one.
     spread: u8,
+    cut_off: CutOff,
+    /// Mean and noise of dark pixels, grey levels, where that is cut off at 0 and reaches the contrast.
+    cut_off_dark: Option<[f64; 2]>,
 }
 
 impl Background {
     /// Measures `frame` and sets the thresholds.
     pub(super) fn measure(&mut self, frame: &FrameView<'_>, brightness: Brightness) {
+        self.cut_off_dark = None;
         match brightness {
             Brightness::Threshold(level) => {
                 self.tiles.summarise::<false>(frame);
@@ -52,6 +63,7 @@ impl Background {
                 self.spread = self.spread_of_a_quarter();
                 self.step = self.step_above_noise(step);
                 self.level_of_surroundings();
+                self.rise_above_what_is_cut_off(frame);
             }
         }
     }
@@ -84,9 +96,17 @@ impl Background {
         )
     }
 
-    /// Noise of a dark pixel of the frame, grey levels, about; more rather than less where darkness is cut off at 0 (`level` 0).
-    pub(super) fn noise_dn(&self, level: u8) -> f64 {
-        f64::from(self.spread) / if level == 0 { SIGMAS_CUT_OFF } else { SIGMAS }
+    /// Mean of dark pixels of the frame where the surroundings have this level, and their noise, grey levels, about; more rather than less
+    /// where darkness is cut off at 0 (`level` 0).
+    pub(super) fn dark(&self, level: u8) -> [f64; 2] {
+        match self.cut_off_dark.filter(|_| level == 0) {
+            Some(dark) => dark,
+            None if level == 0 => [0.0, f64::from(self.spread) / SIGMAS_CUT_OFF],
+            None => {
+                let noise_dn = f64::from(self.spread) / SIGMAS;
+                [f64::from(level) + DARKEST_SIGMAS * noise_dn, noise_dn]
+            }
+        }
     }
 
     /// Tiles from the start of a row of them to the start of the next.
@@ -100,6 +120,35 @@ impl Background {
     fn step_above_noise(&self, step: u8) -> u8 {
         let spread = usize::from(self.spread);
         (usize::from(step) + spread * 3 / 4).max(spread * 5 / 2).min(255) as u8
+    }
+
+    /// Where tiles are dark down to 0 and noise may reach the contrast: a step that about one pixel of the frame's noise does.
+    fn rise_above_what_is_cut_off(&mut self, frame: &FrameView<'_>) {
+        let sigmas = sigmas_of_one_in(frame.width() * frame.height());
+        if sigmas * f64::from(self.spread) <= SIGMAS_CUT_OFF * f64::from(self.step) {
+            return;
+        }
+        let (mean, square) = self.dark_moments(frame);
+        let Some((level, variance)) = self.cut_off.darkness(mean, square) else { return };
+        let (level, sigma) = (f64::from(level), f64::from(variance).sqrt());
+        self.cut_off_dark = Some([level, sigma]);
+        self.step = self.step.max((level + sigmas * sigma).ceil() as u8);
+    }
+
+    /// Mean and mean square of the pixels that are not bright, in a row of each tile whose surroundings are at 0.
+    fn dark_moments(&self, frame: &FrameView<'_>) -> (f64, f64) {
+        let (mut count, mut sum, mut squares) = (0_u32, 0_u32, 0_u64);
+        for (row, levels) in self.level.as_flattened().chunks_exact(self.pitch()).enumerate() {
+            let pixels = frame.row((row * TILE_PX + TILE_PX / 2).min(frame.height() - 1));
+            for (tile, _) in pixels.chunks(TILE_PX).zip(levels).filter(|&(_, &level)| level == 0) {
+                for &pixel in tile.iter().filter(|&&pixel| pixel < self.step) {
+                    count += 1;
+                    sum += u32::from(pixel);
+                    squares += u64::from(u32::from(pixel) * u32::from(pixel));
+                }
+            }
+        }
+        (f64::from(sum) / f64::from(count), squares as f64 / f64::from(count))
     }
 
     /// The least spread that more than a quarter of the tiles do not exceed; 0 where none tells of noise.
@@ -155,6 +204,11 @@ impl Background {
             *level = beside.max(above).min(*level);
         }
     }
+}
+
+/// Sigmas that one of so many normal numbers exceeds, by the asymptote of their tail.
+fn sigmas_of_one_in(numbers: usize) -> f64 {
+    (0..3).fold(4.0, |sigmas, _| (2.0 * libm::log(numbers as f64 / (sigmas * ROOT_OF_TAU)).max(0.5)).sqrt())
 }
 
 /// Where the bits of a number are set, from the lowest.

@@ -6,7 +6,6 @@
 
 use alloc::vec::Vec;
 
-use super::ring::Sums;
 #[cfg(not(feature = "std"))]
 use crate::float::Float as _;
 use crate::lanes::{LANES, Lanes};
@@ -70,6 +69,12 @@ impl CutOff {
         Read { mean: sigma * Lanes::new(mean), slope: Lanes::new(slope), variance: Lanes::new(variance) }
     }
 
+    /// How much more than their level dark pixels read on average, grey levels.
+    pub(super) fn excess(&self, level: f32, variance: f32) -> f64 {
+        let sigma = variance.sqrt().max(f32::MIN_POSITIVE);
+        f64::from(sigma * self.at(level / sigma).mean - level)
+    }
+
     fn at(&self, t: f32) -> Entry {
         let farthest = FARTHEST as f32;
         if t >= farthest {
@@ -87,12 +92,10 @@ impl CutOff {
         }
     }
 
-    /// Level and variance of darkness of which pixels read these sums: those of the normal variable that has the same two moments once
-    /// it is cut off; `None` where nothing is cut off, or all is 0.
-    pub(super) fn darkness(&self, sums: &Sums) -> Option<(f32, f32)> {
-        let count = f64::from(sums.count);
-        let (mean, square) = (f64::from(sums.i) / count, f64::from(sums.ii) / count);
-        if mean <= 0.0 {
+    /// Level and variance of darkness of which pixels read this mean and this mean square: those of the normal variable that has the same two
+    /// moments once it is cut off; `None` where nothing is cut off, or all is 0.
+    pub(super) fn darkness(&self, mean: f64, square: f64) -> Option<(f32, f32)> {
+        if mean.is_nan() || mean <= 0.0 {
             return None;
         }
         let ratio = |entry: &Entry| f64::from(entry.mean) * f64::from(entry.mean) / f64::from(entry.square);
@@ -131,14 +134,11 @@ mod tests {
         let mut rng = Pcg64::new(11, 0);
         for (level, sigma) in [(0.0, 8.0), (0.0, 20.0), (6.0, 8.0), (-4.0, 8.0), (10.0, 5.0)] {
             let normal = Normal::<f64>::new(level, sigma).unwrap();
-            let mut sums = Sums::default();
-            for _ in 0..40_000 {
-                let value = normal.sample(&mut rng).round().clamp(0.0, 255.0) as i32;
-                sums.count += 1;
-                sums.i += value;
-                sums.ii += value * value;
-            }
-            let (found, variance) = cut_off.darkness(&sums).unwrap();
+            let values: Vec<f64> =
+                (0..40_000).map(|_| normal.sample(&mut rng).round().clamp(0.0, 255.0)).collect();
+            let moment =
+                |power: i32| values.iter().map(|value| value.powi(power)).sum::<f64>() / values.len() as f64;
+            let (found, variance) = cut_off.darkness(moment(1), moment(2)).unwrap();
             assert!((f64::from(found) - level).abs() < 0.04 * sigma, "{found} of {level}, {sigma}");
             assert!(
                 (f64::from(variance).sqrt() / sigma - 1.0).abs() < 0.03,

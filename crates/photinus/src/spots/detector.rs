@@ -83,7 +83,7 @@ impl Detector {
         self.background.measure(frame, self.settings.brightness);
         self.components.group(self.runs.find(frame, &self.background));
         self.outline_parts(frame, mask);
-        self.judge_outlines();
+        self.judge_outlines(frame.width() * frame.height());
         self.measure_parts(frame);
         odds::weigh(&mut self.detections, &self.clutter_odds, &self.settings.shape);
         self.detections.rejected.sort_unstable_by_key(|rejected| {
@@ -122,12 +122,16 @@ impl Detector {
         self.parts.sort_unstable_by_key(|part| part.first);
     }
 
-    fn judge_outlines(&mut self) {
+    fn judge_outlines(&mut self, pixels: usize) {
         let shape = &self.settings.shape;
         for part in &mut self.parts {
             part.reason = part.outline.reject(shape);
             if part.outline.is_streak(shape) && !self.meter.is_smeared() {
                 part.clutter_odds += odds::LONG_AND_THIN;
+            }
+            if part.outline.area_px == 1 && part.noise_dn > 0.0 {
+                let sigmas = (f64::from(part.outline.peak) - part.dark_dn) / part.noise_dn;
+                part.clutter_odds += odds::of_noise(sigmas, pixels);
             }
         }
         for i in 0..self.parts.len() {

@@ -102,6 +102,8 @@ pub(super) struct Fitted<const N: usize> {
     pub(super) chi2: f64,
     /// Pixels that counted, less the unknowns.
     pub(super) freedom: f64,
+    /// The spot's own light in pixels, squared over their variances.
+    own: f64,
     /// Twice the negative log-likelihood, but for a constant and the squared residuals.
     rest_of_cost: f64,
 }
@@ -110,6 +112,11 @@ impl<const N: usize> Fitted<N> {
     /// Whether it leaves no more than noise may, 3 sigmas of chi-square: two points with a dip between them leave more.
     pub(super) fn leaves_noise(&self) -> bool {
         self.chi2 < self.freedom + 3.0 * (2.0 * self.freedom).sqrt()
+    }
+
+    /// How far the spot is from the shape it was fitted with, as a share of its light, squared: by what it leaves more than noise does.
+    pub(super) fn strange_share2(&self) -> f64 {
+        (self.chi2 - self.freedom).max(0.0) / self.own
     }
 
     /// Whether it leaves about as much as noise.
@@ -202,6 +209,7 @@ fn fit_from<const N: usize>(
         let sums = sums(window, shape, &numbers, noise);
         let mut matrix = sums.matrix;
         let mut right = sums.right;
+        let own = matrix[(LIGHT, LIGHT)] * numbers[LIGHT] * numbers[LIGHT];
         let level = 1.0 / (LEVEL_KNOWN_DN * LEVEL_KNOWN_DN);
         matrix[(LEVEL, LEVEL)] += level;
         right[LEVEL] -= level * numbers[LEVEL];
@@ -258,12 +266,12 @@ fn fit_from<const N: usize>(
             let (mean, weight) = shape.believed(number);
             cost += weight * (numbers[number] - mean) * (numbers[number] - mean);
         }
-        last = Some((factor, sums.chi2, sums.pixels, step_px, cost));
+        last = Some((factor, sums.chi2, sums.pixels, own, step_px, cost));
         if is_done && step_number > 0 {
             break;
         }
     }
-    let (factor, chi2, pixels, step_px, cost) = last?;
+    let (factor, chi2, pixels, own, step_px, cost) = last?;
     let freedom = pixels - N as f64;
     let off_px = libm::hypot(numbers[U] - u, numbers[V] - v);
     let settled = step_px < SETTLED_PX && off_px < 0.5 * window.reach as f64 && numbers[LIGHT] > 0.0;
@@ -272,6 +280,7 @@ fn fit_from<const N: usize>(
         covariance: factor.inverse(),
         chi2,
         freedom,
+        own,
         rest_of_cost: cost,
     })
 }

@@ -47,7 +47,7 @@ pub(super) const NO_POINT: f64 = 25.0;
 /// Error of the centre of a saturated core of no pixels at all, px; it falls with the root of their number.
 pub(super) const SATURATION_BLUR_PX: f64 = 0.13;
 /// Error of light over that of the shape: of a spot that is seen whole, of one of which only the wings are.
-const WHOLE: f64 = 0.5;
+pub(super) const WHOLE: f64 = 0.5;
 const WINGS: f64 = 1.0;
 /// Error of a centre that a wrong shape makes, px; it grows with the square of the shape's error.
 const MISSHAPEN_PX: f64 = 1.0;
@@ -142,7 +142,7 @@ impl Fitter {
     /// Whether a part may be a point's light, as far as that can be told: where nobody measured the point spread, not what the border cuts, and
     /// nothing at all where points are of no shape that is known.
     pub(super) fn may_be_point(&self, part: &Part) -> bool {
-        let knows_shape = || !part.outline.cut && self.belief.noise().shape < SHAPELESS;
+        let knows_shape = || !part.outline.cut && self.unknown_shape() == 0.0;
         part.reason.is_none() && part.radius_px <= WIDEST_POINT_PX && (self.optics.is_some() || knows_shape())
     }
 
@@ -306,7 +306,15 @@ impl Fitter {
     /// How wrong any point spread is, as a share of the light in a pixel, where points are of no shape that is known; 0 where they are.
     pub(super) fn unknown_shape(&self) -> f32 {
         let shape = self.belief.noise().shape;
-        if self.optics.is_none() && shape >= SHAPELESS { shape } else { 0.0 }
+        let is_unknown = shape >= SHAPELESS || self.belief.is_too_sharp();
+        if self.optics.is_none() && is_unknown { shape.max(SHAPELESS) } else { 0.0 }
+    }
+
+    /// How wrong the point spread is, as a share of the light in a pixel.
+    pub(super) fn shape_error(&self) -> f64 {
+        self.optics
+            .as_ref()
+            .map_or_else(|| f64::from(self.belief.noise().shape), |optics| optics.spread.shape_error())
     }
 
     /// Noise of a pixel, the frame's own where that is more.
@@ -336,7 +344,7 @@ impl Fitter {
                 let beforehand = if is_known { hot_pixel::KNOWN } else { hot_pixel::BEFOREHAND };
                 beforehand * by_look(optics.spread.at(place))
             }
-            None if self.is_sharp() && self.belief.noise().shape < SHAPELESS => {
+            None if self.is_sharp() && self.unknown_shape() == 0.0 => {
                 self.lone_pixels.odds((u, v)).max(hot_pixel::BEFOREHAND * by_look(self.belief.spread()))
             }
             None => self.lone_pixels.odds((u, v)),
@@ -413,11 +421,17 @@ impl Fitter {
         };
         let off_px = libm::hypot(point.centre.u - part.guess.u, point.centre.v - part.guess.v);
         let is_off = !part.outline.cut && off_px > OFF_PX + OFF_RADII * part.radius_px;
-        if is_off { None } else { self.point(&point, fitted.chi2, fitted.freedom, noise) }
+        if is_off { None } else { self.point(&point, fitted, noise) }
     }
 
     /// A point as it is known, from what its fit left over; nothing of what is no point's light.
-    pub(super) fn point(&self, point: &Point, chi2: f64, freedom: f64, noise: PixelNoise) -> Option<Model> {
+    pub(super) fn point<const N: usize>(
+        &self,
+        point: &Point,
+        fitted: &Fitted<N>,
+        noise: PixelNoise,
+    ) -> Option<Model> {
+        let Fitted { chi2, freedom, .. } = *fitted;
         let misfit = chi2 / freedom;
         if misfit > NO_POINT {
             return None;
@@ -425,7 +439,7 @@ impl Fitter {
         let noisier = (chi2 + PIXELS_OF_ALL) / (freedom + PIXELS_OF_ALL);
         let noisier = if misfit > 2.0 { misfit } else { noisier };
         // How much of its light falls where it is seen is as unsure as the shape is, more so where only its wings are.
-        let shape = f64::from(noise.shape);
+        let shape = (f64::from(noise.shape * noise.shape) + fitted.strange_share2()).sqrt();
         let is_full = self.window.full_px > 0;
         let spills = if is_full { self.window.spilled_share() } else { 0.0 };
         let (spilt, spilt_light, seen) = match self.optics {

@@ -97,6 +97,11 @@ impl Belief {
         self.noise.noise
     }
 
+    /// Whether the core is as narrow as any that is tried: what is sharper than that is none of the shapes that are known.
+    pub(super) fn is_too_sharp(&self) -> bool {
+        self.numbers[0] <= LEAST[0]
+    }
+
     /// Width (sigma) of the core, px.
     pub(super) fn core_px(&self) -> f64 {
         libm::exp(self.numbers[0])

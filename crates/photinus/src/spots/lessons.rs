@@ -36,6 +36,8 @@ const TELLING_DN: f64 = 30.0;
 const TELLING_SIGMAS: f64 = 6.0;
 /// A pixel that reads no further below the level of full ones, sigmas of noise, may be full.
 const FULL_SIGMAS: f64 = 2.0;
+/// So many sigmas of noise are from the mean level of full pixels to the lowest.
+const LEVEL_SIGMAS: f64 = 2.5;
 
 impl Fitter {
     /// Whether frames still tell something of the camera.
@@ -51,14 +53,18 @@ impl Fitter {
         known.saturating_sub(lower_dn as u8)
     }
 
-    /// Begins anew.
-    pub(super) fn unlearn(&mut self) {
-        self.belief = Belief::new(self.noise, self.full_level.lowest());
+    /// Begins anew. Noise may have lowered what the converter cut off at its end: then it is not the well that was full.
+    pub(super) fn unlearn(&mut self, noise_dn: f64) {
+        let lowest = self.full_level.lowest();
+        let is_end = noise_dn >= f64::from(NOISY_DN)
+            && f64::from(lowest) + LEVEL_SIGMAS * noise_dn >= f64::from(u8::MAX);
+        self.belief = Belief::new(self.noise, if is_end { u8::MAX } else { lowest });
         self.frames = 0;
     }
 
     /// The same with what a frame tells.
     pub(super) fn full_from(&mut self, frame: &FrameView<'_>, parts: &[Part]) -> u8 {
+        let noise_dn = parts.first().map_or(0.0, |part| part.noise_dn);
         if self.optics.is_none() && self.frames < LEARNT_FRAMES {
             for part in parts.iter().filter(|part| part.reason.is_none() && part.outline.area_px > 2) {
                 self.full_level.add(frame, &part.outline.extent, part.outline.peak);
@@ -67,10 +73,10 @@ impl Fitter {
             self.full_level.settle();
             // What was learnt of spots whose tops were cut off unnoticed was wrong.
             if self.full_level.lowest().abs_diff(before) > SAME_LEVEL_DN {
-                self.unlearn();
+                self.unlearn(noise_dn);
             }
         }
-        self.lowest_full(parts.first().map_or(0.0, |part| part.noise_dn))
+        self.lowest_full(noise_dn)
     }
 
     /// Whether light fell on the window: no lens is so sharp that, wherever in a pixel a point's light falls, the eight pixels around the

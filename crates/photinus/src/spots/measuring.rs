@@ -10,9 +10,9 @@ use alloc::vec::Vec;
 use nalgebra::Matrix2;
 
 use super::Spot;
-use super::centroid;
+use super::centroid::{self, PixelVariance};
 use super::cut_off::CutOff;
-use super::fitting::{Fitter, Model, SATURATION_BLUR_PX, reach_px, surroundings};
+use super::fitting::{Fitter, Model, SATURATION_BLUR_PX, WHOLE, reach_px, surroundings};
 use super::hot_pixel::Sides;
 use super::lessons::LEAST_SPILT;
 use super::neighbourhood::Neighbourhood;
@@ -20,12 +20,15 @@ use super::odds;
 use super::part::Part;
 use super::patch::{Patch, Surroundings};
 use super::rejection::Reason;
+use super::ring::ring_pixels;
 use super::settings::{Brightness, Settings};
 use super::window::nearest_pixel;
 use super::wings::{self, Fit};
 use crate::camera::Pixel;
+#[cfg(not(feature = "std"))]
+use crate::float::Float as _;
 use crate::frame::FrameView;
-use crate::optics::Optics;
+use crate::optics::{Measured, Optics};
 
 /// Standard deviation of a place known to lie somewhere in one pixel, px.
 const WITHIN_A_PIXEL: f64 = 0.288_675_134_594_812_9;
@@ -40,6 +43,10 @@ const LARGEST_MISFIT: f64 = 5.0;
 /// Radius around the summit of a spot that the border cuts, or that stands in the light of another, in which its light tells, px.
 const SUMMIT_PX: f64 = 1.8;
 
+/// Logarithm of the light of a spot that is full over what its pixels show, where no point spread told it, and its error: several times as
+/// much may be hidden.
+pub(crate) const HIDDEN_LOG: f64 = 0.3;
+pub(crate) const HIDDEN_SIGMA: f64 = 0.6;
 /// The centre of a light of its own is no farther than this from its pixels, px.
 const FARTHEST_ASIDE_PX: f64 = 1.0;
 
@@ -95,7 +102,7 @@ impl Meter {
             return Err(Reason::Background);
         }
         self.patch.read(frame, nearest_pixel(part.guess), reach_px(window_px), &around);
-        let flux = self.patch.flux(part.guess, window_px as f32);
+        let (flux, flux_sigma) = self.flux(part, window_px, around);
         let model = self.fitter.fitted(index).copied();
         let (centre, covariance_px2) = match model {
             Some(model) => self.surer(part, room_px, window_px, around, &model),
@@ -117,12 +124,42 @@ impl Meter {
             peak: outline.peak,
             saturated_px: outline.saturated_px,
             flux,
-            light: model.map(|model| model.light),
+            light: match model {
+                Some(model) => Some(model.light),
+                None if !self.fitter.fits || outline.saturated_px > 0 => None,
+                None if outline.peak >= self.fitter.lowest_full(part.noise_dn) => Some(hidden(flux)),
+                // There is no less light than its brightest pixel shows.
+                None => Some(Measured { value: flux.max(height).max(1.0), sigma: flux_sigma }),
+            },
             background: f64::from(around.level.max(0.0)),
             marker_log_odds: 0.0,
             middle: part.middle,
             extent: outline.extent,
         })
+    }
+
+    /// Signal above the background in the window, and how far that may be from all light of its spot: by noise of its pixels and of the ring that
+    /// tells the background, and by what the edge of the window still holds. As much may lie beyond, or be another's. Of what the border
+    /// cuts, as much as shows may be hidden.
+    fn flux(&self, part: &Part, window_px: f64, around: Surroundings) -> (f64, f64) {
+        let within = |radius_px: f64| {
+            let flux = self.patch.flux(part.guess, radius_px as f32);
+            let pixels = core::f64::consts::PI * radius_px * radius_px;
+            if !around.is_cut_off {
+                return (flux, pixels);
+            }
+            // Dark pixels read more than their mean where noise is cut off.
+            let dark = (pixels - f64::from(part.outline.area_px)).max(0.0);
+            (flux - dark * self.fitter.window.cut_off.excess(around.level, around.variance), pixels)
+        };
+        let ((flux, pixels), (inner, _)) = (within(window_px), within(window_px - 1.0));
+        let PixelVariance { dark, shot, .. } = self.fitter.told_noise(around);
+        let [dark, shot] = [dark, shot].map(f64::from);
+        let signal = flux.max(0.0);
+        let noise = dark * (pixels + pixels * pixels / ring_pixels(reach_px(window_px))) + shot * signal;
+        let beyond = flux - inner;
+        let hidden = signal * if part.outline.cut { 1.0 } else { WHOLE * self.fitter.shape_error() };
+        (flux, (noise + beyond * beyond + hidden * hidden).sqrt())
     }
 
     /// Odds that the part measured last, in an image of `size` (width, height) px, is clutter by what is around it: a hot pixel, or a step on a slope of
@@ -211,15 +248,23 @@ impl Meter {
         let anywhere = Matrix2::from_diagonal_element(WITHIN_A_PIXEL * WITHIN_A_PIXEL);
         let balanced = centroid::balance(&self.patch, part.guess, window_px as f32, variance);
         let (centre, covariance) = balanced.unwrap_or((part.guess, anywhere));
+        let full_share = f64::from(outline.saturated_px) / f64::from(outline.area_px);
         let unclear = is_crowded || width_px < NARROW_PX;
         let missing_px2 = match (outline.cut, outline.saturated_px > 0) {
             (true, _) => part.radius_px * part.radius_px / 4.0,
-            (false, true) => blur_px2,
+            // Where all that is bright is full, no flank tells where in a pixel the light fell.
+            (false, true) => blur_px2 + full_share * full_share * WITHIN_A_PIXEL * WITHIN_A_PIXEL,
             (false, false) if unclear => SHAPELESS_PX * SHAPELESS_PX,
             (false, false) => 0.0,
         };
         (centre, covariance + Matrix2::from_diagonal_element(missing_px2))
     }
+}
+
+/// All light of what is full, where no point spread tells it.
+fn hidden(flux: f64) -> Measured {
+    let value = flux.max(1.0) * libm::exp(HIDDEN_LOG);
+    Measured { value, sigma: HIDDEN_SIGMA * value }
 }
 
 /// Variance of the centre of what is full in the middle, px^2.

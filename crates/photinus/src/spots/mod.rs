@@ -67,6 +67,7 @@ use crate::optics::Measured;
 
 pub use detector::Detector;
 pub(crate) use hot_pixel::BEFOREHAND as HOT_BEFOREHAND;
+pub(crate) use measuring::{HIDDEN_LOG, HIDDEN_SIGMA};
 pub use rejection::Reason;
 pub use settings::{Brightness, Noise, Settings, SettingsError, Shape};
 

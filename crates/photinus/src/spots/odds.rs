@@ -15,6 +15,12 @@ pub(super) const LONG_AND_THIN: f64 = 20.0;
 /// Odds for clutter of what is bright beside more light than its own, as glare and edges are.
 pub(super) const STEP: f64 = 20.0;
 
+/// Odds that a single bright pixel, so many sigmas above darkness in a frame of so many pixels, is noise: pixels of noise over markers, both per
+/// unit of the logarithm of height. Of markers there is about one.
+pub(super) fn of_noise(sigmas: f64, pixels: usize) -> f64 {
+    pixels as f64 * sigmas * libm::exp(-0.5 * sigmas * sigmas) / ROOT_OF_TAU
+}
+
 /// Markers are fewer by e per this much less of the logarithm of light (rendered flights of one to twelve neighbours).
 const MARKERS_FALL: f64 = 1.3;
 /// The logarithm of a reflection's light: how far below the ratio at which it is as likely a marker, and its spread (real glossy surfaces

@@ -94,7 +94,7 @@ impl Fitter {
             return None;
         }
         let model = |point: &Point| {
-            let model = self.point(point, fitted.chi2, fitted.freedom, noise)?;
+            let model = self.point(point, &fitted, noise)?;
             Some(Model { is_of_pair: true, ..model })
         };
         Some([model(&points[0])?, model(&points[1])?])

@@ -26,7 +26,8 @@ pub(super) struct Part {
     pub(super) bright: u8,
     /// The level of the surroundings as the tile has it.
     pub(super) level: u8,
-    /// Noise of a dark pixel of the frame, about, grey levels.
+    /// Mean of dark pixels around, and their noise, about, grey levels.
+    pub(super) dark_dn: f64,
     pub(super) noise_dn: f64,
     /// Why it is not a marker, once that is known.
     pub(super) reason: Option<Reason>,
@@ -96,6 +97,8 @@ pub(super) fn outline(
     let bright = background.threshold(u, v) as u8;
     let cut = touches_border(&extent, frame);
     let goes_on = ledge::goes_on(frame, background, runs, &extent, peak.midpoint(bright));
+    let level = background.level(u, v);
+    let [dark_dn, noise_dn] = background.dark(level);
     let outline = Outline { extent, area_px, peak, saturated_px, masked_px, cut, goes_on, moments };
     Part {
         first: (first.v, first.start),
@@ -104,8 +107,9 @@ pub(super) fn outline(
         guess: Pixel::new(light_u as f64 / light, light_v as f64 / light),
         middle: middle_pixel(runs, area_px),
         bright,
-        level: background.level(u, v),
-        noise_dn: background.noise_dn(background.level(u, v)),
+        level,
+        dark_dn,
+        noise_dn,
         reason: None,
         split_from: None,
         clutter_odds: 0.0,

@@ -182,7 +182,7 @@ pub(super) fn surroundings(
     let calm_dn = if is_noisy { CALM_DN.max(CALM_SIGMAS * noise_dn) } else { CALM_DN };
     let all = ring_sums(frame, (u, v), reach, dark.bright)?;
     if is_noisy
-        && let Some((level, variance)) = dark.cut_off.darkness(&all)
+        && let Some((level, variance)) = dark.cut_off.darkness(all.level(), all.square())
         && variance <= calm_dn * calm_dn
     {
         return Some(Surroundings { level, slope: [0.0; 2], variance, is_cut_off: true });
@@ -202,10 +202,15 @@ impl Sums {
         f64::from(self.i) / f64::from(self.count)
     }
 
+    /// The mean square.
+    fn square(&self) -> f64 {
+        f64::from(self.ii) / f64::from(self.count)
+    }
+
     /// The same level everywhere.
     fn even(&self) -> Surroundings {
         let level = self.level();
-        let variance = (f64::from(self.ii) / f64::from(self.count) - level * level).max(0.0);
+        let variance = (self.square() - level * level).max(0.0);
         Surroundings { level: level as f32, slope: [0.0; 2], variance: variance as f32, is_cut_off: false }
     }
 

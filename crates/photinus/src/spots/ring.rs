@@ -30,6 +30,12 @@ pub(super) struct Sums {
     pub(super) ii: i32,
 }
 
+/// Pixels of a whole ring around a window of this reach.
+pub(super) fn ring_pixels(reach: i32) -> f64 {
+    let side = |reach: i32| f64::from(2 * reach + 1);
+    side(reach + RING_PX) * side(reach + RING_PX) - side(reach) * side(reach)
+}
+
 /// The sums over the pixels that are less than `below` and lie in the frame, just outside the window of `reach` around (`u`, `v`).
 ///
 /// Beside the window only columns near the ends of a row count: eight at each end are looked at together, and what lies between them in the

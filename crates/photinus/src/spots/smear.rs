@@ -194,7 +194,7 @@ impl Fitter {
         let motion = Motion::of_all(&found[..moved]).filter(|_| is_told);
         // What was learnt of spots that moved unnoticed was wrong.
         if motion.is_some() && self.unknown_shape() > 0.0 {
-            self.unlearn();
+            self.unlearn(parts.first().map_or(0.0, |part| part.noise_dn));
         }
         motion
     }

@@ -28,7 +28,7 @@ pub struct SpotRecord {
     pub saturated_px: u32,
     /// Sum of its pixels above the background, grey levels; 0 where it is not known.
     pub flux: f64,
-    /// All of its light and the sigma of that, grey levels: with what full pixels hide; nothing where no point spread told it.
+    /// All of its light and the sigma of that, grey levels: with what full pixels hide, as far as it is told.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub light: Option<[f64; 2]>,
     /// Root of the mean variance of the centre over the two axes, px.

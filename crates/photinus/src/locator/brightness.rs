@@ -1,8 +1,8 @@
 //! How bright a spot is, and how sure that is.
 //!
-//! In: sightings with their spots. Out: the logarithm of the light of each. Where the camera's
-//! point spread told a spot's light, that is it, with its sigma. Where none did (spots of other detectors, the fixed threshold, what is no point),
-//! the light in the window stands for it: its variance was fitted to rendered frames of one camera (eight ranges, two airframes, 39 000
+//! In: sightings with their spots. Out: the logarithm of the light of each. Where the detector
+//! told a spot's light, that is it, with its sigma. Where it did not (spots of other detectors, the fixed threshold, what is full without a
+//! point spread), the light in the window stands for it: its variance was fitted to rendered frames of one camera (eight ranges, two airframes, 39 000
 //! spots): a part that all have, one that falls with the light, the light of others in the window, and what they cut off it.
 
 use core::cmp::Ordering;

@@ -86,7 +86,9 @@ pub struct Spot {
     pub saturated_px: u32,
     /// Signal above the background in the window around the spot, grey levels; a lower limit when saturated.
     pub flux: f64,
-    /// All of its light, grey levels, with what full pixels hide and what falls outside the window, where the point spread tells it.
+    /// All of its light, grey levels: with what full pixels hide and what falls outside the window where the point spread tells it, else as much
+    /// as the window shows, with a sigma that says how little that tells. `None` where nothing is fitted (fixed threshold), and of what is
+    /// full without a point spread.
     pub light: Option<Measured>,
     /// Level of the surroundings, grey levels.
     pub background: f64,

@@ -15,12 +15,6 @@ pub(super) const LONG_AND_THIN: f64 = 20.0;
 /// Odds for clutter of what is bright beside more light than its own, as glare and edges are.
 pub(super) const STEP: f64 = 20.0;
 
-/// Odds that a single bright pixel, so many sigmas above darkness in a frame of so many pixels, is noise: pixels of noise over markers, both per
-/// unit of the logarithm of height. Of markers there is about one.
-pub(super) fn of_noise(sigmas: f64, pixels: usize) -> f64 {
-    pixels as f64 * sigmas * libm::exp(-0.5 * sigmas * sigmas) / ROOT_OF_TAU
-}
-
 /// Markers are fewer by e per this much less of the logarithm of light (rendered flights of one to twelve neighbours).
 const MARKERS_FALL: f64 = 1.3;
 /// The logarithm of a reflection's light: how far below the ratio at which it is as likely a marker, and its spread (real glossy surfaces
@@ -35,6 +29,12 @@ const LEAST_SHARE: f64 = 1e-3;
 /// Odds for clutter where nothing speaks for it: looks alone never make a marker more certain.
 const LEAST_ODDS: f64 = 0.02;
 const ROOT_OF_TAU: f64 = 2.506_628_274_631_000_2;
+
+/// Odds that a single bright pixel, so many sigmas above darkness in a frame of so many pixels, is noise: pixels of noise over markers, both per
+/// unit of the logarithm of height. Of markers there is about one.
+pub(super) fn of_noise(sigmas: f64, pixels: usize) -> f64 {
+    pixels as f64 * sigmas * libm::exp(-0.5 * sigmas * sigmas) / ROOT_OF_TAU
+}
 
 /// Weighs the odds of all spots; those that clutter of other kinds has stand in `clutter_odds`, spot by spot.
 pub(super) fn weigh(detections: &mut Detections, clutter_odds: &[f64], shape: &Shape) {

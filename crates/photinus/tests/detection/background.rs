@@ -3,7 +3,7 @@
 use photinus::camera::Pixel;
 use rand_pcg::Pcg64;
 
-use crate::scene::{RULES, Scene, spot_at};
+use crate::scene::{RULES, Scene, distance_px, spot_at};
 
 const WIDTH: usize = 376;
 const HEIGHT: usize = 240;
@@ -28,8 +28,8 @@ fn an_even_frame_has_no_spots() {
 #[test]
 fn noise_gives_no_spots() {
     let mut rng = Pcg64::new(21, 1);
-    for sigma in [1.0, 2.0, 3.0, 4.0, 6.0, 8.0] {
-        for level in [5.0, 40.0, 128.0] {
+    for sigma in [1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 20.0] {
+        for level in [0.0, 5.0, 12.0, 40.0, 128.0] {
             let scene = Scene::flat(2 * WIDTH, 2 * HEIGHT, level);
             let frames = 8;
             let spots: usize =
@@ -39,6 +39,62 @@ fn noise_gives_no_spots() {
             let most = if sigma <= 3.0 { 0 } else { 3 * frames };
             assert!(spots <= most, "noise {sigma} at level {level}: {spots}");
         }
+    }
+}
+
+#[test]
+fn what_noise_lifts_over_the_threshold_is_more_likely_noise_than_a_marker() {
+    let mut rng = Pcg64::new(23, 1);
+    let (mut spots, mut likely) = (0, 0);
+    for _ in 0..40 {
+        let scene = Scene::flat(2 * WIDTH, 2 * HEIGHT, 0.0);
+        for spot in scene.detect(&scene.noisy(12.0, &mut rng), RULES[1]).spots {
+            spots += 1;
+            likely += usize::from(spot.probability() > 0.5);
+        }
+    }
+    println!("{spots} spots of noise in 40 frames, {likely} more likely a marker");
+    assert!(spots > 0 && 2 * likely < spots);
+}
+
+#[test]
+fn light_in_darkness_that_cuts_noise_off_is_as_sure_as_it_says() {
+    let mut rng = Pcg64::new(24, 1);
+    for (sigma, heights) in [(8.0, [70.0, 130.0]), (15.0, [120.0, 200.0])] {
+        let (mut squares, mut count) = (0.0, 0);
+        for number in 0..60 {
+            let mut scene = Scene::flat(200, 200, 1.0);
+            let place =
+                Pixel::new(100.0 + 0.37 * f64::from(number % 3), 100.0 + 0.21 * f64::from(number % 4));
+            let height = heights[number as usize % 2];
+            scene.marker(place, 0.6, height);
+            let light = height * std::f64::consts::TAU * 0.6 * 0.6;
+            let found = scene.detect(&scene.noisy(sigma, &mut rng), RULES[1]);
+            for spot in found.spots.iter().filter(|spot| distance_px(spot.centre, place) < 2.0) {
+                let told = spot.light.expect("what is not full has a light");
+                squares += ((told.value - light) / told.sigma).powi(2);
+                count += 1;
+            }
+        }
+        let ratio = squares / f64::from(count);
+        println!("noise {sigma}: {ratio:.2} of the claim, {count} spots");
+        assert!(count > 20 && (0.2..2.0).contains(&ratio), "noise {sigma}: {ratio}, {count}");
+    }
+}
+
+#[test]
+fn a_flat_top_that_is_not_known_to_be_full_makes_its_light_unsure() {
+    for (width_px, height) in [(0.7, 900.0), (1.0, 2000.0), (1.3, 600.0)] {
+        let mut scene = Scene::flat(100, 100, 5.0);
+        scene.marker(Pixel::new(50.3, 50.1), width_px, height);
+        let scene = scene.clipped(230.0);
+        let found = scene.detect(&scene.clean(), RULES[1]);
+        let told = spot_at(&found, Pixel::new(50.0, 50.0), 2.0).light.expect("a light");
+        let light = height * std::f64::consts::TAU * width_px * width_px;
+        // One frame tells of no level at which pixels are full: the error is five sigmas, not hundreds.
+        let off = libm::log(told.value / light) * told.value / told.sigma;
+        println!("{width_px} px, {height}: {told:?} of {light:.0}, {off:.1} sigmas");
+        assert!(off.abs() < 10.0, "{width_px} px, {height}: {told:?} of {light}");
     }
 }
 

@@ -6,7 +6,7 @@ use rand_pcg::Pcg64;
 
 use crate::flight::fly_well;
 use crate::scene::{Airframe, HEXAROTOR, RATE_HZ, SIGNALLED, between, blink, head, parse, target};
-use crate::score::{DISHONEST, nees, off_m, pair};
+use crate::score::{self, DISHONEST, nees, pair};
 
 /// Frames count after a vehicle's first second, s.
 const FROM_S: f64 = 1.0;
@@ -127,7 +127,7 @@ fn fly(seed: u64, airframe: Airframe, words: &[usize]) -> Rows {
             row.tracked += 1;
             row.predicted += usize::from(track.is_predicted);
             row.square_m2 += off_m * off_m;
-            row.squares += nees(&off_m(track, there), &track.position_covariance_m2);
+            row.squares += nees(&score::off_m(track, there), &track.position_covariance_m2);
         }
     });
     rows

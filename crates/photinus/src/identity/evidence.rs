@@ -94,18 +94,10 @@ impl Evidence {
     }
 }
 
-/// A share between none and all stands for those around it, up to the next ones: so far are these from it, one standard deviation of a triangle.
-const BETWEEN: f64 = 0.102;
-
 /// By share of the exposure the density, per unit of light, of a spot of this light.
 pub(crate) fn density_of_light(light: f64, sigma: f64, level: &Level) -> [f64; SHARES] {
     AT.map(|share| {
-        let (mut off, mut deviation) = level.standing(light, sigma, share);
-        if 0.0 < share && share < 1.0 {
-            let between = BETWEEN * level.full;
-            let wide = libm::sqrt(deviation * deviation + between * between);
-            (off, deviation) = (off * deviation / wide, wide);
-        }
+        let (off, deviation) = level.standing(light, sigma, share);
         let stray = level.surprise / (2.0 * level.full);
         if off.abs() > NEVER {
             return stray;

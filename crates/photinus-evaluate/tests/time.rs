@@ -53,3 +53,14 @@ fn who_blinks_is_found_in_every_frame() {
     }
     assert!(six[1].frames > 10, "frames with one LED");
 }
+
+/// Exposures of these two flights hold an edge of what LEDs blink in all frames. One had no track for most of the time; lights that were heard wrong began the other's 3.8 m too far,
+/// and surely so.
+#[test]
+fn who_is_exposed_across_the_edges_of_its_bits_is_found() {
+    for seed in [42, 56] {
+        let all = dark::whole(&dark::of_seeds(seed..=seed, SIGNALLED, &[0, 1, 2, 3, 4, 5]));
+        assert_eq!(all.tracked, all.frames, "{seed}");
+        assert!(all.nees() < 4.0 && all.rms_m() < 0.1, "{seed}: {} {}", all.nees(), all.rms_m());
+    }
+}

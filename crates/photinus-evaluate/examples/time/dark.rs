@@ -6,7 +6,7 @@ use rand_pcg::Pcg64;
 
 use crate::flight::fly_well;
 use crate::scene::{Airframe, HEXAROTOR, RATE_HZ, SIGNALLED, between, blink, head, parse, target};
-use crate::score::pair;
+use crate::score::{self, DISHONEST, nees, pair};
 
 /// Frames count after a vehicle's first second, s.
 const FROM_S: f64 = 1.0;
@@ -20,6 +20,7 @@ pub(crate) struct Row {
     pub(crate) tracked: usize,
     pub(crate) predicted: usize,
     square_m2: f64,
+    squares: f64,
 }
 
 /// By how many LEDs shine.
@@ -55,7 +56,18 @@ impl Row {
             tracked: self.tracked + other.tracked,
             predicted: self.predicted + other.predicted,
             square_m2: self.square_m2 + other.square_m2,
+            squares: self.squares + other.squares,
         }
+    }
+
+    fn of_words(&self, seed: &str) -> String {
+        let Self { frames, tracked, .. } = self;
+        format!("| {seed} | {frames} | {tracked} | {:.3} | {:.2} |", self.rms_m(), self.nees())
+    }
+
+    /// Squared errors of the position over its covariance.
+    pub(crate) fn nees(&self) -> f64 {
+        self.squares / self.tracked as f64
     }
 
     pub(crate) fn rms_m(&self) -> f64 {
@@ -115,7 +127,22 @@ fn fly(seed: u64, airframe: Airframe, words: &[usize]) -> Rows {
             row.tracked += 1;
             row.predicted += usize::from(track.is_predicted);
             row.square_m2 += off_m * off_m;
+            row.squares += nees(&score::off_m(track, there), &track.position_covariance_m2);
         }
     });
     rows
+}
+
+/// Flights with a word for each arm: those that have no track in some frame, or are more sure than they may be, and all together.
+pub(crate) fn words(seeds: RangeInclusive<u64>) {
+    println!("| seed | frames | with a track | distance, rms m | NEES |\n|---|---|---|---|---|");
+    let mut all = Row::default();
+    for seed in seeds {
+        let own = whole(&fly(seed, SIGNALLED, &[0, 1, 2, 3, 4, 5]));
+        all = all.with(&own);
+        if own.tracked < own.frames || own.nees() > DISHONEST {
+            println!("{}", own.of_words(&seed.to_string()));
+        }
+    }
+    println!("{}", all.of_words("all"));
 }

@@ -4,6 +4,7 @@
 //! cargo run --release -p photinus-evaluate --example time -- faults    [first seed [last seed [fault]]]
 //! cargo run --release -p photinus-evaluate --example time -- crossings [first seed [last seed]]
 //! cargo run --release -p photinus-evaluate --example time -- dark      [first seed [last seed]]
+//! cargo run --release -p photinus-evaluate --example time -- words     [first seed [last seed]]
 //! ```
 //!
 //! docs/tracking.md has the tables.
@@ -30,6 +31,7 @@ fn main() {
     let seeds = match which.as_str() {
         "faults" => [313, 324],
         "crossings" => [401, 500],
+        "words" => [61, 100],
         _ => [501, 520],
     };
     let first: u64 = number(2).unwrap_or(seeds[0]);
@@ -38,7 +40,8 @@ fn main() {
         "faults" => faults(first, last, text(4).as_deref()),
         "crossings" => crossings::table(first..=last),
         "dark" => dark::table(first..=last),
-        _ => println!("faults, crossings or dark"),
+        "words" => dark::words(first..=last),
+        _ => println!("faults, crossings, dark or words"),
     }
 }
 

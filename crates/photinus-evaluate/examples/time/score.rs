@@ -17,7 +17,7 @@ pub(crate) const SURE: f64 = 0.9;
 /// A squared error of so many variances is five sigma and more.
 const SURELY_WRONG: f64 = 25.0;
 /// A vehicle whose squared errors are on average so many variances is more sure than it may be: 3 is right.
-const DISHONEST: f64 = 4.0;
+pub(crate) const DISHONEST: f64 = 4.0;
 
 /// What was counted.
 #[derive(Clone, Debug, Default)]
@@ -174,7 +174,7 @@ impl Score {
     }
 }
 
-fn off_m(track: &Track, there: &TruthNeighbour) -> Vector3<f64> {
+pub(crate) fn off_m(track: &Track, there: &TruthNeighbour) -> Vector3<f64> {
     track.position_m - Vector3::from(there.position_m)
 }
 
@@ -202,7 +202,7 @@ pub(crate) fn pair<'a>(
 }
 
 /// The squared error in units of its covariance.
-fn nees(error: &Vector3<f64>, covariance: &Matrix3<f64>) -> f64 {
+pub(crate) fn nees(error: &Vector3<f64>, covariance: &Matrix3<f64>) -> f64 {
     covariance.cholesky().map_or(f64::INFINITY, |factor| error.dot(&factor.solve(error)))
 }
 

@@ -32,6 +32,8 @@ pub struct MarkerTrack {
     pub sighting_probability: f64,
     /// The probability that it shone during the whole exposure.
     pub lit: f64,
+    /// The share of the exposures in which it shines that hold an edge of its signal.
+    pub partly: f64,
     /// The probability that it exists.
     pub existence: f64,
     /// Who it is; `None` where there is no code book.
@@ -64,6 +66,7 @@ impl MarkerTrack {
             sighting: sighting.filter(|_| sighting_probability > 0.5),
             sighting_probability,
             lit: track.told.lit,
+            partly: track.partly,
             existence: track.presence.exists(),
             identity: identity.map(|(decoder, listener)| decoder.identity(listener)),
         })

@@ -14,10 +14,14 @@ const FAINTEST_SPREAD: f64 = 0.23;
 const LIGHT_RANGE: f64 = 6.0;
 /// How much more likely a spot without light is of an LED that shines than of clutter, by the share of the exposure.
 const WITHOUT_LIGHT: [f64; SHARES] = [0.01, 0.26, 0.51, 0.76, 1.0];
-/// How likely the exposure holds an edge of the signal, for each of the shares between: short exposures hold one in 30 frames.
-const PARTLY: f64 = 0.01;
-/// How likely it does not.
-const WHOLE: f64 = 1.0 - PARTLY * (SHARES - 2) as f64;
+/// How likely the exposure holds an edge of the signal, beforehand: short exposures hold one in 30 frames, ...
+const PARTLY: f64 = 0.03;
+/// ... and where they do in this frame, they do in the next: LEDs and camera have nearly one rate. The mean of so many frames in which the marker shines tells,
+const PARTLY_FRAMES: f64 = 16.0;
+/// and is never surer than this.
+const MOST_PARTLY: f64 = 0.5;
+/// Shares between none and all.
+const PARTS: f64 = (SHARES - 2) as f64;
 /// A track is a marker from this probability on.
 const CONFIRMED: f64 = 0.99;
 /// It gets a listener from this probability on.
@@ -44,6 +48,8 @@ pub(super) struct Track {
     pub(super) resolution_rad: f64,
     /// It ends when its existence is less probable.
     least: f64,
+    /// How likely an exposure in which it shines holds an edge of its signal.
+    pub(super) partly: f64,
     pub(super) frame: Expected,
     pub(super) told: Told,
 }
@@ -98,6 +104,7 @@ impl Track {
             rad_per_px: sighting.rad_per_px,
             resolution_rad: sighting.resolution_rad,
             least: LEAST.min(LEAST_OF_FIRST * probability),
+            partly: PARTLY,
             frame: Expected { lit, absence: [1.0; SHARES], melted: (0.0, 0.0) },
             told: Told { sighting: Some((index, probability)), lit },
         }
@@ -160,8 +167,8 @@ impl Track {
     /// How much more likely a frame is with this sighting than with none.
     pub(super) fn weight(&self, candidate: &Candidate) -> f64 {
         let in_sight = self.presence.in_sight();
-        let none = 1.0 - in_sight + in_sight * over_light(self.frame.lit, &self.frame.absence);
-        in_sight * candidate.place * over_light(self.frame.lit, &candidate.light) / none
+        let none = 1.0 - in_sight + in_sight * self.over_light(&self.frame.absence);
+        in_sight * candidate.place * self.over_light(&candidate.light) / none
     }
 
     /// Learns from the sightings near it, each with the probability that no other track has it. Returns the evidence for its code.
@@ -178,12 +185,12 @@ impl Track {
                 *sum += place * light;
             }
         }
-        let lit = self.frame.lit;
-        let (all, shows) = (over_light(lit, &by_share), self.presence.shows());
+        let (lit, before) = (self.frame.lit, self.partly);
+        let (all, shows) = (self.over_light(&by_share), self.presence.shows());
         // if it exists
         let share = shows / (1.0 + shows * (all - 1.0));
         let own = candidates.iter().enumerate().map(|(pair, candidate)| {
-            (share * candidate.place * free(pair) * over_light(lit, &candidate.light), candidate)
+            (share * candidate.place * free(pair) * over_light(before, lit, &candidate.light), candidate)
         });
         self.told = Told { sighting: None, lit };
         for (probability, candidate) in own.clone() {
@@ -198,9 +205,19 @@ impl Track {
         let (melted, _) = self.frame.melted;
         let mean = by_share.iter().sum::<f64>() / SHARES as f64;
         let evidence = by_share.map(|one| shows * (one + melted * (mean - one)) + 1.0 - shows);
-        self.told.lit = WHOLE * lit * evidence[SHARES - 1] / over_light(lit, &evidence);
+        let on = (1.0 - self.partly) * lit * evidence[SHARES - 1];
+        let [_, partly @ .., _] = evidence;
+        let partly = self.partly * partly.iter().sum::<f64>() / PARTS;
+        self.told.lit = on / self.over_light(&evidence);
+        let shines = (on + partly) / self.over_light(&evidence);
+        self.partly += (partly / (on + partly).max(f64::MIN_POSITIVE) - self.partly) * shines / PARTLY_FRAMES;
+        self.partly = self.partly.clamp(PARTLY, MOST_PARTLY);
         self.see_light(sightings, melted);
         Evidence::of_likelihoods(evidence)
+    }
+
+    fn over_light(&self, by_share: &[f64; SHARES]) -> f64 {
+        over_light(self.partly, self.frame.lit, by_share)
     }
 
     /// Learns how much light it shows from the sighting that it most probably is.
@@ -213,14 +230,17 @@ impl Track {
         }
         let Some((light, sigma)) = seen.light else { return };
         match &mut self.level {
-            Some(level) => level.see(light, sigma, probability * self.told.lit * (1.0 - melted)),
+            Some(level) => {
+                let lit = if level.is_exceeded(light, sigma) { 1.0 } else { self.told.lit };
+                level.see(light, sigma, probability * lit * (1.0 - melted));
+            }
             None => self.level = Level::of_first(light),
         }
     }
 }
 
 /// The mean over shining not at all, all the time, with probability `lit` unless it is for a part, and for a part.
-fn over_light(lit: f64, by_share: &[f64; SHARES]) -> f64 {
-    let [off, partly @ .., on] = by_share;
-    WHOLE * (lit * on + (1.0 - lit) * off) + PARTLY * partly.iter().sum::<f64>()
+fn over_light(partly: f64, lit: f64, by_share: &[f64; SHARES]) -> f64 {
+    let [off, parts @ .., on] = by_share;
+    (1.0 - partly) * (lit * on + (1.0 - lit) * off) + partly * parts.iter().sum::<f64>() / PARTS
 }

@@ -57,16 +57,27 @@ impl Level {
         self.spread = libm::sqrt(self.spread * self.spread + change * change).min(Self::AT_FIRST);
     }
 
+    /// Whether a light is brighter than all that the LED is believed to show: then it shone all the time, if it is the LED's.
+    pub(crate) fn is_exceeded(&self, light: f64, sigma: f64) -> bool {
+        self.standing(light, sigma, 1.0).0 > Self::TOO_BRIGHT
+    }
+
     /// A spot with this light and standard deviation was seen, and the LED shone all the time with probability `lit`.
     pub fn see(&mut self, light: f64, sigma: f64, lit: f64) {
         if !(light.is_finite() && light > 0.0 && sigma.is_finite() && sigma > 0.0) {
             return;
         }
-        if self.standing(light, sigma, 1.0).0 > Self::TOO_BRIGHT {
+        let (off, deviation) = self.standing(light, sigma, 1.0);
+        let mut lit = lit.clamp(0.0, 1.0);
+        if off > Self::TOO_BRIGHT {
             self.spread = self.spread.max(light / self.full - 1.0).min(Self::AT_FIRST);
+        } else {
+            // What has nothing to do with the LED tells nothing of it.
+            let own = libm::exp(-0.5 * off * off) / (deviation * 2.506_628_274_631_000_7);
+            lit *= own / (own + self.surprise / (2.0 * self.full));
         }
         let (own, noise) = (self.spread * self.spread * self.full * self.full, sigma * sigma);
-        let gain = lit.clamp(0.0, 1.0) * own / (own + noise);
+        let gain = lit * own / (own + noise);
         self.full += gain * (light - self.full);
         self.spread = (libm::sqrt((1.0 - gain) * own) / self.full).clamp(Self::LEAST_SPREAD, Self::AT_FIRST);
     }
@@ -79,5 +90,35 @@ impl Level {
         let noise = if light > 0.0 { sigma * (mean / light).min(1.0) } else { sigma };
         let deviation = libm::sqrt(noise * noise + own * own);
         ((light - mean) / deviation, deviation)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every other exposure has half of the light, as where each holds an edge: the level stays, and is not the less sure.
+    #[test]
+    fn a_light_that_is_not_the_leds_does_not_teach_its_level() {
+        let mut level = Level::known(100.0, 0.05).unwrap();
+        for _ in 0..30 {
+            for light in [100.0, 50.0] {
+                level.wait(1.0 / 60.0);
+                level.see(light, 3.0, 0.7);
+            }
+        }
+        assert!((level.full() - 100.0).abs() < 3.0 && level.spread() < 0.06, "{level:?}");
+    }
+
+    /// Who turns away steadily is followed.
+    #[test]
+    fn an_led_that_fades_is_followed() {
+        let mut level = Level::known(100.0, 0.05).unwrap();
+        let light = |frame: i32| 100.0 * libm::exp(-0.4 * f64::from(frame) / 60.0);
+        for frame in 0..120 {
+            level.wait(1.0 / 60.0);
+            level.see(light(frame), 3.0, 1.0);
+        }
+        assert!((level.full() / light(119) - 1.0).abs() < 0.05, "{level:?}");
     }
 }

@@ -363,7 +363,10 @@ impl Parts {
                 signals[sighting] =
                     Some(Signalled { signal: entry.signal, probability, vehicle: Some(entry.vehicle) });
             }
-            strangers[sighting] = probability > SURE_STRANGER && directory.is_stranger(identity.who);
+            // Who shines for a part of many exposures is heard badly, and its light there tells no pose.
+            let is_whole = 1.0 - marker.partly;
+            strangers[sighting] =
+                probability * is_whole > SURE_STRANGER && directory.is_stranger(identity.who);
         }
         let called = calling.listen(markers, directory, glance.gravity, before);
         (Appearing { called, strangers }, signals)

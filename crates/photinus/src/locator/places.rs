@@ -12,7 +12,7 @@ use crate::spots::HOT_BEFOREHAND;
 
 /// Clutter that blinks one of our signals is so rare among clutter, as a logarithm: one in a hundred.
 const BLINKS_BY_CHANCE: f64 = 4.6;
-/// No reflection has larger odds for clutter by its look: a single pixel that has is a hot one.
+/// No reflection has larger odds for clutter by its look: a single pixel that has is a hot one, or noise.
 const REFLECTION_ODDS: f64 = 8.0;
 /// The light that clutter has is counted in steps of its logarithm.
 pub(super) const LIGHT_STEP: f64 = 0.5;
@@ -61,14 +61,15 @@ impl Places {
             let suns = sun.map(|sun| sun.per_sr(&sighting.bearing));
             let of_light = if with_light && sighting.log_light.is_some() { LIGHT_RANGE } else { 1.0 };
             let beforehand = BEFOREHAND / (frame_px * rad2_per_px2);
+            let hot_odds = hot_odds(sighting);
             Place {
                 cell: cells.of_observation(sighting),
                 light_step: sighting.log_light.map(|light| light_step(light.value)),
                 rad2_per_px2,
                 comes_and_goes: (1.0 - fixtures.share(observation)) * beforehand
                     / (beforehand + suns.unwrap_or(0.0)),
-                hot_odds: hot_odds(sighting),
-                hot_density: hot_odds(sighting) / (HOT_BEFOREHAND * frame_px * rad2_per_px2 * of_light),
+                hot_odds,
+                hot_density: hot_odds / (HOT_BEFOREHAND * frame_px * rad2_per_px2 * of_light),
                 sun: suns.map(|per_sr| per_sr / of_light),
                 fixture: fixtures.density(sighting, observation) / rad2_per_px2,
                 fixture_log_odds: fixtures.log_odds(observation).max(0.0),
@@ -118,8 +119,10 @@ fn rad2_per_px2(sighting: &Sighting) -> f64 {
 
 /// Odds that an observation is a hot pixel, if it is clutter.
 fn hot_odds(sighting: &Sighting) -> f64 {
-    let of_look = libm::exp(-sighting.spot.marker_log_odds) - REFLECTION_ODDS;
-    if sighting.spot.area_px == 1 { of_look.max(0.0) } else { 0.0 }
+    if sighting.spot.area_px != 1 {
+        return 0.0;
+    }
+    (libm::exp(-sighting.spot.marker_log_odds) - REFLECTION_ODDS).max(0.0)
 }
 
 fn log_of_look(sighting: &Sighting) -> f64 {

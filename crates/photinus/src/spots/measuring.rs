@@ -262,9 +262,10 @@ impl Meter {
 }
 
 /// Variance of where in a pixel the light fell of what is full in the middle, px^2: where all that is bright is full, no flank tells it; each
-/// pixel of a flank does.
+/// pixel of a flank says on which side, and halves what is left.
 fn flankless_px2(outline: &Outline) -> f64 {
-    let sigma_px = WITHIN_A_PIXEL / f64::from(1 + outline.area_px - outline.saturated_px);
+    let flank = outline.area_px - outline.saturated_px;
+    let sigma_px = libm::scalbn(WITHIN_A_PIXEL, -(flank.min(100) as i32));
     sigma_px * sigma_px
 }
 

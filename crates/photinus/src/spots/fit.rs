@@ -116,7 +116,7 @@ impl<const N: usize> Fitted<N> {
 
     /// How far the spot is from the shape it was fitted with, as a share of its light, squared: by what it leaves more than noise does.
     pub(super) fn strange_share2(&self) -> f64 {
-        (self.chi2 - self.freedom).max(0.0) / self.own
+        (self.chi2 - self.freedom).max(0.0) / self.own.max(1.0)
     }
 
     /// Whether it leaves about as much as noise.

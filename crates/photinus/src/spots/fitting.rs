@@ -439,7 +439,9 @@ impl Fitter {
         let noisier = (chi2 + PIXELS_OF_ALL) / (freedom + PIXELS_OF_ALL);
         let noisier = if misfit > 2.0 { misfit } else { noisier };
         // How much of its light falls where it is seen is as unsure as the shape is, more so where only its wings are.
-        let shape = (f64::from(noise.shape * noise.shape) + fitted.strange_share2()).sqrt();
+        let shape = f64::from(noise.shape);
+        // What it leaves itself is of pixels all around, seen whole; that its place is less sure the misfit says.
+        let strange2 = (WHOLE * WHOLE) * fitted.strange_share2();
         let is_full = self.window.full_px > 0;
         let spills = if is_full { self.window.spilled_share() } else { 0.0 };
         let (spilt, spilt_light, seen) = match self.optics {
@@ -456,7 +458,11 @@ impl Fitter {
             covariance_px2: point.covariance_px2 * noisier + Matrix2::from_diagonal_element(blur_px2),
             light: Measured {
                 value: seen * point.light,
-                sigma: seen * (point.light_variance * noisier + unsure * unsure).sqrt(),
+                sigma: seen
+                    * (point.light_variance * noisier
+                        + unsure * unsure
+                        + strange2 * point.light * point.light)
+                        .sqrt(),
             },
             all_light: point.light,
             moved_px: [0.0; 2],

@@ -19,7 +19,7 @@ use super::neighbourhood::Neighbourhood;
 use super::odds;
 use super::part::Part;
 use super::patch::{Patch, Surroundings};
-use super::rejection::Reason;
+use super::rejection::{Outline, Reason};
 use super::ring::ring_pixels;
 use super::settings::{Brightness, Settings};
 use super::window::nearest_pixel;
@@ -31,7 +31,9 @@ use crate::frame::FrameView;
 use crate::optics::{Measured, Optics};
 
 /// Standard deviation of a place known to lie somewhere in one pixel, px.
-const WITHIN_A_PIXEL: f64 = 0.288_675_134_594_812_9;
+const WITHIN_A_PIXEL: f64 = UNIFORM;
+/// That of what may be anything from 0 to 1.
+const UNIFORM: f64 = 0.288_675_134_594_812_9;
 /// Error of the centre of what has no shape that is known, and is so narrow that the grid of pixels pulls its window, or
 /// whose window is cut short by another spot, px.
 const SHAPELESS_PX: f64 = 0.07;
@@ -139,8 +141,8 @@ impl Meter {
     }
 
     /// Signal above the background in the window, and how far that may be from all light of its spot: by noise of its pixels and of the ring that
-    /// tells the background, and by what the edge of the window still holds. As much may lie beyond, or be another's. Of what the border
-    /// cuts, as much as shows may be hidden.
+    /// tells the background, and by what the edge of the window still holds: up to as much may lie beyond, or be another's. Of what the
+    /// border cuts, as much as shows may be hidden.
     fn flux(&self, part: &Part, window_px: f64, around: Surroundings) -> (f64, f64) {
         let within = |radius_px: f64| {
             let flux = self.patch.flux(part.guess, radius_px as f32);
@@ -157,7 +159,7 @@ impl Meter {
         let [dark, shot] = [dark, shot].map(f64::from);
         let signal = flux.max(0.0);
         let noise = dark * (pixels + pixels * pixels / ring_pixels(reach_px(window_px))) + shot * signal;
-        let beyond = flux - inner;
+        let beyond = UNIFORM * (flux - inner);
         let hidden = signal * if part.outline.cut { 1.0 } else { WHOLE * self.fitter.shape_error() };
         (flux, (noise + beyond * beyond + hidden * hidden).sqrt())
     }
@@ -248,17 +250,23 @@ impl Meter {
         let anywhere = Matrix2::from_diagonal_element(WITHIN_A_PIXEL * WITHIN_A_PIXEL);
         let balanced = centroid::balance(&self.patch, part.guess, window_px as f32, variance);
         let (centre, covariance) = balanced.unwrap_or((part.guess, anywhere));
-        let full_share = f64::from(outline.saturated_px) / f64::from(outline.area_px);
         let unclear = is_crowded || width_px < NARROW_PX;
         let missing_px2 = match (outline.cut, outline.saturated_px > 0) {
             (true, _) => part.radius_px * part.radius_px / 4.0,
-            // Where all that is bright is full, no flank tells where in a pixel the light fell.
-            (false, true) => blur_px2 + full_share * full_share * WITHIN_A_PIXEL * WITHIN_A_PIXEL,
+            (false, true) => blur_px2 + flankless_px2(outline),
             (false, false) if unclear => SHAPELESS_PX * SHAPELESS_PX,
             (false, false) => 0.0,
         };
         (centre, covariance + Matrix2::from_diagonal_element(missing_px2))
     }
+}
+
+/// Variance of where in a pixel the light fell of what is full in the middle, px^2: where all that is bright is full, no flank tells it; each
+/// pixel of a flank says on which side, and halves what is left.
+fn flankless_px2(outline: &Outline) -> f64 {
+    let flank = outline.area_px - outline.saturated_px;
+    let sigma_px = libm::scalbn(WITHIN_A_PIXEL, -(flank.min(100) as i32));
+    sigma_px * sigma_px
 }
 
 /// All light of what is full, where no point spread tells it.

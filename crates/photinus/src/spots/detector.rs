@@ -7,7 +7,7 @@ use super::background::Background;
 use super::grouping::Components;
 use super::measuring::Meter;
 use super::neighbourhood::Neighbourhood;
-use super::odds;
+use super::odds::{self, Look};
 use super::part::{Part, outline};
 use super::rejection::Reason;
 use super::runs::{Run, Runs};
@@ -32,7 +32,7 @@ pub struct Detector {
     neighbourhood: Neighbourhood,
     meter: Meter,
     /// Odds for clutter of each spot, but for those of a reflection.
-    clutter_odds: Vec<f64>,
+    looks: Vec<Look>,
     detections: Detections,
 }
 
@@ -62,7 +62,7 @@ impl Detector {
             split: Vec::new(),
             neighbourhood: Neighbourhood::default(),
             meter: Meter::new(&settings, optics),
-            clutter_odds: Vec::new(),
+            looks: Vec::new(),
             detections: Detections::default(),
         })
     }
@@ -85,7 +85,7 @@ impl Detector {
         self.outline_parts(frame, mask);
         self.judge_outlines(frame.width() * frame.height());
         self.measure_parts(frame);
-        odds::weigh(&mut self.detections, &self.clutter_odds, &self.settings.shape);
+        odds::weigh(&mut self.detections, &self.looks, &self.settings.shape);
         self.detections.rejected.sort_unstable_by_key(|rejected| {
             let Extent { top, left, bottom, right } = rejected.extent;
             (top, left, bottom, right, rejected.area_px)
@@ -148,7 +148,7 @@ impl Detector {
         self.neighbourhood.arrange(frame, self.parts.iter().map(|part| (part.guess, part.radius_px)));
         self.detections.spots.clear();
         self.detections.rejected.clear();
-        self.clutter_odds.clear();
+        self.looks.clear();
         self.meter.fit(frame, &self.parts, &self.neighbourhood);
         for i in 0..self.parts.len() {
             let part = self.parts[i];
@@ -162,9 +162,9 @@ impl Detector {
             match measured {
                 Ok(spot) => {
                     self.detections.spots.push(spot);
-                    self.clutter_odds.push(
-                        part.clutter_odds + self.meter.clutter_odds(&part, [frame.width(), frame.height()]),
-                    );
+                    let size = [frame.width(), frame.height()];
+                    let clutter_odds = part.clutter_odds + self.meter.clutter_odds(&part, size);
+                    self.looks.push(Look { clutter_odds, is_point: self.meter.is_point(i) });
                 }
                 Err(reason) => self.detections.rejected.push(Rejected {
                     centre: part.guess,

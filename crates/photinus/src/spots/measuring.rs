@@ -164,6 +164,11 @@ impl Meter {
         (flux, (noise + beyond * beyond + hidden * hidden).sqrt())
     }
 
+    /// Whether the point spread told the light of part `index`.
+    pub(super) fn is_point(&self, index: usize) -> bool {
+        self.fitter.fitted(index).is_some()
+    }
+
     /// Odds that the part measured last, in an image of `size` (width, height) px, is clutter by what is around it: a hot pixel, or a step on a slope of
     /// light.
     pub(super) fn clutter_odds(&self, part: &Part, size: [usize; 2]) -> f64 {

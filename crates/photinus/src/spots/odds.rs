@@ -36,14 +36,31 @@ pub(super) fn of_noise(sigmas: f64, pixels: usize) -> f64 {
     pixels as f64 * sigmas * libm::exp(-0.5 * sigmas * sigmas) / ROOT_OF_TAU
 }
 
-/// Weighs the odds of all spots; those that clutter of other kinds has stand in `clutter_odds`, spot by spot.
-pub(super) fn weigh(detections: &mut Detections, clutter_odds: &[f64], shape: &Shape) {
+/// How a spot looks by itself.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Look {
+    /// Odds that clutter of other kinds than reflections has.
+    pub(super) clutter_odds: f64,
+    /// Whether a point spread told its light: what a window tells may hide most of it.
+    pub(super) is_point: bool,
+}
+
+impl Look {
+    /// All light of a spot that looks so, grey levels, or as much of it as shows.
+    fn light(self, spot: &Spot) -> f64 {
+        spot.light.filter(|_| self.is_point).map_or(spot.flux, |light| light.value)
+    }
+}
+
+/// Weighs the odds of all spots by how each looks.
+pub(super) fn weigh(detections: &mut Detections, looks: &[Look], shape: &Shape) {
     let spots = &mut detections.spots;
     let most = |of: fn(&Spot) -> f64| spots.iter().map(of).fold(0.0, f64::max);
-    let brightest = Brightest { light: most(light), flux: most(|spot| spot.flux), height: most(height) };
-    for (spot, &odds) in spots.iter_mut().zip(clutter_odds) {
-        let reflection = reflection_odds(brightest.share_of(spot), shape.reflection_ratio);
-        spot.marker_log_odds = -libm::log(reflection + odds);
+    let light = spots.iter().zip(looks).map(|(spot, look)| look.light(spot)).fold(0.0, f64::max);
+    let brightest = Brightest { light, flux: most(|spot| spot.flux), height: most(height) };
+    for (spot, &look) in spots.iter_mut().zip(looks) {
+        let reflection = reflection_odds(brightest.share_of(spot, look), shape.reflection_ratio);
+        spot.marker_log_odds = -libm::log(reflection + look.clutter_odds);
     }
 }
 
@@ -57,17 +74,13 @@ struct Brightest {
 impl Brightest {
     /// How bright a spot is over the brightest. The height of a narrow spot depends on where in a pixel it falls, and what full pixels hide
     /// is in neither height nor flux: where no point spread told its light, it is as bright as the brighter of these says.
-    fn share_of(&self, spot: &Spot) -> f64 {
-        match spot.light {
-            Some(light) => light.value / self.light,
-            None => (spot.flux / self.flux).max(height(spot) / self.height),
+    fn share_of(&self, spot: &Spot, look: Look) -> f64 {
+        if look.is_point {
+            look.light(spot) / self.light
+        } else {
+            (spot.flux / self.flux).max(height(spot) / self.height)
         }
     }
-}
-
-/// All light of a spot, grey levels, or as much of it as shows.
-fn light(spot: &Spot) -> f64 {
-    spot.light.map_or(spot.flux, |light| light.value)
 }
 
 /// Grey levels above the background.
@@ -116,7 +129,11 @@ mod tests {
 
     fn odds(spots: &[Spot], clutter_odds: &[f64]) -> Vec<f64> {
         let mut detections = Detections { spots: spots.to_vec(), rejected: Vec::new() };
-        weigh(&mut detections, clutter_odds, &Shape::default());
+        let looks = spots.iter().zip(clutter_odds);
+        let looks: Vec<Look> = looks
+            .map(|(spot, &clutter_odds)| Look { clutter_odds, is_point: spot.light.is_some() })
+            .collect();
+        weigh(&mut detections, &looks, &Shape::default());
         detections.spots.iter().map(|spot| libm::exp(spot.marker_log_odds)).collect()
     }
 

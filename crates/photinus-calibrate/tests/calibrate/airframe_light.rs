@@ -22,8 +22,8 @@ fn distances_in_other_frames_lose_their_bias() {
     let before = distances(&others, told, Settings::default());
     let after = distances(&others, &light.airframe, known(&light));
     let truth = distances(&others, &built.as_built(told), known(&light));
-    assert!((before.bias - truth.bias).abs() > 0.005, "{before:?} {truth:?}");
+    // Light that is as sure as it says lets wrong lobes bias distances by no more than their scatter, but that is several times as wide, and told too narrow.
+    assert!(before.rms > 2.0 * after.rms && before.nees > 2.0 * after.nees, "{before:?} {after:?}");
     // What is left is what the true airframe leaves, in frames that are the same.
     assert!((after.bias - truth.bias).abs() < 0.002, "{after:?} {truth:?}");
-    assert!(after.rms < 0.8 * before.rms, "{after:?} {before:?}");
 }

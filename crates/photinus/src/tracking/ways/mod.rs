@@ -342,12 +342,12 @@ impl Ways {
             Some(others_lit) => self.blinking.light(scene.model, pose, others_lit, &mut self.lit),
             None => {}
         }
-        from.silent.dim(&mut self.lit);
         self.screened.clear();
         self.screened.resize(self.lit.len(), false);
         if is_known_aside(from, scene.model.airframe.max_radius_m()) {
-            self.screens.dim(vehicle, &scene.model.airframe, pose, &mut self.lit, &mut self.screened);
+            self.screens.screen(vehicle, &scene.model.airframe, pose, &mut self.screened);
         }
+        from.silent.dim(&mut self.lit, &self.screened);
         alike
     }
 

@@ -1,5 +1,5 @@
 //! Vehicles ahead of each other -> which markers may be hidden by a nearer one: nobody describes its body, but it may fill the sphere on which its
-//! markers sit.
+//! markers sit. How likely it hides them is learnt ([`super::super::silent`]).
 
 use alloc::vec::Vec;
 
@@ -8,9 +8,6 @@ use nalgebra::Vector3;
 use super::super::component::Component;
 use crate::airframe::Airframe;
 use crate::pose::Pose;
-
-/// How likely a marker shows past a vehicle in whose sphere its line of sight lies: rings of markers are open, bodies are not.
-const SHOWS: f64 = 0.5;
 
 /// Where vehicles are that may hide others. Keeps its room.
 #[derive(Debug, Default)]
@@ -38,15 +35,8 @@ impl Screens {
         }
     }
 
-    /// Lowers how likely each marker of a vehicle shows at a pose by who is before it, and says which these are.
-    pub(super) fn dim(
-        &self,
-        vehicle: usize,
-        airframe: &Airframe,
-        pose: &Pose,
-        lit: &mut [f64],
-        screened: &mut [bool],
-    ) {
+    /// Says which markers of a vehicle at a pose lie behind another one.
+    pub(super) fn screen(&self, vehicle: usize, airframe: &Airframe, pose: &Pose, screened: &mut [bool]) {
         let radius_m = airframe.max_radius_m();
         let range_m = pose.position_m.norm();
         let may_hide = |screen: &&Screen| {
@@ -56,13 +46,10 @@ impl Screens {
                 && (screen.ahead * range_m - pose.position_m).norm() < reach * range_m
         };
         for screen in self.0.iter().filter(may_hide) {
-            for ((marker, lit), screened) in airframe.markers().iter().zip(lit.iter_mut()).zip(&mut *screened)
-            {
+            for (marker, screened) in airframe.markers().iter().zip(&mut *screened) {
                 let place_m = pose.camera_from_body * marker.position_m + pose.position_m;
                 let before_m = screen.ahead * (screen.ahead.dot(&place_m));
-                if (place_m - before_m).norm() * screen.distance_m < radius_m * before_m.norm() {
-                    (*lit, *screened) = (*lit * SHOWS, true);
-                }
+                *screened |= (place_m - before_m).norm() * screen.distance_m < radius_m * before_m.norm();
             }
         }
     }

@@ -74,12 +74,8 @@ impl Ways {
         let log_weight = log_weight + updated.log_evidence;
         let repeated_nats = (1.0 - counts) * updated.log_spread;
         let Updated { mut component, log_power, .. } = updated;
-        if self.others.is_empty() {
-            component.silent.keep(&prior.component.silent, &self.screened);
-        } else {
-            // Whose spots these are is in doubt where others are near.
-            component.silent = prior.component.silent;
-        }
+        // Whose spots these are is in doubt where others are near.
+        component.silent.blame(&prior.component.silent, &self.screened, self.others.is_empty());
         self.all.push(Way { component, pairs, log_power, repeated_nats, from });
         self.choices.push(Choice { vehicle, spots, log_weight, way: self.all.len() - 1 });
     }

@@ -21,7 +21,7 @@ use super::companions::Companions;
 use super::context::Context;
 use super::explanation::Explanation;
 use super::fixtures::Fixtures;
-use super::grouping::Groups;
+use super::grouping::{CLEAR_SPOTS, Groups};
 use super::input::Input;
 use super::kinds::{Kind, Kinds};
 use super::memory::Memory;
@@ -270,17 +270,22 @@ impl Inference {
 
     /// What neighbours that are sure tell of the light of the frame's LEDs: the median of their logarithms, as they look whatever power was known before. A
     /// first look at how observations lie beside each other is not sure: it takes a lamp that goes along with a neighbour for its marker time and again.
-    fn log_power(&mut self, context: &Context<'_>) -> Option<f64> {
+    fn log_power(&mut self, context: &Context<'_>) -> Option<(bool, f64)> {
         let Self { log_powers, candidates, explanation, kinds, .. } = self;
-        log_powers.clear();
-        for index in (0..candidates.len()).filter(|&index| explanation.probability(index) > SURE) {
-            let members = candidates.members(index);
-            if members.len() > 1 {
-                log_powers.extend(kinds.log_power(context, members));
+        for fewest in [CLEAR_SPOTS, 2] {
+            log_powers.clear();
+            for index in (0..candidates.len()).filter(|&index| explanation.probability(index) > SURE) {
+                let members = candidates.members(index);
+                if members.len() >= fewest {
+                    log_powers.extend(kinds.log_power(context, members));
+                }
+            }
+            if !log_powers.is_empty() {
+                log_powers.sort_unstable_by(f64::total_cmp);
+                return Some((fewest == CLEAR_SPOTS, log_powers[log_powers.len() / 2]));
             }
         }
-        log_powers.sort_unstable_by(f64::total_cmp);
-        log_powers.get(log_powers.len() / 2).copied()
+        None
     }
 
     /// Explains the frame by its candidates, with clutter and neighbours as dense as the explanation itself has them.

@@ -22,7 +22,7 @@ pub(super) struct Memory {
     /// Clutter by frame and cell, and its sums by cell.
     clutter: Vec<f64>,
     sums: Vec<f64>,
-    log_powers: Vec<Option<f64>>,
+    log_powers: Vec<Option<(bool, f64)>>,
     neighbours: Vec<f64>,
     sorted: Vec<f64>,
 }
@@ -76,7 +76,12 @@ impl Memory {
     /// The light of an LED straight ahead at 1 m, where enough frames told it.
     pub(super) fn power(&mut self) -> Option<LogLight> {
         self.sorted.clear();
-        self.sorted.extend(self.log_powers.iter().flatten());
+        let told = self.log_powers.iter().flatten();
+        self.sorted.extend(told.clone().filter(|told| told.0).map(|told| told.1));
+        if self.sorted.len() < FEWEST {
+            self.sorted.clear();
+            self.sorted.extend(told.map(|told| told.1));
+        }
         if self.sorted.len() < FEWEST {
             return None;
         }
@@ -88,7 +93,7 @@ impl Memory {
     }
 
     /// Remembers a frame and forgets the oldest.
-    pub(super) fn remember(&mut self, clutter: &[f64], neighbours: f64, log_power: Option<f64>) {
+    pub(super) fn remember(&mut self, clutter: &[f64], neighbours: f64, log_power: Option<(bool, f64)>) {
         let own = &mut self.clutter[self.next * self.cells..][..self.cells];
         own.copy_from_slice(clutter);
         self.log_powers[self.next] = log_power;

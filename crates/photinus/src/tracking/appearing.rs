@@ -14,6 +14,7 @@ use super::reduction::reduce;
 use super::silent::Silent;
 use super::state::{MOST_TARGETS, State, Target};
 use super::step::Model;
+use super::ways::{Scene, Ways};
 use crate::camera::Rig;
 use crate::pose::{Mode, Pose};
 
@@ -24,13 +25,14 @@ pub(super) const LOST_S: f64 = 0.15;
 
 /// Adds those that appear; returns how many sightings are nobody's.
 pub(super) fn appear(
-    model: &Model,
-    moment: &Moment,
+    scene: &Scene<'_>,
+    ways: &mut Ways,
     straight_rad: f64,
     claimed: &[f64],
     modes: &mut Vec<Component>,
     after: &mut State,
 ) -> f64 {
+    let moment = scene.moment;
     let mut unexplained: f64 = claimed.iter().map(|claimed| (1.0 - claimed).max(0.0)).sum();
     for appearance in &moment.appearances {
         let members = moment.members(appearance);
@@ -46,7 +48,7 @@ pub(super) fn appear(
         if existence < LEAST || !may_begin {
             continue;
         }
-        begun(model, moment, appearance, straight_rad, modes);
+        begun(scene, ways, appearance, straight_rad, modes);
         if modes.is_empty() {
             continue;
         }
@@ -85,19 +87,22 @@ pub(super) fn appear(
 
 /// Fills `modes` with what a neighbour tells of a vehicle of which nothing else is known.
 pub(super) fn begun(
-    model: &Model,
-    moment: &Moment,
+    scene: &Scene<'_>,
+    ways: &mut Ways,
     appearance: &Appearance,
     straight_rad: f64,
     modes: &mut Vec<Component>,
 ) {
+    let Scene { model, moment, .. } = *scene;
     modes.clear();
     let is_dumb = |&spot: &usize| moment.signals[spot].is_none();
     let anonymous = appearance.vehicle.is_none() && moment.members(appearance).iter().all(is_dumb);
     let turns = if anonymous { model.symmetry.turns() } else { 1 };
     for mode in moment.modes(appearance) {
         let first = modes.first().copied();
-        modes.push(begin(model, mode, first.as_ref(), turns));
+        let mut begun = begin(model, mode, first.as_ref(), turns);
+        begun.silent = ways.silent_at_first(scene, moment.members(appearance), &begun);
+        modes.push(begun);
     }
     reduce(modes, straight_rad);
 }

@@ -11,7 +11,7 @@ use super::appearing::begun;
 use super::component::Component;
 use super::look::{Appearance, Moment};
 use super::state::{State, Target};
-use super::step::Model;
+use super::ways::{Scene, Ways};
 #[cfg(not(feature = "std"))]
 use crate::float::Float as _;
 use crate::locator::LOG_RANGE;
@@ -26,13 +26,14 @@ pub(super) fn beforehand() -> f64 {
 
 /// Weighs the track that was concluded last against the frame's neighbour; it begins anew there once it is rather wrong.
 pub(super) fn doubt(
-    model: &Model,
-    moment: &Moment,
+    scene: &Scene<'_>,
+    ways: &mut Ways,
     repeats: f64,
     straight_rad: f64,
     modes: &mut Vec<Component>,
     after: &mut State,
 ) {
+    let moment = scene.moment;
     let Some(&target) = after.targets.last() else { return };
     let Some(appearance) = own_neighbour(moment, &target, after.members(&target)) else { return };
     let right = how_right(moment, appearance, after.components(&target));
@@ -43,7 +44,7 @@ pub(super) fn doubt(
     if log_wrong < 0.0 {
         return;
     }
-    begun(model, moment, appearance, straight_rad, modes);
+    begun(scene, ways, appearance, straight_rad, modes);
     if modes.is_empty() {
         return;
     }

@@ -197,7 +197,7 @@ impl Stepper {
             self.conclude(vehicle, target, &scene, straight_rad, after);
         }
         let unexplained =
-            appearing::appear(model, moment, straight_rad, &self.claimed, &mut self.reduced, after);
+            appearing::appear(&scene, &mut self.ways, straight_rad, &self.claimed, &mut self.reduced, after);
         let clutter = clutter + (unexplained - clutter) / CLUTTER_FRAMES;
         after.clutter[moment.camera] = clutter.max(LEAST_CLUTTER);
     }
@@ -284,7 +284,7 @@ impl Stepper {
             log_wrong: before.log_wrong,
         });
         let repeats = model.repeats_of(before, moment, scene.own_interval_s);
-        doubting::doubt(model, moment, repeats, straight_rad, reduced, after);
+        doubting::doubt(scene, ways, repeats, straight_rad, reduced, after);
     }
 }
 

@@ -112,7 +112,7 @@ impl Ways {
     }
 
     /// Which of these spots are which markers at a pose: the nearest.
-    fn pairs_of(&mut self, model: &Model, members: &[usize], pose: &Pose) -> Option<Pairs> {
+    pub(super) fn pairs_of(&mut self, model: &Model, members: &[usize], pose: &Pose) -> Option<Pairs> {
         self.own.clear();
         self.own.extend(members.iter().map(|&spot| self.observations[spot]));
         self.own_markers.clear();

@@ -11,8 +11,10 @@
 //!              those that are certain to count for nothing
 //! blinking     which markers are lit at a pose, for both
 //! repeated     what frames repeat, counted once
+//! beginning    what a frame says of the markers of one that it begins
 //! ```
 
+mod beginning;
 mod blinking;
 mod candidates;
 mod located;
@@ -310,8 +312,7 @@ impl Ways {
         let distance_m = components.first().map_or(1.0, |first| first.pose.position_m.norm()).max(1e-3);
         let angle_rad = model.pose.marker_sigma_m / distance_m;
         let extra_rad2 = self.repeats * angle_rad * angle_rad;
-        self.whitened.clear();
-        self.whitened.extend(self.observations.iter().map(|seen| Whitened::of(seen, extra_rad2)));
+        self.whiten(extra_rad2);
         (self.who, self.unseen_s) = (target.vehicle, moment.time_s - target.seen_s);
         self.told_lit.clear();
         self.told_lit.resize(model.airframe.markers().len(), 1.0);
@@ -328,6 +329,12 @@ impl Ways {
         }
     }
 
+    /// Prepares the spots, whose directions are less sure by this variance.
+    fn whiten(&mut self, extra_rad2: f64) {
+        self.whitened.clear();
+        self.whitened.extend(self.observations.iter().map(|seen| Whitened::of(seen, extra_rad2)));
+    }
+
     /// How likely each marker of a vehicle is lit at a pose while those that blink alike are, not silent, and not behind another vehicle; returns how likely those
     /// that blink alike are lit.
     fn light(&mut self, scene: &Scene<'_>, vehicle: usize, from: &Component, pose: &Pose) -> f64 {
@@ -342,13 +349,18 @@ impl Ways {
             Some(others_lit) => self.blinking.light(scene.model, pose, others_lit, &mut self.lit),
             None => {}
         }
+        self.dim(scene, vehicle, from, pose);
+        alike
+    }
+
+    /// Lowers how likely each marker is lit by how likely it is silent, or behind another vehicle.
+    fn dim(&mut self, scene: &Scene<'_>, vehicle: usize, from: &Component, pose: &Pose) {
         self.screened.clear();
         self.screened.resize(self.lit.len(), false);
         if is_known_aside(from, scene.model.airframe.max_radius_m()) {
             self.screens.screen(vehicle, &scene.model.airframe, pose, &mut self.screened);
         }
         from.silent.dim(&mut self.lit, &self.screened);
-        alike
     }
 
     /// Where LEDs that blink alike are lit so likely: how likely one of them shows, and, each lowered by it, how likely the others are lit if one does. An exposure

@@ -11,6 +11,7 @@ use super::component::{Component, Covariance, YAW_RATE};
 use super::doubting;
 use super::look::{Appearance, Moment};
 use super::reduction::reduce;
+use super::power::Power;
 use super::silent::Silent;
 use super::state::{MOST_TARGETS, State, Target};
 use super::step::Model;
@@ -66,7 +67,6 @@ pub(super) fn appear(
             seen_by: moment.camera,
             seen_by_each_s: seen_by_each_s(moment),
             is_predicted: members.is_empty(),
-            log_power: [None; Rig::MOST],
             calibration_rad2: calibration / members.len().max(1) as f64,
             first_component,
             components: modes.len(),
@@ -101,7 +101,7 @@ pub(super) fn begun(
     for mode in moment.modes(appearance) {
         let first = modes.first().copied();
         let mut begun = begin(model, mode, first.as_ref(), turns);
-        begun.silent = ways.silent_at_first(scene, moment.members(appearance), &begun);
+        ways.first_look(scene, moment.members(appearance), &mut begun);
         modes.push(begun);
     }
     reduce(modes, straight_rad);
@@ -129,6 +129,7 @@ fn begin(model: &Model, mode: &Mode, first: Option<&Component>, turns: usize) ->
         yaw_rate_rad_s: 0.0,
         covariance,
         silent: Silent::BEFOREHAND,
+        power: Power::UNKNOWN,
     };
     let turn = first.and_then(|first| turn_next_to(model, &begun.pose, &first.pose, turns));
     turn.map_or(begun, |turn| begun.turned(&model.symmetry.turn(turn)))

@@ -7,6 +7,7 @@ use nalgebra::{
     Matrix3, Matrix4, Matrix4x6, Matrix6, Rotation3, SMatrix, SVector, Vector3, Vector4, Vector6,
 };
 
+use super::power::Power;
 use super::silent::Silent;
 use crate::pose::{Pose, turn_of};
 
@@ -38,6 +39,8 @@ pub(super) struct Component {
     pub(super) covariance: Covariance,
     /// Which of its markers may be silent.
     pub(super) silent: Silent,
+    /// How bright its LEDs are, if it is there.
+    pub(super) power: Power,
 }
 
 impl Component {
@@ -123,17 +126,20 @@ pub(super) fn merged<'a>(all: impl Iterator<Item = &'a Component> + Clone) -> Op
     if weight <= 0.0 {
         return Some(*heaviest);
     }
-    let (mut mean, mut square, mut silent) = (Step::zeros(), Covariance::zeros(), Silent::NONE);
+    let (mut mean, mut square) = (Step::zeros(), Covariance::zeros());
+    let (mut silent, mut power) = (Silent::NONE, Power::UNKNOWN);
     for component in all {
         let (off, share) = (heaviest.step_to(component), component.weight / weight);
         mean += off * share;
         silent.add(&component.silent, share);
+        power.add(&component.power, share);
         square += (component.covariance + off * off.transpose()) * share;
     }
     Some(Component {
         weight,
         covariance: square - mean * mean.transpose(),
         silent,
+        power,
         ..heaviest.stepped(&mean)
     })
 }

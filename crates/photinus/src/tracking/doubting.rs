@@ -154,7 +154,6 @@ mod tests {
             seen_by: 0,
             seen_by_each_s: [1.0; Rig::MOST],
             is_predicted: false,
-            log_power: [None; Rig::MOST],
             calibration_rad2: Matrix3::zeros(),
             log_wrong: beforehand(),
             first_component: 0,

@@ -30,6 +30,7 @@ mod history;
 mod joint;
 mod look;
 mod motion;
+mod power;
 mod reduction;
 mod settings;
 mod silent;

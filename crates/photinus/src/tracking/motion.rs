@@ -147,6 +147,7 @@ impl Motion {
             yaw_rate_rad_s,
             covariance,
             silent: before.silent.after(interval_s, settings.hidden_s),
+            power: before.power,
         }
     }
 

@@ -13,8 +13,6 @@ use crate::camera::Rig;
 pub(super) const MOST_TARGETS: usize = 64;
 /// Most normal distributions of one vehicle.
 pub(super) const MOST_COMPONENTS: usize = 12;
-/// So many vehicles tell the power of their LEDs.
-const FEWEST_POWERS: usize = 3;
 /// Points of clutter in a frame before any was seen.
 const CLUTTER_BEFOREHAND: f64 = 0.5;
 
@@ -34,8 +32,6 @@ pub(super) struct Target {
     pub(super) seen_by_each_s: [f64; Rig::MOST],
     /// Whether it is not seen in this frame, nor was in the last one of another camera.
     pub(super) is_predicted: bool,
-    /// Logarithm of the light of an LED of intensity 1 at 1 m, by camera, where it was told.
-    pub(super) log_power: [Option<f64>; Rig::MOST],
     /// What the camera's calibration leaves open of its direction, rad^2.
     pub(super) calibration_rad2: Matrix3<f64>,
     /// How likely it has settled for a wrong pose, as the logarithm of odds.
@@ -102,15 +98,6 @@ impl State {
     /// Whether a vehicle that was heard would have shown by now where its track is.
     pub(super) fn is_lost(&self, target: &Target) -> bool {
         self.time_s - target.seen_s > LOST_S
-    }
-
-    /// The light of an LED of intensity 1 at 1 m in a camera, as a logarithm: what half of the vehicles say at most, so that one that is taken to be too near or too far
-    /// does not bend it. `None` of too few.
-    pub(super) fn log_power(&self, camera: usize, powers: &mut Vec<f64>) -> Option<f64> {
-        powers.clear();
-        powers.extend(self.targets.iter().filter_map(|target| target.log_power[camera]));
-        powers.sort_unstable_by(f64::total_cmp);
-        powers.get(powers.len() / 2).copied().filter(|_| powers.len() >= FEWEST_POWERS)
     }
 
     /// The normal distributions of a vehicle, the heaviest first.

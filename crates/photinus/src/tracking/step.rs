@@ -21,10 +21,11 @@ use super::existence::Existence;
 use super::joint::Joint;
 use super::look::Moment;
 use super::motion::Motion;
+use super::power::Fleet;
 use super::reduction::reduce;
 use super::splitting::{split, straight_rad};
 use super::state::{MOST_TARGETS, State, Target};
-use super::ways::{POWER_SIGMA, Scene, Way, Ways};
+use super::ways::{Scene, Way, Ways};
 use crate::airframe::Airframe;
 use crate::camera::Rig;
 #[cfg(not(feature = "std"))]
@@ -36,8 +37,6 @@ const CLUTTER_FRAMES: f64 = 32.0;
 const LEAST_CLUTTER: f64 = 0.05;
 /// A vehicle less likely than this is forgotten.
 const GONE: f64 = 0.02;
-/// The power of LEDs is the mean of this many frames.
-const POWER_FRAMES: f64 = 16.0;
 /// So many standard deviations off, a vehicle is not.
 const SURELY_SIGMA: f64 = 5.0;
 /// Frames are no nearer in time than this, s, for what they repeat: the first ones of two cameras may be of one time.
@@ -115,7 +114,7 @@ pub(super) struct Stepper {
     /// How likely each sighting is a vehicle's.
     claimed: Vec<f64>,
     reduced: Vec<Component>,
-    powers: Vec<f64>,
+    fleet: Fleet,
 }
 
 impl Stepper {
@@ -127,13 +126,14 @@ impl Stepper {
             joint: Joint::default(),
             claimed: Vec::new(),
             reduced: Vec::with_capacity(512),
-            powers: Vec::with_capacity(MOST_TARGETS),
+            fleet: Fleet::with_room(MOST_TARGETS),
         }
     }
 
     /// The light of an LED of intensity 1 at 1 m in a camera, as far as the vehicles of a state tell it.
     pub(super) fn power(&mut self, camera: usize, state: &State) -> Option<LogLight> {
-        state.log_power(camera, &mut self.powers).map(|value| LogLight { value, sigma: POWER_SIGMA })
+        self.fleet.listen(state, camera);
+        self.fleet.of(usize::MAX)
     }
 
     /// Fills `after` with what is believed after a frame.
@@ -172,7 +172,9 @@ impl Stepper {
         self.first_predicted.push(self.predicted.len());
         let scene = Scene { model, watched, moment, interval_s, own_interval_s };
         let clutter = before.clutter[moment.camera];
-        self.ways.begin(&scene, clutter, before.log_power(moment.camera, &mut self.powers));
+        self.fleet.listen(before, moment.camera);
+        let powers = (0..before.targets.len()).map(|vehicle| self.fleet.of(vehicle));
+        self.ways.begin(&scene, clutter, powers);
         for (vehicle, range) in self.first_predicted.windows(2).enumerate() {
             self.ways.may_screen(vehicle, &self.predicted[range[0]..range[1]]);
         }
@@ -216,7 +218,7 @@ impl Stepper {
         let unseen = joint.unseen[vehicle];
         let existence = Existence::new(before.existence, before.hidden).after(interval_s, &model.settings);
         let with = existence.with(unseen, ways.unseen_if_shown(vehicle));
-        let (first_member, mut log_power, mut best) = (after.members.len(), before.log_power, 0.0);
+        let first_member = after.members.len();
         reduced.clear();
         ways.count_once(vehicle, &mut joint.probability);
         for (index, way) in ways.of(vehicle) {
@@ -224,10 +226,6 @@ impl Stepper {
             reduced.push(Component { weight: probability, ..way.component });
             for &(spot, _) in way.pairs.as_slice() {
                 claimed[usize::from(spot)] += probability;
-            }
-            if probability > best {
-                best = probability;
-                log_power[moment.camera] = averaged(before.log_power[moment.camera], way.log_power);
             }
         }
         let own = &predicted[first_predicted[vehicle]..first_predicted[vehicle + 1]];
@@ -275,7 +273,6 @@ impl Stepper {
             seen_by,
             seen_by_each_s,
             is_predicted: !is_seen && is_missed,
-            log_power,
             calibration_rad2,
             first_component,
             components: reduced.len(),
@@ -299,13 +296,6 @@ fn marker_of<'a>(
     let share_of =
         |marker: u16| claims.clone().filter(|claim| claim.0 == marker).map(|claim| claim.1).sum::<f64>();
     claims.clone().map(|(marker, _)| marker).find(|&marker| share_of(marker) > 0.5 * all)
-}
-
-fn averaged(before: Option<f64>, now: Option<f64>) -> Option<f64> {
-    match (before, now) {
-        (Some(before), Some(now)) => Some(before + (now - before) / POWER_FRAMES),
-        (before, now) => now.or(before),
-    }
 }
 
 #[cfg(test)]
@@ -350,7 +340,6 @@ mod tests {
             seen_by: 0,
             seen_by_each_s,
             is_predicted: false,
-            log_power: [None; Rig::MOST],
             calibration_rad2: Matrix3::zeros(),
             log_wrong: doubting::beforehand(),
             first_component: 0,

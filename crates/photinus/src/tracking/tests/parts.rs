@@ -12,6 +12,7 @@ use crate::tracking::joint::{Choice, Joint};
 use crate::tracking::motion::{Faster, Motion, Turn};
 use crate::tracking::reduction::reduce;
 use crate::tracking::settings::{Association, Settings};
+use crate::tracking::power::Power;
 use crate::tracking::silent::Silent;
 use crate::tracking::splitting::{split, straight_rad};
 
@@ -27,6 +28,7 @@ fn any_component(rng: &mut Pcg64) -> Component {
         yaw_rate_rad_s: normal(rng),
         covariance: root * root.transpose() + Covariance::identity() * 1e-3,
         silent: Silent::BEFOREHAND,
+        power: Power::UNKNOWN,
     }
 }
 

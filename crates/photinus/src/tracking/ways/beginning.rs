@@ -1,41 +1,39 @@
-//! A mode that begins a track, and the frame that shows it -> which of its markers may be silent.
+//! A mode that begins a track, and the frame that shows it -> which of its markers may be silent, and how bright its LEDs are.
 //!
-//! The mode's weight holds already that they were missed in this frame. Were that forgotten, a pose that needs a dead LED would pay for it twice.
+//! The mode's weight holds already that markers were missed in this frame. Were that forgotten, a pose that needs a dead LED would pay for it twice.
 
 use super::super::component::Component;
-use super::super::silent::Silent;
 use super::{Scene, Ways};
 
 /// Not one of those that are followed.
 const NOBODY: usize = usize::MAX;
 
 impl Ways {
-    /// What the frame says of the markers of a vehicle that begins with these spots.
-    pub(in crate::tracking) fn silent_at_first(
+    /// Takes in what the frame says of a vehicle that begins with these spots besides where it is.
+    pub(in crate::tracking) fn first_look(
         &mut self,
         scene: &Scene<'_>,
         members: &[usize],
-        begun: &Component,
-    ) -> Silent {
-        let (before, pose) = (Silent::BEFOREHAND, &begun.pose);
-        let Some(pairs) = self.pairs_of(scene.model, members, pose) else { return before };
+        begun: &mut Component,
+    ) {
+        let (before, pose) = (begun.silent, begun.pose);
+        let Some(pairs) = self.pairs_of(scene.model, members, &pose) else { return };
         self.markers.clear();
         self.markers.resize(self.observations.len(), None);
         for &(spot, marker) in pairs.as_slice() {
             self.markers[usize::from(spot)] = Some(marker);
         }
-        self.gather_others(scene, pose);
+        self.gather_others(scene, &pose);
         self.whiten(0.0);
         let lit = scene.moment.others_lit.filter(|_| !scene.moment.blinks_alike).unwrap_or(1.0);
         self.lit.clear();
         self.lit.resize(scene.model.airframe.markers().len(), lit);
-        self.dim(scene, NOBODY, begun, pose);
-        let mut silent = before;
-        self.measured(scene, pose, |measurement| {
-            let log_power = measurement.at(pose).log_power;
-            measurement.visibility(pose, log_power, |marker, unseen| silent.learn(marker, unseen));
+        self.dim(scene, NOBODY, begun, &pose);
+        self.measured(scene, &pose, |measurement| {
+            let log_power = measurement.at(&pose).log_power;
+            begun.power.learn(scene.moment.camera, log_power);
+            measurement.visibility(&pose, log_power, |marker, unseen| begun.silent.learn(marker, unseen));
         });
-        silent.blame(&before, &self.screened, self.others.is_empty());
-        silent
+        begun.silent.blame(&before, &self.screened, self.others.is_empty());
     }
 }

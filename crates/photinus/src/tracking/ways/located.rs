@@ -10,6 +10,7 @@ use super::super::branches::Pairs;
 use super::super::component::{Component, Covariance, Step, pose_step};
 use super::super::doubting::WRONG;
 use super::super::look::Appearance;
+use super::super::power::Power;
 use super::super::silent::Silent;
 use super::super::state::Target;
 use super::super::step::Model;
@@ -143,5 +144,6 @@ fn anew(model: &Model, mode: &Mode) -> Component {
         yaw_rate_rad_s: 0.0,
         covariance,
         silent: Silent::BEFOREHAND,
+        power: Power::UNKNOWN,
     }
 }

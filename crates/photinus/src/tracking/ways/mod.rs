@@ -53,8 +53,6 @@ const WRONG_SIGNAL_NATS: f64 = 5.0;
 const ANY_MARKER: f64 = 1e-3;
 /// What was followed and heard is another light so seldom.
 const WRONG_MARKER: f64 = 1e-4;
-/// LEDs of a fleet differ in power by so much from vehicle to vehicle, as a logarithm, with what distances leave of it.
-pub(super) const POWER_SIGMA: f64 = 0.3;
 /// This share of exposures straddles an edge of what an LED blinks, and a marker that shines for a part of one shows so likely.
 const PARTLY: f64 = 0.06;
 const DIM_SHOWS: f64 = 0.5;
@@ -86,7 +84,6 @@ pub(super) struct Way {
     /// The state with its spots.
     pub(super) component: Component,
     pub(super) pairs: Pairs,
-    pub(super) log_power: Option<f64>,
     /// What of its weight other frames repeat, nats.
     repeated_nats: f64,
     /// Which of the priors it comes from; `None` for none of them.
@@ -112,8 +109,8 @@ pub(super) struct Ways {
     observations: Vec<Observation>,
     clutter_nats: f64,
     per_frame: pose::Settings,
-    /// The light of an LED of intensity 1 at 1 m, as one frame may count it, and where it counts.
-    log_power: Option<f64>,
+    /// The light of an LED of intensity 1 at 1 m by what other vehicles say: by vehicle, and as one frame may count it.
+    powers: Vec<Option<LogLight>>,
     power: Option<LogLight>,
     repeats: f64,
     whitened: Vec<Whitened>,
@@ -164,7 +161,7 @@ impl Ways {
             observations: Vec::new(),
             clutter_nats: 0.0,
             per_frame: pose::Settings::default(),
-            log_power: None,
+            powers: Vec::new(),
             power: None,
             repeats: 1.0,
             whitened: Vec::new(),
@@ -213,8 +210,13 @@ impl Ways {
         self.screens.add(vehicle, components);
     }
 
-    /// Begins a frame with so many points of clutter, and LEDs of this power, where that is known.
-    pub(super) fn begin(&mut self, scene: &Scene<'_>, clutter: f64, log_power: Option<f64>) {
+    /// Begins a frame with so many points of clutter, and LEDs of this power, vehicle by vehicle, where that is known.
+    pub(super) fn begin(
+        &mut self,
+        scene: &Scene<'_>,
+        clutter: f64,
+        powers: impl Iterator<Item = Option<LogLight>>,
+    ) {
         let Scene { moment, .. } = *scene;
         self.all.clear();
         self.screens.clear();
@@ -230,6 +232,8 @@ impl Ways {
         self.unseen_if_shown.clear();
         self.unseen_of.clear();
         self.first_unseen.clear();
+        self.powers.clear();
+        self.powers.extend(powers);
         self.bits.clear();
         self.bits.resize(moment.observations.len(), None);
         self.used_bits = 0;
@@ -242,7 +246,6 @@ impl Ways {
             }),
         );
         self.clutter_nats = -self.observations.iter().map(|seen| seen.clutter_log_density).sum::<f64>();
-        self.log_power = log_power;
     }
 
     /// Gathers what is worth a try for the next vehicle, whose distributions are predicted.
@@ -253,13 +256,13 @@ impl Ways {
         target: &Target,
         components: &[Component],
     ) {
-        self.prepare(scene, target, components);
+        self.prepare(scene, vehicle, target, components);
         self.first_unseen.push(self.unseen_of.len());
         self.first_candidate.push(self.candidates.len());
         self.reach.push(0);
         let mut unseen_if_shown = 0.0;
         for component in components {
-            let unseen = self.unseen(scene, vehicle, target, component);
+            let unseen = self.unseen(scene, vehicle, component);
             self.unseen_of.push(unseen);
             unseen_if_shown += component.weight * unseen;
             self.gather(scene, vehicle, target, component);
@@ -282,7 +285,7 @@ impl Ways {
         while let Some(vehicle) = self.most_promising() {
             self.promises[vehicle] = None;
             let (target, components) = vehicles(vehicle);
-            self.prepare(scene, target, components);
+            self.prepare(scene, vehicle, target, components);
             self.try_gathered(scene, vehicle);
             for appearance in scene.moment.appearances.iter().filter(|own| own.may_be(target.vehicle)) {
                 self.begin_anew(scene, vehicle, appearance);
@@ -299,11 +302,11 @@ impl Ways {
     }
 
     /// What spots are against this vehicle, whose markers are where the airframe says but for the prior's sigma.
-    fn prepare(&mut self, scene: &Scene<'_>, target: &Target, components: &[Component]) {
+    fn prepare(&mut self, scene: &Scene<'_>, vehicle: usize, target: &Target, components: &[Component]) {
         let Scene { model, moment, .. } = *scene;
         self.repeats = model.repeats_of(target, moment, scene.own_interval_s);
         let widening = self.repeats.sqrt();
-        self.power = self.log_power.map(|value| LogLight { value, sigma: POWER_SIGMA * widening });
+        self.power = self.powers[vehicle].map(|own| LogLight { sigma: own.sigma * widening, ..own });
         self.per_frame = pose::Settings {
             unit_sigma: model.pose.unit_sigma * widening,
             lobe_sigma: model.pose.lobe_sigma * widening,
@@ -373,13 +376,13 @@ impl Ways {
     }
 
     /// How likely no marker of a vehicle is seen that nothing hides.
-    fn unseen(&mut self, scene: &Scene<'_>, vehicle: usize, target: &Target, component: &Component) -> f64 {
+    fn unseen(&mut self, scene: &Scene<'_>, vehicle: usize, component: &Component) -> f64 {
         let alike = self.light(scene, vehicle, component, &component.pose);
         self.markers.clear();
         self.markers.resize(self.observations.len(), None);
         self.gather_others(scene, &component.pose);
         let nats = self.measured(scene, &component.pose, |measurement| {
-            measurement.visibility(&component.pose, target.log_power[scene.moment.camera], |_, _| ())
+            measurement.visibility(&component.pose, component.power.log_power(scene.moment.camera), |_, _| ())
         });
         1.0 - alike + alike * libm::exp(-nats)
     }

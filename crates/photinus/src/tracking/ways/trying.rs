@@ -76,7 +76,8 @@ impl Ways {
         let Updated { mut component, log_power, .. } = updated;
         // Whose spots these are is in doubt where others are near.
         component.silent.blame(&prior.component.silent, &self.screened, self.others.is_empty());
-        self.all.push(Way { component, pairs, log_power, repeated_nats, from });
+        component.power.learn(moment.camera, log_power);
+        self.all.push(Way { component, pairs, repeated_nats, from });
         self.choices.push(Choice { vehicle, spots, log_weight, way: self.all.len() - 1 });
     }
 

@@ -24,7 +24,7 @@ use super::fixtures::Fixtures;
 use super::grouping::{CLEAR_SPOTS, Groups};
 use super::input::Input;
 use super::kinds::{Kind, Kinds};
-use super::memory::Memory;
+use super::memory::{Memory, Told};
 use super::near::Near;
 use super::neighbour::Located;
 use super::places::Places;
@@ -169,8 +169,8 @@ impl Inference {
             self.settle();
         }
         self.fixtures.remember(sightings, |spot| self.explanation.clutter(spot));
-        let log_power = self.log_power(&context);
-        self.memory.remember(self.clutter.counts(), self.explanation.neighbours(), log_power);
+        let power = self.power(&context);
+        self.memory.remember(self.clutter.counts(), self.explanation.neighbours(), power);
         located.is_complete = work.left > 0 && besides.is_empty();
         self.telling.tell(
             &self.candidates,
@@ -270,7 +270,7 @@ impl Inference {
 
     /// What neighbours that are sure tell of the light of the frame's LEDs: the median of their logarithms, as they look whatever power was known before. A
     /// first look at how observations lie beside each other is not sure: it takes a lamp that goes along with a neighbour for its marker time and again.
-    fn log_power(&mut self, context: &Context<'_>) -> Option<(bool, f64)> {
+    fn power(&mut self, context: &Context<'_>) -> Option<Told> {
         let Self { log_powers, candidates, explanation, kinds, .. } = self;
         for fewest in [CLEAR_SPOTS, 2] {
             log_powers.clear();
@@ -282,7 +282,8 @@ impl Inference {
             }
             if !log_powers.is_empty() {
                 log_powers.sort_unstable_by(f64::total_cmp);
-                return Some((fewest == CLEAR_SPOTS, log_powers[log_powers.len() / 2]));
+                let log_power = log_powers[log_powers.len() / 2];
+                return Some(Told { log_power, is_clear: fewest == CLEAR_SPOTS });
             }
         }
         None

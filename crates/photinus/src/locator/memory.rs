@@ -12,6 +12,15 @@ pub(super) const LOG_POWER_SIGMA: f64 = 0.35;
 /// The power of the LEDs is known from this many frames on.
 const FEWEST: usize = 3;
 
+/// What a frame tells of the power of LEDs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Told {
+    /// The light of an LED straight ahead at 1 m, as a logarithm.
+    pub(super) log_power: f64,
+    /// Whether a neighbour of three spots tells it: two are as well a nearer neighbour of weaker LEDs.
+    pub(super) is_clear: bool,
+}
+
 /// The last frames.
 #[derive(Debug, Default)]
 pub(super) struct Memory {
@@ -22,7 +31,7 @@ pub(super) struct Memory {
     /// Clutter by frame and cell, and its sums by cell.
     clutter: Vec<f64>,
     sums: Vec<f64>,
-    log_powers: Vec<Option<(bool, f64)>>,
+    powers: Vec<Option<Told>>,
     neighbours: Vec<f64>,
     sorted: Vec<f64>,
 }
@@ -39,7 +48,7 @@ impl Memory {
             next: 0,
             clutter: vec![0.0; cells * Self::FRAMES],
             sums: vec![0.0; cells],
-            log_powers: vec![None; Self::FRAMES],
+            powers: vec![None; Self::FRAMES],
             neighbours: vec![0.0; Self::FRAMES],
             sorted: Vec::with_capacity(Self::FRAMES),
         }
@@ -50,7 +59,7 @@ impl Memory {
         self.frames = 0;
         self.next = 0;
         self.sums.fill(0.0);
-        self.log_powers.fill(None);
+        self.powers.fill(None);
     }
 
     /// How many frames are remembered.
@@ -76,11 +85,11 @@ impl Memory {
     /// The light of an LED straight ahead at 1 m, where enough frames told it.
     pub(super) fn power(&mut self) -> Option<LogLight> {
         self.sorted.clear();
-        let told = self.log_powers.iter().flatten();
-        self.sorted.extend(told.clone().filter(|told| told.0).map(|told| told.1));
+        let told = self.powers.iter().flatten();
+        self.sorted.extend(told.clone().filter(|told| told.is_clear).map(|told| told.log_power));
         if self.sorted.len() < FEWEST {
             self.sorted.clear();
-            self.sorted.extend(told.map(|told| told.1));
+            self.sorted.extend(told.map(|told| told.log_power));
         }
         if self.sorted.len() < FEWEST {
             return None;
@@ -93,10 +102,10 @@ impl Memory {
     }
 
     /// Remembers a frame and forgets the oldest.
-    pub(super) fn remember(&mut self, clutter: &[f64], neighbours: f64, log_power: Option<(bool, f64)>) {
+    pub(super) fn remember(&mut self, clutter: &[f64], neighbours: f64, power: Option<Told>) {
         let own = &mut self.clutter[self.next * self.cells..][..self.cells];
         own.copy_from_slice(clutter);
-        self.log_powers[self.next] = log_power;
+        self.powers[self.next] = power;
         self.neighbours[self.next] = neighbours;
         self.next = (self.next + 1) % Self::FRAMES;
         self.frames = (self.frames + 1).min(Self::FRAMES);
@@ -115,17 +124,35 @@ impl Memory {
 mod tests {
     use super::*;
 
+    fn told(log_power: f64) -> Told {
+        Told { log_power, is_clear: false }
+    }
+
+    #[test]
+    fn what_three_spots_tell_goes_before_what_two_do() {
+        let mut memory = Memory::new(1);
+        for number in 0..Memory::FRAMES {
+            let is_clear = number % 16 == 0;
+            memory.remember(
+                &[0.0],
+                1.0,
+                Some(Told { log_power: if is_clear { 10.0 } else { 8.0 }, is_clear }),
+            );
+        }
+        assert_eq!(memory.power(), Some(LogLight { value: 10.0, sigma: LOG_POWER_SIGMA }));
+    }
+
     #[test]
     fn frames_older_than_the_last_are_forgotten() {
         let frame = |number: usize| {
             let clutter = [0.1 * (number % 7) as f64, 1.0 / (1 + number % 5) as f64];
-            (clutter, (!number.is_multiple_of(3)).then_some(9.0 + 0.01 * (number % 11) as f64))
+            (clutter, (!number.is_multiple_of(3)).then_some(told(9.0 + 0.01 * (number % 11) as f64)))
         };
         let after = |first: usize| {
             let mut memory = Memory::new(2);
             for number in first..200 {
-                let (clutter, log_power) = frame(number);
-                memory.remember(&clutter, number as f64 % 3.0, log_power);
+                let (clutter, power) = frame(number);
+                memory.remember(&clutter, number as f64 % 3.0, power);
             }
             (
                 memory.frames(),
@@ -143,7 +170,7 @@ mod tests {
         let mut memory = Memory::new(1);
         assert_eq!(memory.power(), None);
         for number in 0..Memory::FRAMES {
-            memory.remember(&[0.0], 1.0, Some(if number % 2 == 0 { 8.0 } else { 10.0 }));
+            memory.remember(&[0.0], 1.0, Some(told(if number % 2 == 0 { 8.0 } else { 10.0 })));
         }
         let LogLight { value, sigma } = memory.power().unwrap();
         assert!((8.0..=10.0).contains(&value) && sigma > 1.0, "{value} {sigma}");

@@ -99,6 +99,7 @@ mod tests {
     use crate::camera::{Mounting, Rig};
     use crate::locator::{Input, Locator};
     use crate::pose::Symmetry;
+    use crate::tracking::step::Model;
     use crate::tracking::tests::simulator::{Vehicle, camera, down, hexarotor, located_by, look};
     use crate::tracking::{Look, Settings};
 
@@ -138,10 +139,10 @@ mod tests {
     }
 
     /// What is believed of it, but for the distance.
-    fn believed(model: &Model, moment: &Moment, times: f64, members: &[usize]) -> State {
+    fn believed(scene: &Scene<'_>, ways: &mut Ways, times: f64, members: &[usize]) -> State {
         let mut state = State::empty(1.0, 1);
         let mut modes = Vec::new();
-        begun(model, moment, &moment.appearances[0], 0.2, &mut modes);
+        begun(scene, ways, &scene.moment.appearances[0], 0.2, &mut modes);
         modes.iter_mut().for_each(|mode| mode.pose.position_m *= times);
         state.components.extend_from_slice(&modes);
         state.members.extend_from_slice(members);
@@ -167,11 +168,15 @@ mod tests {
     /// The number of the frame after which a track begins anew, of the first thousand, at such a rate of frames.
     fn begins_anew(moment: &Moment, times: f64, members: &[usize], repeats: f64) -> Option<usize> {
         let (model, mut modes) = (model(), Vec::new());
-        let mut state = believed(&model, moment, times, members);
+        let (watched, interval_s) = (model.rig.watched(0), 0.1);
+        let scene = Scene { model: &model, watched, moment, interval_s, own_interval_s: interval_s };
+        let mut ways = Ways::with_room(&model.airframe);
+        ways.begin(&scene, 0.5, core::iter::empty());
+        let mut state = believed(&scene, &mut ways, times, members);
         let distance_m = |state: &State| state.components[0].pose.position_m.norm();
         let before_m = distance_m(&state);
         let began = (1..=1000).find(|_| {
-            doubt(&model, moment, repeats, 0.2, &mut modes, &mut state);
+            doubt(&scene, &mut ways, repeats, 0.2, &mut modes, &mut state);
             (distance_m(&state) - before_m).abs() > 1e-9
         });
         if began.is_some() {

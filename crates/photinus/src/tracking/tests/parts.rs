@@ -10,9 +10,9 @@ use crate::tracking::branches::Predicted;
 use crate::tracking::component::{Component, Covariance, SIZE, Step, merged};
 use crate::tracking::joint::{Choice, Joint};
 use crate::tracking::motion::{Faster, Motion, Turn};
+use crate::tracking::power::Power;
 use crate::tracking::reduction::reduce;
 use crate::tracking::settings::{Association, Settings};
-use crate::tracking::power::Power;
 use crate::tracking::silent::Silent;
 use crate::tracking::splitting::{split, straight_rad};
 

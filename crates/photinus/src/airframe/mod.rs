@@ -14,7 +14,7 @@ mod symmetry;
 use alloc::string::String;
 use alloc::vec::Vec;
 
-use nalgebra::Vector3;
+use nalgebra::{Rotation3, Vector3};
 
 pub use error::AirframeError;
 pub use led::Led;
@@ -99,6 +99,20 @@ impl Airframe {
     /// Largest distance of a marker from the body's origin, m.
     pub fn max_radius_m(&self) -> f64 {
         self.max_radius_m
+    }
+
+    /// The attitude, upright against `up`, in which a marker shines at a camera that sees the airframe in the direction `ahead`.
+    pub(crate) fn facing(&self, marker: usize, ahead: &Vector3<f64>, up: &Vector3<f64>) -> Rotation3<f64> {
+        let marker = &self.markers()[marker];
+        let axes: Vector3<f64> = marker.leds.iter().map(|&led| self.leds()[led].axis.into_inner()).sum();
+        let shines = if axes.xy().norm() > 0.1 { axes } else { marker.position_m };
+        let yaw_rad = libm::atan2(shines.y, shines.x);
+        // Body x towards the camera, as far as that is level.
+        let level = |towards: Vector3<f64>| towards - up * towards.dot(up);
+        let towards = level(-ahead).try_normalize(1e-3).or_else(|| level(Vector3::z()).try_normalize(1e-3));
+        let towards = towards.unwrap_or_else(|| level(Vector3::x()).normalize());
+        let upright = Rotation3::from_basis_unchecked(&[towards, up.cross(&towards), *up]);
+        upright * Rotation3::from_axis_angle(&Vector3::z_axis(), -yaw_rad)
     }
 
     /// How brightly marker `marker` shines towards a camera at `camera_m` (body frame, m): the sum of its

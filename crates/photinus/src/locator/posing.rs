@@ -167,7 +167,7 @@ impl Poser {
             if symmetry.canonical_turn(&[number]) == 0 {
                 self.hypotheses.offer(&[Some(number)], 0.0, 0, || Pose {
                     position_m,
-                    camera_from_body: facing(&self.airframe, marker, &ahead, &up),
+                    camera_from_body: self.airframe.facing(marker, &ahead, &up),
                 });
             }
         }
@@ -273,23 +273,4 @@ fn observe(sighting: &Sighting, clutter_log_density: f64) -> Observation {
         signal: sighting.signal,
         clutter_log_density,
     }
-}
-
-/// The upright attitude in which a marker shines at the camera.
-fn facing(
-    airframe: &Airframe,
-    marker: usize,
-    ahead: &Vector3<f64>,
-    up: &Vector3<f64>,
-) -> nalgebra::Rotation3<f64> {
-    let marker = &airframe.markers()[marker];
-    let axes: Vector3<f64> = marker.leds.iter().map(|&led| airframe.leds()[led].axis.into_inner()).sum();
-    let shines = if axes.xy().norm() > 0.1 { axes } else { marker.position_m };
-    let yaw_rad = libm::atan2(shines.y, shines.x);
-    // Body x towards the camera, as far as that is level.
-    let level = |towards: Vector3<f64>| towards - up * towards.dot(up);
-    let towards = level(-ahead).try_normalize(1e-3).or_else(|| level(Vector3::z()).try_normalize(1e-3));
-    let towards = towards.unwrap_or_else(|| level(Vector3::x()).normalize());
-    let upright = nalgebra::Rotation3::from_basis_unchecked(&[towards, up.cross(&towards), *up]);
-    upright * nalgebra::Rotation3::from_axis_angle(&Vector3::z_axis(), -yaw_rad)
 }

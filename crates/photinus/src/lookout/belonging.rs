@@ -79,6 +79,8 @@ impl Belongings {
                     (own.track, own.marker, own.share) = (track, place, FIRST);
                     self.all.push(own);
                 }
+                // A light that is in no track is no marker of this one.
+                (Some(own), None) if marker.sighting.is_some() => own.share *= 1.0 - FARTHER,
                 (_, None) => {}
             }
         }

@@ -1,4 +1,5 @@
-//! Markers whose words are one vehicle's -> that vehicle with its pose, from all of them, also those that are dark at the time.
+//! Markers whose words are one vehicle's -> that vehicle with its pose, from all of them, also those that are dark at the time. Of one marker alone, as
+//! far away as its light says.
 //!
 //! ```text
 //! words      which vehicle's marker each followed one surely is, as which signal          directory
@@ -33,14 +34,20 @@ const BALL_RADII: f64 = 60.0;
 const LEAST_GAP_RAD: f64 = 0.01;
 /// Whose place is less sure is no help to tell one, rad: half a small vehicle at 10 m.
 const PLACED_RAD: f64 = 0.015;
-/// Markers that are needed for a pose.
-const FEWEST: usize = 2;
 /// Markers of one vehicle at most.
 const MOST: usize = 16;
 /// A marker whose misfit is larger is no marker of the vehicle, sigma.
 const MOST_MISFIT_SIGMA: f64 = 6.0;
-/// A marker that was not heard is lit so likely.
+/// A marker that was not heard is lit so likely, where LEDs blink each for itself, and where all of a vehicle blink alike: it turned into view, or is dead.
 const UNHEARD_LIT: f64 = 0.5;
+const UNHEARD_LIT_ALIKE: f64 = 0.9;
+
+/// A vehicle that may call.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Call {
+    /// The track that begins anew as it.
+    pub(super) instead_of: Option<u64>,
+}
 
 /// Vehicle, signal, and place among the markers that are followed.
 type Heard = (u32, Option<u32>, usize);
@@ -55,6 +62,8 @@ pub(super) struct Calling {
     /// By marker that is followed: vehicle, signal and place among the followed.
     heard: Vec<Heard>,
     own: Vec<Heard>,
+    /// Markers from which a vehicle is called.
+    fewest: usize,
     observations: Vec<Observation>,
     called: Vec<Called>,
     count: usize,
@@ -62,12 +71,18 @@ pub(super) struct Calling {
 
 impl Calling {
     /// Of vehicles with this airframe, by a locator with these settings.
-    pub(super) fn new(airframe: &Airframe, settings: &Settings) -> Result<Self, SettingsError> {
+    pub(super) fn new(
+        airframe: &Airframe,
+        settings: &Settings,
+        blinks_alike: bool,
+    ) -> Result<Self, SettingsError> {
+        let lit = if blinks_alike { UNHEARD_LIT_ALIKE } else { UNHEARD_LIT };
         Ok(Self {
+            fewest: if blinks_alike { 1 } else { 2 },
             starts: Starts::new(airframe),
             estimator: Estimator::new(airframe, settings.pose)?,
             hypotheses: Hypotheses::with_room(MOST),
-            lit: vec![UNHEARD_LIT; airframe.markers().len()],
+            lit: vec![lit; airframe.markers().len()],
             heard: Vec::with_capacity(MOST),
             own: Vec::with_capacity(MOST),
             observations: Vec::with_capacity(MOST),
@@ -76,14 +91,15 @@ impl Calling {
         })
     }
 
-    /// Those that call among the markers that are followed, but for vehicles that are followed already.
+    /// Those that call among the markers that are followed: of the vehicles for which `may_call` says so, and of which tracks they take the place.
     pub(super) fn listen(
         &mut self,
         markers: &[MarkerTrack],
         directory: &Directory,
         gravity: Option<Unit<Vector3<f64>>>,
         before: &Before<'_>,
-    ) -> &[Called] {
+        may_call: impl Fn(u32) -> Option<Call>,
+    ) {
         self.count = 0;
         self.heard.clear();
         let is_placed = |marker: &MarkerTrack| {
@@ -91,9 +107,8 @@ impl Calling {
         };
         for (place, marker) in markers.iter().enumerate().filter(|own| is_placed(own.1)) {
             let entry = marker.identity.filter(|own| own.probability > HEARD);
-            if let Some(entry) = entry
-                .and_then(|own| directory.entry(own.who))
-                .filter(|own| !before.tracked.is_followed(own.vehicle))
+            if let Some(entry) =
+                entry.and_then(|own| directory.entry(own.who)).filter(|own| may_call(own.vehicle).is_some())
             {
                 self.heard.push((entry.vehicle, entry.signal, place));
             }
@@ -106,13 +121,18 @@ impl Calling {
                 add(&mut self.own, one, markers);
             }
             leave_strays_out(&mut self.own, markers, &self.starts);
-            if (FEWEST..=MOST).contains(&self.own.len()) {
+            let call = may_call(own[0].0).filter(|_| (self.fewest..=MOST).contains(&self.own.len()));
+            if let Some(call) = call {
                 let own = core::mem::take(&mut self.own);
-                self.call(markers, &own, gravity.map(|down| -down), before);
+                self.call(markers, (&own, call), gravity.map(|down| -down), before);
                 self.own = own;
             }
         }
         self.heard = heard;
+    }
+
+    /// Those that called.
+    pub(super) fn called(&self) -> &[Called] {
         &self.called[..self.count]
     }
 
@@ -120,7 +140,7 @@ impl Calling {
     fn call(
         &mut self,
         markers: &[MarkerTrack],
-        own: &[Heard],
+        (own, call): (&[Heard], Call),
         up: Option<Unit<Vector3<f64>>>,
         before: &Before<'_>,
     ) {
@@ -131,14 +151,28 @@ impl Calling {
         }
         self.observations.clear();
         self.observations.extend(own.iter().map(|&(_, signal, place)| observe(&markers[place], signal)));
-        self.starts.offer(&self.observations, up, &mut self.hypotheses);
+        let size = match self.observations.as_slice() {
+            [only] => {
+                // How far one marker is only light can tell.
+                if before.power.is_none() || only.log_light.is_none() {
+                    return;
+                }
+                let distance = self.starts.any_distance();
+                self.starts.offer_lone(only, up, distance, &mut self.hypotheses);
+                Some(distance)
+            }
+            all => {
+                self.starts.offer(all, up, &mut self.hypotheses);
+                None
+            }
+        };
         let visible = Visible {
             faintest_light: before.faintest_light,
             watched: Some(before.watched),
             others: &[],
             lit: &self.lit,
         };
-        let known = Known { up, bounds: self.starts.reach(), size: None, power: before.power, visible };
+        let known = Known { up, bounds: self.starts.reach(), size, power: before.power, visible };
         let posterior = self.estimator.estimate(&self.observations, &mut self.hypotheses, &known);
         if posterior.summary.is_none() || posterior.worst_sigma > MOST_MISFIT_SIGMA {
             return;
@@ -149,6 +183,7 @@ impl Calling {
         let called = &mut self.called[self.count];
         self.count += 1;
         called.vehicle = own[0].0;
+        called.instead_of = call.instead_of;
         called.probability = probability;
         called.members.clear();
         called.members.extend(own.iter().filter_map(|own| of(own).sighting));

@@ -3,7 +3,7 @@
 //! ```text
 //! frame, when and how turned   -> Glance
 //! sightings -> marker tracks   through their dark frames, each with its word        crate::following, crate::identity
-//! words -> who appears         where the LEDs of a vehicle blink differently        calling (directory, starts)
+//! words -> who appears         of whom has no track of its own                      calling (directory, missing, starts)
 //! which of them will shine     what is dark is not held against a vehicle
 //! sightings -> vehicles        where, how fast, how turned                          crate::tracking
 //! marker tracks -> vehicles    whose marker each is                                 belonging
@@ -32,6 +32,7 @@ mod belonging;
 mod calling;
 mod directory;
 mod fleet;
+mod missing;
 mod naming;
 mod starts;
 #[cfg(test)]
@@ -50,13 +51,13 @@ use crate::identity::decoder::{self, Decoder, DecoderError};
 use crate::locator::{self, Located};
 use crate::pose::{LogLight, SettingsError};
 use crate::tracking::{
-    self, Appearing, Followed, Look, Moving, Placed, Signalled, TrackError, Tracked, Tracker, TrackerError,
-    Turned,
+    self, Followed, Look, Moving, Placed, Signalled, TrackError, Tracked, Tracker, TrackerError, Turned,
 };
 use belonging::Belongings;
-use calling::Calling;
+use calling::{Call, Calling};
 use directory::Directory;
 pub use fleet::{Fleet, FleetError, Vehicle};
+use missing::Missing;
 pub use naming::Name;
 use naming::Naming;
 
@@ -64,6 +65,8 @@ use naming::Naming;
 const ANY_BIT: f64 = 0.5;
 /// A light is nobody's from this probability on.
 const SURE_STRANGER: f64 = 0.95;
+/// A marker is a vehicle's from this probability on.
+const SURELY_HEARD: f64 = 0.95;
 
 /// A frame that was located.
 #[derive(Clone, Copy, Debug)]
@@ -124,15 +127,19 @@ struct Blinking {
     followed: Vec<Followed>,
     /// No LED is dark for longer, s.
     longest_dark_s: f64,
-    /// Where the LEDs of a vehicle blink differently.
-    parts: Option<Parts>,
+    words: Words,
 }
 
-/// What it takes where a frame shows parts of vehicles only.
+/// Who blinks what, and who calls by it.
 #[derive(Debug)]
-struct Parts {
+struct Words {
+    /// Whether all LEDs of a vehicle blink alike: else frames show parts of vehicles.
+    alike: bool,
     directory: Directory,
+    missing: Missing,
     calling: Calling,
+    /// Tracks, and which vehicle each surely is.
+    named: Vec<(u64, u32)>,
     /// By sighting: whose marker it was heard to be, and whether nobody's.
     signals: Vec<Option<Signalled>>,
     strangers: Vec<bool>,
@@ -271,11 +278,11 @@ impl Blinking {
         };
         let follower = |mounted: &Mounted| Follower::new(&mounted.camera, Some(decoder.clone()), of_markers);
         let followers = rig.cameras().iter().map(follower).collect::<Result<_, _>>()?;
-        let parts = fleet.has_several_signals().then(|| Parts::new(airframe, locator, fleet)).transpose()?;
+        let words = Words::new(airframe, locator, fleet)?;
         let (belongings, followed) = (Belongings::default(), Vec::new());
         // Exposures stand anywhere in a bit.
         let longest_dark_s = (Properties::of(fleet.book()).longest_dark + 1) as f64 / fleet.bit_rate_hz();
-        Ok(Self { followers, is_heard: false, belongings, naming, followed, longest_dark_s, parts })
+        Ok(Self { followers, is_heard: false, belongings, naming, followed, longest_dark_s, words })
     }
 
     /// Follows the markers, and says where each is and whether it must be lit in this frame, and what sightings blink.
@@ -303,15 +310,18 @@ impl Blinking {
             lit: marker.lit,
             signal: signal(marker.number),
         }));
-        let (appearing, signals) = match &mut self.parts {
-            Some(parts) => {
-                let (appearing, signals) = parts.hear(glance, markers, before);
-                (Some(appearing), signals)
-            }
-            None => (None, &[][..]),
+        self.words.hear(glance, markers, before, (&self.belongings, &self.naming));
+        let Words { alike, signals, strangers, named, .. } = &self.words;
+        let blinking = tracking::Blinking {
+            followed: &self.followed,
+            others: ANY_BIT,
+            longest_dark_s: self.longest_dark_s,
+            alike: *alike,
+            called: self.words.calling.called(),
+            strangers,
+            named,
         };
-        let (followed, longest_dark_s) = (&self.followed[..], self.longest_dark_s);
-        (Some(tracking::Blinking { followed, others: ANY_BIT, longest_dark_s, appearing }), signals)
+        (Some(blinking), signals)
     }
 
     /// Gives the markers of the frame's camera to the vehicles, names these, and turns them as their signals say.
@@ -333,11 +343,15 @@ impl Blinking {
     }
 }
 
-impl Parts {
+impl Words {
     fn new(airframe: &Airframe, locator: &locator::Settings, fleet: &Fleet) -> Result<Self, SettingsError> {
+        let alike = !fleet.has_several_signals();
         Ok(Self {
+            alike,
             directory: Directory::of(fleet),
-            calling: Calling::new(airframe, locator)?,
+            missing: Missing::default(),
+            calling: Calling::new(airframe, locator, alike)?,
+            named: Vec::new(),
             signals: Vec::new(),
             strangers: Vec::new(),
         })
@@ -349,8 +363,9 @@ impl Parts {
         glance: &Glance<'_>,
         markers: &[MarkerTrack],
         before: &Before<'_>,
-    ) -> (Appearing<'_>, &[Option<Signalled>]) {
-        let Self { directory, calling, signals, strangers } = self;
+        (belongings, naming): (&Belongings, &Naming),
+    ) {
+        let Self { alike, directory, missing, calling, named, signals, strangers } = self;
         let sightings = glance.located.sightings.len();
         signals.clear();
         signals.resize(sightings, None);
@@ -368,7 +383,14 @@ impl Parts {
             strangers[sighting] =
                 probability * is_whole > SURE_STRANGER && directory.is_stranger(identity.who);
         }
-        let called = calling.listen(markers, directory, glance.gravity, before);
-        (Appearing { called, strangers }, signals)
+        named.clear();
+        if !*alike {
+            let may_call = |vehicle| (!before.tracked.is_followed(vehicle)).then(Call::default);
+            calling.listen(markers, directory, glance.gravity, before, may_call);
+            return;
+        }
+        naming.tell_sure(named);
+        missing.find((glance.camera, markers), directory, (belongings, naming), before.tracked);
+        calling.listen(markers, directory, glance.gravity, before, |vehicle| missing.call(vehicle));
     }
 }

@@ -29,6 +29,8 @@ const PLACED: f64 = 0.98;
 const REMEMBERED_NATS: f64 = 7.0;
 /// A share that no marker goes below.
 const LEAST: f64 = 1e-9;
+/// A name that is likelier than not.
+const RATHER: f64 = 0.5;
 /// A name that is less likely than this is not told.
 const TOLD: f64 = 0.01;
 /// How a vehicle is turned is told from this probability on.
@@ -121,6 +123,18 @@ impl Naming {
     /// Who each track may be, in the order of tracks, the likeliest first.
     pub(super) fn names(&self) -> &[Name] {
         &self.names
+    }
+
+    /// Adds the tracks whose vehicle is sure.
+    pub(super) fn tell_sure(&self, named: &mut Vec<(u64, u32)>) {
+        let sure = self.names.iter().filter(|name| name.probability > SURE);
+        named.extend(sure.map(|name| (name.track, name.id)));
+    }
+
+    /// The track that is rather this vehicle than not.
+    pub(super) fn likely_track(&self, vehicle: u32) -> Option<u64> {
+        let rather = |name: &&Name| name.id == vehicle && name.probability > RATHER;
+        self.names.iter().find(rather).map(|name| name.track)
     }
 
     /// The airframe's symmetry, and the turn that is the true one, where signals tell.

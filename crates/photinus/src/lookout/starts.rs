@@ -11,7 +11,7 @@ use core::f64::consts::TAU;
 use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 
 use crate::airframe::Airframe;
-use crate::pose::{Hypotheses, Observation, Pose};
+use crate::pose::{Hypotheses, LogDistance, Observation, Pose, Symmetry};
 use crate::ranging::Interval;
 
 /// Yaws that are tried.
@@ -28,12 +28,25 @@ const FARTHEST_RADII: f64 = 500.0;
 #[derive(Debug)]
 pub(super) struct Starts {
     airframe: Airframe,
+    symmetry: Symmetry,
+    /// Yaws that are tried, and their range, rad: LEDs that blink alike tell it modulo the airframe's symmetry.
+    yaws: u32,
+    yaws_rad: f64,
     markers: Vec<Option<u16>>,
 }
 
 impl Starts {
     pub(super) fn new(airframe: &Airframe) -> Self {
-        Self { airframe: airframe.clone(), markers: Vec::new() }
+        let symmetry = Symmetry::of(airframe);
+        let turns = symmetry.turns_with_signals() as u32;
+        let yaws = YAWS.div_ceil(turns);
+        Self {
+            airframe: airframe.clone(),
+            symmetry,
+            yaws,
+            yaws_rad: TAU / f64::from(turns),
+            markers: Vec::new(),
+        }
     }
 
     /// The distances at which vehicles are looked for.
@@ -52,8 +65,8 @@ impl Starts {
         hypotheses.begin(observations.len());
         let Some([first, second]) = farthest_apart(observations) else { return };
         let upright = upright(observations, up);
-        for step in 0..YAWS {
-            let yaw_rad = TAU * f64::from(step) / f64::from(YAWS);
+        for step in 0..self.yaws {
+            let yaw_rad = self.yaws_rad * f64::from(step) / f64::from(self.yaws);
             let attitude = upright * Rotation3::from_axis_angle(&Vector3::z_axis(), yaw_rad);
             for one in 0..self.airframe.markers().len() {
                 for other in 0..self.airframe.markers().len() {
@@ -62,6 +75,34 @@ impl Starts {
                         self.try_start(observations, [(first, one), (second, other)], attitude, hypotheses);
                     }
                 }
+            }
+        }
+    }
+
+    /// A distance of which nothing is known: even over the logarithm, as a normal distribution.
+    pub(super) fn any_distance(&self) -> LogDistance {
+        let reach = self.reach();
+        let [near, far] = [reach.min_m(), reach.max_m()].map(libm::log);
+        LogDistance { mean: 0.5 * (near + far), sigma: (far - near) / libm::sqrt(12.0) }
+    }
+
+    /// Offers the poses in which this is one marker, turned to the camera, of an airframe that is upright.
+    pub(super) fn offer_lone(
+        &mut self,
+        only: &Observation,
+        up: Option<Unit<Vector3<f64>>>,
+        distance: LogDistance,
+        hypotheses: &mut Hypotheses,
+    ) {
+        hypotheses.begin(1);
+        let ahead = *only.bearing.vector();
+        let up = up.map_or(-Vector3::y(), Unit::into_inner);
+        let position_m = ahead * libm::exp(distance.mean);
+        for marker in 0..self.airframe.markers().len() {
+            let number = marker as u16;
+            if self.symmetry.canonical_turn(&[number]) == 0 && self.carries(marker, only.signal) {
+                let camera_from_body = self.airframe.facing(marker, &ahead, &up);
+                hypotheses.offer(&[Some(number)], 0.0, 0, || Pose { position_m, camera_from_body });
             }
         }
     }

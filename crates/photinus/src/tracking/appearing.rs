@@ -1,7 +1,8 @@
 //! Located neighbours whose spots no vehicle claims -> new vehicles.
 //!
 //! A neighbour that is a vehicle's own spots, located again, is claimed and no news. The mixture of a neighbour's poses enters as it is. A vehicle that is
-//! heard appears once; where its track is lost, that one begins anew where the vehicle shows.
+//! heard appears once; where its track is lost, that one begins anew where the vehicle shows. So does a track that has its markers together with another
+//! vehicle's.
 
 use alloc::vec::Vec;
 
@@ -38,11 +39,17 @@ pub(super) fn appear(
     for appearance in &moment.appearances {
         let members = moment.members(appearance);
         let of_others = members.iter().map(|&spot| claimed[spot]).fold(0.0, f64::max);
-        let existence = appearance.probability * (1.0 - of_others).max(0.0);
+        let place_of = |track: u64| after.targets.iter().position(|own| own.id == track);
+        let instead = appearance.instead_of.and_then(place_of);
+        let free = if instead.is_some() { 1.0 } else { (1.0 - of_others).max(0.0) };
+        let existence = appearance.probability * free;
         unexplained -= existence * members.len() as f64;
-        let is_there = |own: &Target| appearance.vehicle.is_some() && own.vehicle == appearance.vehicle;
-        let before = after.targets.iter().position(is_there);
+        let is_there = |own: &Target| {
+            appearance.vehicle.is_some() && moment.who(own.id, own.vehicle) == appearance.vehicle
+        };
+        let before = instead.or_else(|| after.targets.iter().position(is_there));
         let may_begin = match before {
+            Some(_) if instead.is_some() => true,
             Some(before) => !members.is_empty() && after.is_lost(&after.targets[before]),
             None => after.targets.len() < MOST_TARGETS,
         };
@@ -96,7 +103,8 @@ pub(super) fn begun(
     let Scene { model, moment, .. } = *scene;
     modes.clear();
     let is_dumb = |&spot: &usize| moment.signals[spot].is_none();
-    let anonymous = appearance.vehicle.is_none() && moment.members(appearance).iter().all(is_dumb);
+    let anonymous =
+        moment.blinks_alike || appearance.vehicle.is_none() && moment.members(appearance).iter().all(is_dumb);
     let turns = if anonymous { model.symmetry.turns() } else { 1 };
     for mode in moment.modes(appearance) {
         let first = modes.first().copied();

@@ -59,7 +59,8 @@ fn own_neighbour<'a>(moment: &'a Moment, target: &Target, own: &[usize]) -> Opti
     let common = |appearance: &Appearance| {
         moment.members(appearance).iter().filter(|&spot| own.contains(spot)).count()
     };
-    let may_be = moment.appearances.iter().filter(|appearance| appearance.may_be(target.vehicle));
+    let who = moment.who(target.id, target.vehicle);
+    let may_be = moment.appearances.iter().filter(|appearance| appearance.may_be(who));
     let best = may_be.max_by_key(|appearance| common(appearance))?;
     let half = own.len().max(moment.members(best).len()).div_ceil(2).max(1);
     (common(best) >= half).then_some(best)

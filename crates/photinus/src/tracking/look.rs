@@ -17,6 +17,8 @@ const FOLLOWED: usize = 128;
 const NEIGHBOURS: usize = 4;
 /// A marker is lit in no smaller share of the frames.
 const LEAST_LIT: f64 = 0.05;
+/// Sightings of several vehicles are no neighbour from this probability of each on.
+const SURELY_HEARD: f64 = 0.95;
 /// A signal that comes with its sighting is right so often.
 const SIGNAL_IS_RIGHT: f64 = 0.99;
 
@@ -52,18 +54,15 @@ pub struct Blinking<'a> {
     pub others: f64,
     /// No LED that blinks is dark for longer, s.
     pub longest_dark_s: f64,
-    /// Where the LEDs of a vehicle blink differently: who appears, by what is heard. A frame shows parts of such vehicles, and what looks like a neighbour in
-    /// it may be parts of several, so that nobody appears who is only seen. `None` where the LEDs of a vehicle blink alike.
-    pub appearing: Option<Appearing<'a>>,
-}
-
-/// Who appears in a fleet whose vehicles carry several signals each.
-#[derive(Clone, Copy, Debug)]
-pub struct Appearing<'a> {
-    /// Vehicles whose words are heard.
+    /// Whether all LEDs of a vehicle blink alike. Where they do not, a frame shows parts of vehicles, and what looks like a neighbour in it may be parts of
+    /// several, so that nobody appears who is only seen.
+    pub alike: bool,
+    /// Vehicles whose words are heard and that have no track of their own.
     pub called: &'a [Called],
     /// By sighting, whether it surely is a light of nobody in the fleet; those beyond its end are not.
     pub strangers: &'a [bool],
+    /// Tracks, and which vehicle of the fleet each surely is.
+    pub named: &'a [(u64, u32)],
 }
 
 /// A vehicle whose words are heard, with its pose from all markers that blink them, also those that are dark in the frame.
@@ -71,6 +70,8 @@ pub struct Appearing<'a> {
 pub struct Called {
     /// Who it is.
     pub vehicle: u32,
+    /// The track that has its markers, and another vehicle's with them: it begins anew as this one.
+    pub instead_of: Option<u64>,
     /// How likely its markers are one vehicle with these words, 0 to 1.
     pub probability: f64,
     /// Those of its markers that are sightings of the frame, ascending.
@@ -173,6 +174,8 @@ pub(super) struct Appearance {
     pub(super) probability: f64,
     /// Who it is, where that was heard.
     pub(super) vehicle: Option<u32>,
+    /// The track that begins anew there.
+    pub(super) instead_of: Option<u64>,
     first_member: usize,
     members: usize,
     first_mode: usize,
@@ -216,6 +219,8 @@ pub(super) struct Moment {
     pub(super) longest_dark_s: f64,
     /// Whether all LEDs of a vehicle blink alike.
     pub(super) blinks_alike: bool,
+    /// Tracks, and which vehicle each surely is.
+    named: Vec<(u64, u32)>,
 }
 
 impl Moment {
@@ -259,29 +264,56 @@ impl Moment {
         self.appearances.clear();
         self.members.clear();
         self.modes.clear();
-        let appearing = blinking.and_then(|blinking| blinking.appearing);
         self.longest_dark_s = blinking.map_or(f64::INFINITY, |blinking| blinking.longest_dark_s);
-        self.blinks_alike = blinking.is_some() && appearing.is_none();
-        self.share_lit = appearing.and(self.others_lit).unwrap_or(1.0).max(LEAST_LIT);
+        self.blinks_alike = blinking.is_some_and(|blinking| blinking.alike);
+        let parts = blinking.filter(|blinking| !blinking.alike);
+        self.share_lit = parts.and(self.others_lit).unwrap_or(1.0).max(LEAST_LIT);
+        self.named.clear();
+        self.named.extend_from_slice(blinking.map_or(&[], |blinking| blinking.named));
         let is_stranger = |spot: &usize| {
-            appearing.is_none_or(|Appearing { strangers, .. }| strangers.get(*spot).copied().unwrap_or(false))
+            parts.is_none_or(|Blinking { strangers, .. }| strangers.get(*spot).copied().unwrap_or(false))
         };
         for neighbour in located.neighbours.iter().filter(|neighbour| neighbour.kind == kind) {
             let Neighbour { probability, kind_probability, sightings, modes, .. } = neighbour;
-            if sightings.iter().all(is_stranger) {
-                self.keep_appearance(None, probability * kind_probability, sightings, modes);
+            if sightings.iter().all(is_stranger) && !self.are_of_several(sightings) {
+                let probability = probability * kind_probability;
+                self.keep_appearance((None, None), probability, sightings, modes);
             }
         }
-        for called in appearing.map_or(&[][..], |appearing| appearing.called) {
-            self.keep_appearance(Some(called.vehicle), called.probability, &called.members, &called.modes);
+        for Called { vehicle, instead_of, probability, members, modes } in
+            blinking.map_or(&[][..], |blinking| blinking.called)
+        {
+            self.keep_appearance((Some(*vehicle), *instead_of), *probability, members, modes);
         }
     }
 
-    fn keep_appearance(&mut self, vehicle: Option<u32>, probability: f64, members: &[usize], modes: &[Mode]) {
+    /// Whether these sightings were heard to be markers of different vehicles.
+    fn are_of_several(&self, sightings: &[usize]) -> bool {
+        let mut heard = sightings.iter().filter_map(|&spot| {
+            self.signals[spot].filter(|own| own.probability > SURELY_HEARD).and_then(|own| own.vehicle)
+        });
+        let first = heard.next();
+        heard.any(|own| Some(own) != first)
+    }
+
+    /// Which vehicle a track is, where that was heard: when it appeared, or since.
+    pub(super) fn who(&self, track: u64, when_it_appeared: Option<u32>) -> Option<u32> {
+        let named = || self.named.iter().find(|named| named.0 == track).map(|named| named.1);
+        when_it_appeared.or_else(named)
+    }
+
+    fn keep_appearance(
+        &mut self,
+        (vehicle, instead_of): (Option<u32>, Option<u64>),
+        probability: f64,
+        members: &[usize],
+        modes: &[Mode],
+    ) {
         let modes = &modes[..modes.len().min(MOST_MODES)];
         self.appearances.push(Appearance {
             probability,
             vehicle,
+            instead_of,
             first_member: self.members.len(),
             members: members.len(),
             first_mode: self.modes.len(),

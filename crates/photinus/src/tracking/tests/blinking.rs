@@ -43,7 +43,15 @@ fn see(observer: &mut Observer, number: usize, seen: &[Seen], longest_dark_s: f6
         located: observer.locator.locate(Input::spots(&spots).gravity(&gravity)).unwrap(),
         signals: &[],
         lit: &[],
-        blinking: Some(Blinking { followed: &[], others: 0.5, longest_dark_s, appearing: None }),
+        blinking: Some(Blinking {
+            followed: &[],
+            others: 0.5,
+            longest_dark_s,
+            alike: true,
+            called: &[],
+            strangers: &[],
+            named: &[],
+        }),
     };
     observer.tracker.track(&look).unwrap();
 }

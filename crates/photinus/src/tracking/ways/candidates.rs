@@ -3,7 +3,6 @@
 use super::super::branches::{Around, Pairs};
 use super::super::component::Component;
 use super::super::joint::Spots;
-use super::super::state::Target;
 use super::super::update::Prior;
 use super::{Scene, Ways, signal_nats};
 use crate::pose::Pose;
@@ -25,16 +24,11 @@ const FAR_SHARE: f64 = 0.5;
 
 impl Ways {
     /// Gathers the ways that a distribution offers: by itself, and at neighbours.
-    pub(super) fn gather(
-        &mut self,
-        scene: &Scene<'_>,
-        vehicle: usize,
-        target: &Target,
-        component: &Component,
-    ) {
+    pub(super) fn gather(&mut self, scene: &Scene<'_>, vehicle: usize, component: &Component) {
         let first = self.candidates.len();
         self.grow(scene, vehicle, component);
-        for appearance in scene.moment.appearances.iter().filter(|own| own.may_be(target.vehicle)) {
+        let who = self.who;
+        for appearance in scene.moment.appearances.iter().filter(|own| own.may_be(who)) {
             self.gather_at_neighbour(scene, first, component, appearance);
         }
         if self.candidates.len() == first {

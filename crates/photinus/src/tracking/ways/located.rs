@@ -12,7 +12,6 @@ use super::super::doubting::WRONG;
 use super::super::look::Appearance;
 use super::super::power::Power;
 use super::super::silent::Silent;
-use super::super::state::Target;
 use super::super::step::Model;
 use super::super::update::Prior;
 use super::candidates::Candidate;
@@ -46,7 +45,7 @@ impl Ways {
         if self.candidates[first..].iter().any(|own| is_whole(&own.pairs)) {
             return;
         }
-        let turns = if members.iter().all(|&spot| moment.signals[spot].is_none()) {
+        let turns = if moment.blinks_alike || members.iter().all(|&spot| moment.signals[spot].is_none()) {
             model.symmetry.turns()
         } else {
             1
@@ -77,10 +76,10 @@ impl Ways {
     }
 
     /// Adds to the spots that a vehicle may be seen by those of the neighbours at which it may begin anew.
-    pub(super) fn reach_neighbours(&mut self, scene: &Scene<'_>, vehicle: usize, target: &Target) {
+    pub(super) fn reach_neighbours(&mut self, scene: &Scene<'_>, vehicle: usize) {
         let Scene { moment, .. } = *scene;
-        let gathered = self.reach[vehicle];
-        for appearance in moment.appearances.iter().filter(|own| own.may_be(target.vehicle)) {
+        let (gathered, who) = (self.reach[vehicle], self.who);
+        for appearance in moment.appearances.iter().filter(|own| own.may_be(who)) {
             let mut spots = Some(0);
             for &spot in moment.members(appearance) {
                 spots = spots.and_then(|spots| Some(spots | self.bit_of(spot)?));

@@ -265,13 +265,13 @@ impl Ways {
             let unseen = self.unseen(scene, vehicle, component);
             self.unseen_of.push(unseen);
             unseen_if_shown += component.weight * unseen;
-            self.gather(scene, vehicle, target, component);
+            self.gather(scene, vehicle, component);
         }
         let existence = scene.existence(target);
         self.unseen_if_shown.push(unseen_if_shown);
         self.log_unseen.push(libm::log(existence.unseen(unseen_if_shown)));
         self.log_shown.push(libm::log(existence.shown.max(f64::MIN_POSITIVE)));
-        self.reach_neighbours(scene, vehicle, target);
+        self.reach_neighbours(scene, vehicle);
         let own = self.candidates[self.gathered(vehicle)].iter().map(|candidate| candidate.promise);
         self.promises.push(own.reduce(f64::max));
     }
@@ -287,7 +287,8 @@ impl Ways {
             let (target, components) = vehicles(vehicle);
             self.prepare(scene, vehicle, target, components);
             self.try_gathered(scene, vehicle);
-            for appearance in scene.moment.appearances.iter().filter(|own| own.may_be(target.vehicle)) {
+            let who = self.who;
+            for appearance in scene.moment.appearances.iter().filter(|own| own.may_be(who)) {
                 self.begin_anew(scene, vehicle, appearance);
             }
             self.tried.push(vehicle);
@@ -316,7 +317,8 @@ impl Ways {
         let angle_rad = model.pose.marker_sigma_m / distance_m;
         let extra_rad2 = self.repeats * angle_rad * angle_rad;
         self.whiten(extra_rad2);
-        (self.who, self.unseen_s) = (target.vehicle, moment.time_s - target.seen_s);
+        self.who = moment.who(target.id, target.vehicle);
+        self.unseen_s = moment.time_s - target.seen_s;
         self.told_lit.clear();
         self.told_lit.resize(model.airframe.markers().len(), 1.0);
         for told in moment.lit.iter().filter(|told| told.track == target.id) {
@@ -433,6 +435,11 @@ fn is_known_aside(component: &Component, radius_m: f64) -> bool {
 /// What it costs that a spot is a marker of `who`, for what it blinks.
 fn signal_nats(model: &Model, moment: &Moment, who: Option<u32>, spot: usize, marker: usize) -> f64 {
     let told = moment.signals[spot];
+    if moment.blinks_alike {
+        // Of a vehicle that nobody named any spot may be a marker.
+        let of_another = told.filter(|told| who.is_some() && told.vehicle != who);
+        return of_another.map_or(0.0, |told| -libm::log((1.0 - told.probability).max(WRONG_MARKER)));
+    }
     let carries =
         |signal: Option<u32>| signal.is_none_or(|signal| model.symmetry.carries(marker as u16, signal));
     if who.is_some() || told.is_some_and(|told| told.vehicle.is_some()) {

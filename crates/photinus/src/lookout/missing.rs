@@ -51,6 +51,11 @@ impl Missing {
         let is_named = |vehicle: u32, but: Option<u64>| {
             naming.likely_track(vehicle).is_some_and(|track| Some(track) != but)
         };
+        // Who would have LEDs unlike all others' is to be placed by what was heard of it, too.
+        for track in tracked.tracks.iter().filter(|track| track.is_odd) {
+            let name = heard.iter().map(|own| own.0).find(|&own| naming.likely_track(own) == Some(track.id));
+            calls.extend(name.map(|vehicle| (vehicle, Call { instead_of: None })));
+        }
         for place in 0..heard.len() {
             let (vehicle, track) = heard[place];
             if calls.iter().any(|call| call.0 == vehicle) || is_followed(vehicle) || is_named(vehicle, track)

@@ -74,6 +74,7 @@ pub(super) fn appear(
             seen_by: moment.camera,
             seen_by_each_s: seen_by_each_s(moment),
             is_predicted: members.is_empty(),
+            is_odd: false,
             calibration_rad2: calibration / members.len().max(1) as f64,
             first_component,
             components: modes.len(),

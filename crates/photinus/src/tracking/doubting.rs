@@ -156,6 +156,7 @@ mod tests {
             seen_by: 0,
             seen_by_each_s: [1.0; Rig::MOST],
             is_predicted: false,
+            is_odd: false,
             calibration_rad2: Matrix3::zeros(),
             log_wrong: beforehand(),
             first_component: 0,

@@ -32,6 +32,8 @@ pub(super) struct Target {
     pub(super) seen_by_each_s: [f64; Rig::MOST],
     /// Whether it is not seen in this frame, nor was in the last one of another camera.
     pub(super) is_predicted: bool,
+    /// Whether its LEDs would be stronger or weaker than those of all others, were it where it is believed to be.
+    pub(super) is_odd: bool,
     /// What the camera's calibration leaves open of its direction, rad^2.
     pub(super) calibration_rad2: Matrix3<f64>,
     /// How likely it has settled for a wrong pose, as the logarithm of odds.

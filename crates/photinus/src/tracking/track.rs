@@ -39,6 +39,8 @@ pub struct Track {
     pub is_predicted: bool,
     /// Who it was heard to be when it appeared.
     pub(crate) vehicle: Option<u32>,
+    /// Whether its LEDs would be stronger or weaker than those of all others, were it where it is believed to be.
+    pub(crate) is_odd: bool,
     /// Whether it would have shown by now where it is, if it was heard.
     is_lost: bool,
     first_member: usize,
@@ -156,6 +158,7 @@ impl Tracked {
                 existence,
                 is_predicted: target.is_predicted || interval_s > 0.0,
                 vehicle: target.vehicle,
+                is_odd: target.is_odd,
                 is_lost: state.is_lost(target),
                 first_member,
                 members: self.members.len() - first_member,

@@ -53,6 +53,8 @@ const WRONG_SIGNAL_NATS: f64 = 5.0;
 const ANY_MARKER: f64 = 1e-3;
 /// What was followed and heard is another light so seldom.
 const WRONG_MARKER: f64 = 1e-4;
+/// LEDs are odd whose power is so far from what others say, standard deviations.
+const ODD_SIGMA: f64 = 3.0;
 /// This share of exposures straddles an edge of what an LED blinks, and a marker that shines for a part of one shows so likely.
 const PARTLY: f64 = 0.06;
 const DIM_SHOWS: f64 = 0.5;
@@ -203,6 +205,12 @@ impl Ways {
     /// The same by its distributions.
     pub(super) fn unseen_of(&self, vehicle: usize) -> impl Iterator<Item = f64> {
         self.unseen_of[self.first_unseen[vehicle]..].iter().copied()
+    }
+
+    /// Whether LEDs of a vehicle would be of another power than others say, if it is there; `None` where that is not known.
+    pub(super) fn is_odd(&self, vehicle: usize, there: &Component, camera: usize) -> Option<bool> {
+        let (others, own) = (self.powers[vehicle]?, there.power.log_power(camera)?);
+        Some((own - others.value).abs() > ODD_SIGMA * others.sigma)
     }
 
     /// A vehicle that may stand before others: all of them, before the first is added.

@@ -3,7 +3,8 @@
 //! A sum of normal distributions forgets what was unlikely once. Two vehicles nearly in line may begin as one that is nearer; a track that settled for a wrong
 //! distance then explains two spots well enough for good, for what light and missing markers tell is the same error in every frame. But each frame also tells
 //! by itself how far the neighbour is, with all that the locator knows. So two explanations are weighed from frame to frame: the track is right, or it is
-//! wrong, and its vehicle is wherever frames have it. Errors that frames repeat count once here, too.
+//! wrong, and its vehicle is wherever frames have it. Errors that frames repeat count once here, too. A track whose LEDs would be unlike all others' is weighed
+//! against the one place that fits best to what was heard of it.
 
 use alloc::vec::Vec;
 
@@ -15,6 +16,7 @@ use super::ways::{Scene, Ways};
 #[cfg(not(feature = "std"))]
 use crate::float::Float as _;
 use crate::locator::LOG_RANGE;
+use crate::pose::Mode;
 
 /// A track has settled for the wrong pose so seldom, ...
 pub(super) const WRONG: f64 = 1e-3;
@@ -36,7 +38,10 @@ pub(super) fn doubt(
     let moment = scene.moment;
     let Some(&target) = after.targets.last() else { return };
     let Some(appearance) = own_neighbour(moment, &target, after.members(&target)) else { return };
-    let right = how_right(moment, appearance, after.components(&target));
+    let mut right = how_right(moment, appearance, after.components(&target));
+    if target.is_odd && appearance.vehicle.is_some() {
+        right /= most_right(moment, appearance).max(1.0);
+    }
     let log_wrong = (target.log_wrong - libm::log(right) / repeats).max(beforehand());
     let first = target.first_component;
     let place = after.targets.len() - 1;
@@ -64,6 +69,21 @@ fn own_neighbour<'a>(moment: &'a Moment, target: &Target, own: &[usize]) -> Opti
     let best = may_be.max_by_key(|appearance| common(appearance))?;
     let half = own.len().max(moment.members(best).len()).div_ceil(2).max(1);
     (common(best) >= half).then_some(best)
+}
+
+/// How much likelier the frame is if the vehicle is where it most likely is than if it were at any distance.
+fn most_right(moment: &Moment, appearance: &Appearance) -> f64 {
+    let at = |pose_m, covariance_m2| {
+        let [at_m, _] = along(pose_m, covariance_m2);
+        let density = |mode: &Mode| {
+            let [far_m, var] = along(&mode.pose.position_m, &mode.position_covariance_m2);
+            let off = libm::log(far_m / at_m);
+            mode.weight * libm::exp(-0.5 * off * off / var) / (core::f64::consts::TAU * var).sqrt()
+        };
+        moment.modes(appearance).iter().map(density).sum::<f64>() * LOG_RANGE
+    };
+    let modes = moment.modes(appearance).iter();
+    modes.map(|mode| at(&mode.pose.position_m, &mode.position_covariance_m2)).fold(0.0, f64::max)
 }
 
 /// How much likelier the frame is if the vehicle is where the track has it than if it were at any distance: the density of what the frame tells of the

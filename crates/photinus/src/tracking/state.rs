@@ -13,6 +13,8 @@ use crate::camera::Rig;
 pub(super) const MOST_TARGETS: usize = 64;
 /// Most normal distributions of one vehicle.
 pub(super) const MOST_COMPONENTS: usize = 12;
+/// A vehicle is where one of its distributions has it from this weight on.
+const SURELY_THERE: f64 = 0.9;
 /// Points of clutter in a frame before any was seen.
 const CLUTTER_BEFOREHAND: f64 = 0.5;
 
@@ -100,6 +102,30 @@ impl State {
     /// Whether a vehicle that was heard would have shown by now where its track is.
     pub(super) fn is_lost(&self, target: &Target) -> bool {
         self.time_s - target.seen_s > LOST_S
+    }
+
+    /// Ends the younger of two tracks that surely stand in one place, where there is room for one vehicle of this radius only.
+    pub(super) fn end_doubles(&mut self, radius_m: f64) {
+        let mut place = 1;
+        while place < self.targets.len() {
+            let is_older = |older: &Target| self.is_double(older, &self.targets[place], radius_m);
+            if self.targets[..place].iter().any(is_older) {
+                self.targets.remove(place);
+            } else {
+                place += 1;
+            }
+        }
+    }
+
+    /// Whether each of two tracks is known to less than a radius, and they are nearer to each other than that.
+    fn is_double(&self, one: &Target, other: &Target, radius_m: f64) -> bool {
+        let [Some(one), Some(other)] = [one, other].map(|target| self.components(target).first()) else {
+            return false;
+        };
+        let is_known =
+            |own: &Component| own.weight > SURELY_THERE && own.block(0).trace() < radius_m * radius_m;
+        let apart_m = (one.pose.position_m - other.pose.position_m).norm();
+        apart_m < radius_m && is_known(one) && is_known(other)
     }
 
     /// The normal distributions of a vehicle, the heaviest first.

@@ -200,6 +200,7 @@ impl Stepper {
         }
         let unexplained =
             appearing::appear(&scene, &mut self.ways, straight_rad, &self.claimed, &mut self.reduced, after);
+        after.end_doubles(model.airframe.max_radius_m());
         let clutter = clutter + (unexplained - clutter) / CLUTTER_FRAMES;
         after.clutter[moment.camera] = clutter.max(LEAST_CLUTTER);
     }

@@ -22,7 +22,7 @@ use crate::airframe::Airframe;
 use crate::following::MarkerTrack;
 use crate::locator::Settings;
 use crate::pose::{Estimator, Hypotheses, Known, LogLight, Observation, POWER_RANGE, SettingsError, Visible};
-use crate::tracking::Called;
+use crate::tracking::{Called, Calls};
 
 /// A marker tells whose it is from this probability on, ...
 const HEARD: f64 = 0.5;
@@ -41,13 +41,6 @@ const MOST_MISFIT_SIGMA: f64 = 6.0;
 /// A marker that was not heard is lit so likely, where LEDs blink each for itself, and where all of a vehicle blink alike: it turned into view, or is dead.
 const UNHEARD_LIT: f64 = 0.5;
 const UNHEARD_LIT_ALIKE: f64 = 0.9;
-
-/// A vehicle that may call.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct Call {
-    /// The track that begins anew as it.
-    pub(super) instead_of: Option<u64>,
-}
 
 /// Vehicle, signal, and place among the markers that are followed.
 type Heard = (u32, Option<u32>, usize);
@@ -91,14 +84,14 @@ impl Calling {
         })
     }
 
-    /// Those that call among the markers that are followed: of the vehicles for which `may_call` says so, and of which tracks they take the place.
+    /// Those that call among the markers that are followed: of the vehicles for which `may_call` says so, and whose tracks they are.
     pub(super) fn listen(
         &mut self,
         markers: &[MarkerTrack],
         directory: &Directory,
         gravity: Option<Unit<Vector3<f64>>>,
         before: &Before<'_>,
-        may_call: impl Fn(u32) -> Option<Call>,
+        may_call: impl Fn(u32) -> Option<Calls>,
     ) {
         self.count = 0;
         self.heard.clear();
@@ -140,7 +133,7 @@ impl Calling {
     fn call(
         &mut self,
         markers: &[MarkerTrack],
-        (own, call): (&[Heard], Call),
+        (own, as_track): (&[Heard], Calls),
         up: Option<Unit<Vector3<f64>>>,
         before: &Before<'_>,
     ) {
@@ -183,7 +176,7 @@ impl Calling {
         let called = &mut self.called[self.count];
         self.count += 1;
         called.vehicle = own[0].0;
-        called.instead_of = call.instead_of;
+        called.as_track = as_track;
         called.probability = probability;
         called.members.clear();
         called.members.extend(own.iter().filter_map(|own| of(own).sighting));

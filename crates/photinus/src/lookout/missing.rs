@@ -7,11 +7,10 @@ use alloc::vec::Vec;
 
 use super::SURELY_HEARD;
 use super::belonging::Belongings;
-use super::calling::Call;
 use super::directory::Directory;
 use super::naming::Naming;
 use crate::following::MarkerTrack;
-use crate::tracking::Tracked;
+use crate::tracking::{Calls, Tracked};
 
 /// A marker belongs to a track from this share on, and to none below the other.
 const SURELY_ITS: f64 = 0.9;
@@ -22,7 +21,7 @@ const SURELY_NOT: f64 = 0.25;
 pub(super) struct Missing {
     /// Vehicle, and the track that surely has the marker.
     heard: Vec<(u32, Option<u64>)>,
-    calls: Vec<(u32, Call)>,
+    calls: Vec<(u32, Calls)>,
 }
 
 impl Missing {
@@ -54,7 +53,7 @@ impl Missing {
         // Who would have LEDs unlike all others' is to be placed by what was heard of it, too.
         for track in tracked.tracks.iter().filter(|track| track.is_odd) {
             let name = heard.iter().map(|own| own.0).find(|&own| naming.likely_track(own) == Some(track.id));
-            calls.extend(name.map(|vehicle| (vehicle, Call { instead_of: None })));
+            calls.extend(name.map(|vehicle| (vehicle, Calls::Doubting(track.id))));
         }
         for place in 0..heard.len() {
             let (vehicle, track) = heard[place];
@@ -65,7 +64,7 @@ impl Missing {
             let Some(track) = track else {
                 // Another of its markers may have a track.
                 if !heard.iter().any(|other| other.0 == vehicle && other.1.is_some()) {
-                    calls.push((vehicle, Call { instead_of: None }));
+                    calls.push((vehicle, Calls::New));
                 }
                 continue;
             };
@@ -77,15 +76,15 @@ impl Missing {
                 other.0 == vehicle
                     || naming.likely_track(other.0) != Some(track) && count(other.0) <= count(vehicle)
             });
-            let is_taken = calls.iter().any(|call| call.1.instead_of == Some(track));
+            let is_taken = calls.iter().any(|call| call.1 == Calls::InsteadOf(track));
             if is_mixed && !is_taken && (is_its || has_most) {
-                calls.push((vehicle, Call { instead_of: Some(track) }));
+                calls.push((vehicle, Calls::InsteadOf(track)));
             }
         }
     }
 
     /// How a vehicle may call, if it is one of them.
-    pub(super) fn call(&self, vehicle: u32) -> Option<Call> {
+    pub(super) fn call(&self, vehicle: u32) -> Option<Calls> {
         self.calls.iter().find(|call| call.0 == vehicle).map(|call| call.1)
     }
 }

@@ -51,10 +51,10 @@ use crate::identity::decoder::{self, Decoder, DecoderError};
 use crate::locator::{self, Located};
 use crate::pose::{LogLight, SettingsError};
 use crate::tracking::{
-    self, Followed, Look, Moving, Placed, Signalled, TrackError, Tracked, Tracker, TrackerError, Turned,
+    self, Calls, Followed, Look, Moving, Placed, Signalled, TrackError, Tracked, Tracker, TrackerError, Turned,
 };
 use belonging::Belongings;
-use calling::{Call, Calling};
+use calling::Calling;
 use directory::Directory;
 pub use fleet::{Fleet, FleetError, Vehicle};
 use missing::Missing;
@@ -385,7 +385,7 @@ impl Words {
         }
         named.clear();
         if !*alike {
-            let may_call = |vehicle| (!before.tracked.is_followed(vehicle)).then(Call::default);
+            let may_call = |vehicle| (!before.tracked.is_followed(vehicle)).then_some(Calls::New);
             calling.listen(markers, directory, glance.gravity, before, may_call);
             return;
         }

@@ -41,6 +41,8 @@ struct Blinker {
     words: Vec<Word>,
     phase_s: f64,
     is_hidden: bool,
+    /// Markers whose LED is dead.
+    dead: Vec<usize>,
 }
 
 impl Blinker {
@@ -51,7 +53,25 @@ impl Blinker {
         words: Vec<Word>,
         phase_s: f64,
     ) -> Self {
-        Self { flown: Flown::at(position_m, velocity_m_s, yaw_rad), words, phase_s, is_hidden: false }
+        let flown = Flown::at(position_m, velocity_m_s, yaw_rad);
+        Self { flown, words, phase_s, is_hidden: false, dead: Vec::new() }
+    }
+
+    /// The same, turned so that a marker faces the camera, and with those LEDs dead that are so many places beside it.
+    fn facing_with_dead(mut self, airframe: &Airframe, beside: &[usize]) -> Self {
+        let shines = |own: &Self, marker: usize| {
+            let camera_m = own.flown.world_from_body().inverse() * -own.flown.position_m;
+            airframe.intensity(marker, &camera_m)
+        };
+        let turned = |degrees: i32| {
+            let mut own = self.clone();
+            own.flown.yaw_rad = f64::from(degrees).to_radians();
+            own
+        };
+        let best = (0..360).max_by(|&a, &b| shines(&turned(a), 0).total_cmp(&shines(&turned(b), 0)));
+        self = turned(best.unwrap());
+        self.dead = beside.to_vec();
+        self
     }
 
     fn is_lit(&self, signal: u32, time_s: f64) -> bool {
@@ -95,7 +115,8 @@ impl World {
             for seen in simulator::look(&self.airframe, &[blinker.flown], &level, &mut self.rng) {
                 let led = self.airframe.markers()[seen.marker].leds[0];
                 let signal = self.airframe.leds()[led].signal.unwrap_or(0);
-                if !blinker.is_hidden && blinker.is_lit(signal, time_s) {
+                let is_dark = blinker.is_hidden || blinker.dead.contains(&seen.marker);
+                if !is_dark && blinker.is_lit(signal, time_s) {
                     spots.push(seen.spot);
                 }
             }
@@ -175,6 +196,44 @@ fn signals_tell_how_a_symmetric_airframe_is_turned() {
         }
         assert!(known >= 80, "{yaw_deg}: {known} of 90");
     }
+}
+
+/// One shows two LEDs, since the one between them is dead, and another in line with it shows one: in every frame in which both are lit they look like one
+/// neighbour. A third shows a single LED and has no group in any frame.
+#[test]
+fn what_is_heard_parts_vehicles_that_look_like_one() {
+    let airframe = hexarotor();
+    let mut world = World::new(airframe.clone(), 5, 1);
+    let at = |position_m, velocity_m_s, number: usize| {
+        let phase_s = 0.003 + 0.035 * number as f64;
+        Blinker::new(position_m, velocity_m_s, 0.3, vec![word(number)], phase_s)
+    };
+    let mut blinkers = [
+        at([-2.5, 0.2, 5.0], [0.1, 0.0, 0.0], 0),
+        at([3.0, -0.3, 6.0], [0.0, 0.0, 0.1], 1),
+        at([-0.2, 0.0, 6.0], [0.0, 0.05, 0.0], 2).facing_with_dead(&airframe, &[0]),
+        at([0.5, 0.0, 5.5], [0.0, -0.05, 0.0], 3).facing_with_dead(&airframe, &[1, 5]),
+        at([4.5, 1.0, 7.0], [-0.1, 0.0, 0.0], 4).facing_with_dead(&airframe, &[1, 5]),
+    ];
+    let mut right = [0; 5];
+    for frame in 0..240 {
+        let tracked = world.see(&mut blinkers);
+        for (of, (blinker, id)) in blinkers.iter().zip(1..).enumerate().filter(|_| frame >= 90) {
+            let is_it = |track: &&tracking::Track| {
+                let name = world.lookout.name(track.id);
+                let (at_m, there_m) = (track.position_m, blinker.flown.position_m);
+                // Of one LED nobody knows how it is turned: its light tells the distance to a factor of two.
+                let near = match of {
+                    0..3 => simulator::nees(&(at_m - there_m), &track.position_covariance_m2) < 16.0,
+                    _ => at_m.angle(&there_m) < 0.1 && (0.5..2.0).contains(&(at_m.norm() / there_m.norm())),
+                };
+                near && name.is_some_and(|name| name.id == id && name.probability > SURE)
+            };
+            right[of] += u32::from(tracked.tracks.iter().any(|track| is_it(&track)));
+        }
+    }
+    assert_eq!(right, [150; 5]);
+    assert_eq!(world.lookout.tracked().tracks.len(), 5, "{:?}", world.lookout.names());
 }
 
 /// Nobody is sure of an id that two carry, and the answer says why.

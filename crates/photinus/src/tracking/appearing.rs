@@ -10,7 +10,7 @@ use nalgebra::Matrix3;
 
 use super::component::{Component, Covariance, YAW_RATE};
 use super::doubting;
-use super::look::{Appearance, Moment};
+use super::look::{Appearance, Calls, Moment};
 use super::power::Power;
 use super::reduction::reduce;
 use super::silent::Silent;
@@ -40,7 +40,11 @@ pub(super) fn appear(
         let members = moment.members(appearance);
         let of_others = members.iter().map(|&spot| claimed[spot]).fold(0.0, f64::max);
         let place_of = |track: u64| after.targets.iter().position(|own| own.id == track);
-        let instead = appearance.instead_of.and_then(place_of);
+        let instead = match appearance.as_track {
+            Calls::New => None,
+            Calls::InsteadOf(track) => place_of(track),
+            Calls::Doubting(_) => continue,
+        };
         let free = if instead.is_some() { 1.0 } else { (1.0 - of_others).max(0.0) };
         let existence = appearance.probability * free;
         unexplained -= existence * members.len() as f64;

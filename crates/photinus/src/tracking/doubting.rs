@@ -10,7 +10,7 @@ use alloc::vec::Vec;
 
 use super::appearing::begun;
 use super::component::Component;
-use super::look::{Appearance, Moment};
+use super::look::{Appearance, Calls, Moment};
 use super::state::{State, Target};
 use super::ways::{Scene, Ways};
 #[cfg(not(feature = "std"))]
@@ -38,11 +38,13 @@ pub(super) fn doubt(
     let moment = scene.moment;
     let Some(&target) = after.targets.last() else { return };
     let Some(appearance) = own_neighbour(moment, &target, after.members(&target)) else { return };
-    let mut right = how_right(moment, appearance, after.components(&target));
-    if target.is_odd && appearance.vehicle.is_some() {
-        right /= most_right(moment, appearance).max(1.0);
-    }
-    let log_wrong = (target.log_wrong - libm::log(right) / repeats).max(beforehand());
+    let right = how_right(moment, appearance, after.components(&target));
+    // What was heard of an odd track tells of all that was seen of it, not of one frame.
+    let said = match appearance.as_track {
+        Calls::Doubting(_) => libm::log(right / most_right(moment, appearance).max(1.0)),
+        _ => libm::log(right) / repeats,
+    };
+    let log_wrong = (target.log_wrong - said).max(beforehand());
     let first = target.first_component;
     let place = after.targets.len() - 1;
     after.targets[place].log_wrong = log_wrong;
@@ -65,7 +67,10 @@ fn own_neighbour<'a>(moment: &'a Moment, target: &Target, own: &[usize]) -> Opti
         moment.members(appearance).iter().filter(|&spot| own.contains(spot)).count()
     };
     let who = moment.who(target.id, target.vehicle);
-    let may_be = moment.appearances.iter().filter(|appearance| appearance.may_be(who));
+    let may_be = moment.appearances.iter().filter(|appearance| match appearance.as_track {
+        Calls::Doubting(track) => track == target.id,
+        _ => appearance.may_be(who),
+    });
     let best = may_be.max_by_key(|appearance| common(appearance))?;
     let half = own.len().max(moment.members(best).len()).div_ceil(2).max(1);
     (common(best) >= half).then_some(best)

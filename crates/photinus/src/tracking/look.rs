@@ -70,14 +70,26 @@ pub struct Blinking<'a> {
 pub struct Called {
     /// Who it is.
     pub vehicle: u32,
-    /// The track that has its markers, and another vehicle's with them: it begins anew as this one.
-    pub instead_of: Option<u64>,
+    /// Whose track it is.
+    pub as_track: Calls,
     /// How likely its markers are one vehicle with these words, 0 to 1.
     pub probability: f64,
     /// Those of its markers that are sightings of the frame, ascending.
     pub members: Vec<usize>,
     /// The ways in which its markers can be the airframe, the likeliest first; yaw is told as far as signals differ.
     pub modes: Vec<Mode>,
+}
+
+/// Whose track a vehicle is that calls.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Calls {
+    /// Nobody's: it is a new one.
+    #[default]
+    New,
+    /// That of this track, which has another vehicle's markers with its own: it begins anew.
+    InsteadOf(u64),
+    /// That of this track, which is in doubt.
+    Doubting(u64),
 }
 
 /// A marker that is followed through its dark frames.
@@ -174,8 +186,8 @@ pub(super) struct Appearance {
     pub(super) probability: f64,
     /// Who it is, where that was heard.
     pub(super) vehicle: Option<u32>,
-    /// The track that begins anew there.
-    pub(super) instead_of: Option<u64>,
+    /// Whose track it is, where it was heard.
+    pub(super) as_track: Calls,
     first_member: usize,
     members: usize,
     first_mode: usize,
@@ -277,13 +289,13 @@ impl Moment {
             let Neighbour { probability, kind_probability, sightings, modes, .. } = neighbour;
             if sightings.iter().all(is_stranger) && !self.are_of_several(sightings) {
                 let probability = probability * kind_probability;
-                self.keep_appearance((None, None), probability, sightings, modes);
+                self.keep_appearance((None, Calls::New), probability, sightings, modes);
             }
         }
-        for Called { vehicle, instead_of, probability, members, modes } in
+        for Called { vehicle, as_track, probability, members, modes } in
             blinking.map_or(&[][..], |blinking| blinking.called)
         {
-            self.keep_appearance((Some(*vehicle), *instead_of), *probability, members, modes);
+            self.keep_appearance((Some(*vehicle), *as_track), *probability, members, modes);
         }
     }
 
@@ -304,7 +316,7 @@ impl Moment {
 
     fn keep_appearance(
         &mut self,
-        (vehicle, instead_of): (Option<u32>, Option<u64>),
+        (vehicle, as_track): (Option<u32>, Calls),
         probability: f64,
         members: &[usize],
         modes: &[Mode],
@@ -313,7 +325,7 @@ impl Moment {
         self.appearances.push(Appearance {
             probability,
             vehicle,
-            instead_of,
+            as_track,
             first_member: self.members.len(),
             members: members.len(),
             first_mode: self.modes.len(),

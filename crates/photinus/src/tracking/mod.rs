@@ -51,7 +51,7 @@ use crate::pose::{LogLight, Symmetry};
 pub use error::{TrackError, TrackerError};
 pub use gyro::turned;
 use history::History;
-pub use look::{Blinking, Called, Followed, Lit, Look, Moving, Signalled, Turned};
+pub use look::{Blinking, Called, Calls, Followed, Lit, Look, Moving, Signalled, Turned};
 use motion::{Motion, Turn};
 pub use settings::{Association, Settings};
 use step::{Model, Stepper};

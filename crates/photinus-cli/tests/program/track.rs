@@ -65,20 +65,27 @@ fn a_neighbour_that_passes_by_is_one_track_that_knows_its_velocity() {
     assert_eq!(stage.read("half.jsonl"), all);
 }
 
-/// Who is behind another's body shows no spots, and takes none of its: without `tracking/ways/screening.rs` there are 49 false tracks in these frames, and
-/// 39 of 623 hidden vehicles are lost.
+/// Who is behind another's body shows no spots, and takes none of its. One flight says nothing of that: where what hides an LED was learnt anew in every frame,
+/// half of them lost the true pose, and the scene's own seed did not.
 #[test]
 fn a_vehicle_behind_another_is_followed_and_takes_none_of_its_spots() {
     let stage = Stage::new("track-behind");
-    let scene = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/blinking/behind-another.toml");
-    assert_eq!(stage.run(&format!("simulate {scene} --frames 460 --out flight -q")).code, 0);
-    assert_eq!(stage.run("locate flight -q --out r.jsonl").code, 0);
-    assert_eq!(stage.run("evaluate flight r.jsonl --json scores.json -q").code, 0);
-    let scores: serde_json::Value = serde_json::from_str(&stage.read("scores.json")).unwrap();
-    let followed = &scores["followed"];
-    assert_eq!(followed["false"].as_u64(), Some(0), "{followed:#}");
-    assert_eq!(followed["hidden_recall"].as_f64(), Some(1.0), "{followed:#}");
-    assert_eq!(followed["recall"].as_f64(), Some(1.0), "{followed:#}");
+    let scenes = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes");
+    let scene = std::fs::read_to_string(format!("{scenes}/blinking/behind-another.toml")).unwrap();
+    for seed in [1, 21, 46] {
+        let scene = scene.replace("\"../", &format!("\"{scenes}/"));
+        stage.file("scene.toml", scene.replace("\nseed = 1\n", &format!("\nseed = {seed}\n")));
+        assert_eq!(stage.run("simulate scene.toml --frames 460 --out flight -q --force").code, 0);
+        assert_eq!(stage.run("locate flight -q --out r.jsonl --force").code, 0);
+        assert_eq!(stage.run("evaluate flight r.jsonl --json scores.json -q --force").code, 0);
+        let scores: serde_json::Value = serde_json::from_str(&stage.read("scores.json")).unwrap();
+        let followed = &scores["followed"];
+        assert_eq!(followed["false"].as_u64(), Some(0), "seed {seed}: {followed:#}");
+        assert_eq!(followed["hidden_recall"].as_f64(), Some(1.0), "seed {seed}: {followed:#}");
+        assert_eq!(followed["recall"].as_f64(), Some(1.0), "seed {seed}: {followed:#}");
+        let off_m = followed["seen_error_m"]["rms"].as_f64();
+        assert!(off_m.is_some_and(|off_m| off_m < 0.3), "seed {seed}: {followed:#}");
+    }
 }
 
 #[test]

@@ -51,7 +51,8 @@ use crate::identity::decoder::{self, Decoder, DecoderError};
 use crate::locator::{self, Located};
 use crate::pose::{LogLight, SettingsError};
 use crate::tracking::{
-    self, Calls, Followed, Look, Moving, Placed, Signalled, TrackError, Tracked, Tracker, TrackerError, Turned,
+    self, Calls, Followed, Look, Moving, Placed, Signalled, TrackError, Tracked, Tracker, TrackerError,
+    Turned,
 };
 use belonging::Belongings;
 use calling::Calling;

@@ -11,6 +11,7 @@ use alloc::vec::Vec;
 use super::appearing::begun;
 use super::component::Component;
 use super::look::{Appearance, Calls, Moment};
+use super::reduction::reduce;
 use super::state::{State, Target};
 use super::ways::{Scene, Ways};
 #[cfg(not(feature = "std"))]
@@ -30,6 +31,7 @@ pub(super) fn beforehand() -> f64 {
 pub(super) fn doubt(
     scene: &Scene<'_>,
     ways: &mut Ways,
+    vehicle: usize,
     repeats: f64,
     straight_rad: f64,
     modes: &mut Vec<Component>,
@@ -52,6 +54,12 @@ pub(super) fn doubt(
         return;
     }
     begun(scene, ways, appearance, straight_rad, modes);
+    // What was odd is not begun with again.
+    let is_odd = |mode: &Component| ways.is_odd(vehicle, mode, moment.camera).unwrap_or(false);
+    if modes.iter().any(|mode| !is_odd(mode)) {
+        modes.retain(|mode| !is_odd(mode));
+        reduce(modes, straight_rad);
+    }
     if modes.is_empty() {
         return;
     }
@@ -198,12 +206,12 @@ mod tests {
         let (watched, interval_s) = (model.rig.watched(0), 0.1);
         let scene = Scene { model: &model, watched, moment, interval_s, own_interval_s: interval_s };
         let mut ways = Ways::with_room(&model.airframe);
-        ways.begin(&scene, 0.5, core::iter::empty());
+        ways.begin(&scene, 0.5, core::iter::once(None));
         let mut state = believed(&scene, &mut ways, times, members);
         let distance_m = |state: &State| state.components[0].pose.position_m.norm();
         let before_m = distance_m(&state);
         let began = (1..=1000).find(|_| {
-            doubt(&scene, &mut ways, repeats, 0.2, &mut modes, &mut state);
+            doubt(&scene, &mut ways, 0, repeats, 0.2, &mut modes, &mut state);
             (distance_m(&state) - before_m).abs() > 1e-9
         });
         if began.is_some() {

@@ -165,3 +165,128 @@ impl Fleet {
         Some(LogLight { value: mean, sigma: libm::hypot(variance.sqrt(), SPREAD) })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{Matrix3, Rotation3, Vector3};
+    use proptest::prelude::*;
+
+    use super::super::component::{Component, Covariance};
+    use super::super::silent::Silent;
+    use super::super::state::Target;
+    use super::*;
+    use crate::pose::Pose;
+
+    /// Vehicles whose distributions have these weights and powers.
+    fn state(vehicles: &[&[(f64, f64)]]) -> State {
+        let mut state = State::empty(0.0, 0);
+        for modes in vehicles {
+            let first_component = state.components.len();
+            state.components.extend(modes.iter().map(|&(weight, log_power)| {
+                let mut power = Power::UNKNOWN;
+                power.learn(0, Some(log_power));
+                Component {
+                    weight,
+                    pose: Pose { position_m: Vector3::z(), camera_from_body: Rotation3::identity() },
+                    velocity_m_s: Vector3::zeros(),
+                    yaw_rate_rad_s: 0.0,
+                    covariance: Covariance::identity(),
+                    silent: Silent::BEFOREHAND,
+                    power,
+                }
+            }));
+            state.targets.push(Target {
+                id: state.targets.len() as u64,
+                vehicle: None,
+                existence: 1.0,
+                hidden: 0.0,
+                seen_s: 0.0,
+                seen_by: 0,
+                seen_by_each_s: [0.0; Rig::MOST],
+                is_predicted: false,
+                is_odd: false,
+                calibration_rad2: Matrix3::zeros(),
+                log_wrong: 0.0,
+                first_component,
+                components: modes.len(),
+                first_member: 0,
+                members: 0,
+            });
+        }
+        state
+    }
+
+    fn of(vehicles: &[&[(f64, f64)]], vehicle: usize) -> Option<LogLight> {
+        let mut fleet = Fleet::with_room(4);
+        fleet.listen(&state(vehicles), 0);
+        fleet.of(vehicle)
+    }
+
+    /// The mean and the standard deviation of what the others say, by sums over a fine grid.
+    fn summed(vehicles: &[&[(f64, f64)]], vehicle: usize) -> (f64, f64) {
+        let said = |modes: &[(f64, f64)], at: f64| {
+            let density = |&(weight, log_power): &(f64, f64)| {
+                weight * libm::exp(-0.5 * ((at - log_power) / SPREAD).powi(2))
+                    / (SPREAD * core::f64::consts::TAU.sqrt())
+            };
+            (1.0 - ODD) * modes.iter().map(density).sum::<f64>() + ODD / (STEPS as f64 * STEP)
+        };
+        let (mut all, mut mean, mut square) = (0.0, 0.0, 0.0);
+        for step in 0..4000 {
+            let at = 5.0 + 0.0025 * f64::from(step);
+            let others = vehicles.iter().enumerate().filter(|own| own.0 != vehicle);
+            let weight: f64 = others.map(|(_, modes)| said(modes, at)).product();
+            (all, mean, square) = (all + weight, mean + weight * at, square + weight * at * at);
+        }
+        mean /= all;
+        (mean, (square / all - mean * mean).sqrt())
+    }
+
+    #[test]
+    fn a_vehicle_is_told_what_the_others_say() {
+        let (near, far): (&[_], &[_]) = (&[(0.97, 8.6), (0.03, 10.0)], &[(1.0, 10.1)]);
+        // Two say so plainly; its own 97 % do not count.
+        let told = of(&[near, far, far], 0).unwrap();
+        assert!((told.value - 10.1).abs() < 0.15 && told.sigma < 0.5, "{told:?}");
+        // Who is unsure itself says little: the others stay with theirs.
+        assert!((of(&[near, far, far], 1).unwrap().value - 10.0).abs() < 0.5);
+        // Two nearby ones that agree with each other do not outvote what they might be.
+        let all: [&[(f64, f64)]; 4] = [near, &[(0.5, 8.5), (0.5, 10.0)], far, far];
+        assert!((of(&all, 0).unwrap().value - 10.1).abs() < 0.15);
+        assert_eq!(of(&[near, far], 0), None);
+        assert_eq!(of(&[near, far, &[]], 0), None);
+        // Nobody's own.
+        assert!(of(&[far, far, far], usize::MAX).is_some_and(|told| (told.value - 10.1).abs() < 0.1));
+    }
+
+    #[test]
+    fn a_power_is_the_mean_of_its_last_frames_and_of_distributions_that_become_one() {
+        let mut power = Power::UNKNOWN;
+        assert_eq!(power.log_power(0), None);
+        [9.0, 10.0, 11.0].into_iter().for_each(|log_power| power.learn(0, Some(log_power)));
+        power.learn(0, None);
+        assert!((power.log_power(0).unwrap() - 10.0).abs() < 1e-12 && power.log_power(1).is_none());
+        (0..200).for_each(|_| power.learn(0, Some(12.0)));
+        assert!((power.log_power(0).unwrap() - 12.0).abs() < 1e-4);
+        let (mut both, mut other) = (Power::UNKNOWN, Power::UNKNOWN);
+        (0..20).for_each(|_| other.learn(0, Some(10.0)));
+        both.add(&power, 0.25);
+        both.add(&other, 0.75);
+        assert!((both.log_power(0).unwrap() - 10.5).abs() < 1e-4);
+    }
+
+    proptest! {
+        #[test]
+        fn what_others_say_is_as_summed_finely(
+            powers in prop::array::uniform3(prop::array::uniform2(8.0..11.0_f64)),
+            weights in prop::array::uniform3(0.0..1.0_f64),
+        ) {
+            let modes = |of: usize| [(weights[of], powers[of][0]), (1.0 - weights[of], powers[of][1])];
+            let all = [modes(0), modes(1), modes(2)];
+            let all = [&all[0][..], &all[1][..], &all[2][..]];
+            let (told, (mean, sigma)) = (of(&all, 0).unwrap(), summed(&all, 0));
+            prop_assert!((told.value - mean).abs() < 0.12, "{told:?} {mean} {sigma}");
+            prop_assert!((told.sigma - libm::hypot(sigma, SPREAD)).abs() < 0.12, "{told:?} {mean} {sigma}");
+        }
+    }
+}

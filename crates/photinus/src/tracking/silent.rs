@@ -72,3 +72,48 @@ impl Silent {
         own.zip(other.silent.iter().chain(&other.hidden)).for_each(|(own, other)| *own += share * other);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What it costs, nats, that a marker that shows is not seen in frame after frame.
+    fn cost_unseen(frames: usize, screened: bool) -> f64 {
+        let mut silent = Silent::BEFOREHAND;
+        let mut nats = 0.0;
+        for _ in 0..frames {
+            silent = silent.after(1.0 / 60.0, 2.0);
+            let mut lit = [1.0];
+            silent.dim(&mut lit, &[screened]);
+            let unseen = 1.0 - 0.98 * lit[0];
+            nats -= libm::log(unseen);
+            let before = silent;
+            silent.learn(0, Some(unseen));
+            silent.blame(&before, &[screened], true);
+        }
+        nats
+    }
+
+    #[test]
+    fn a_reason_is_paid_for_once() {
+        // Behind another vehicle a marker is hidden with one half, whatever is in view one LED in a hundred is dead.
+        assert!((cost_unseen(1, true) - 0.67).abs() < 0.03 && (cost_unseen(1, false) - 3.5).abs() < 0.1);
+        let (hidden, dead) = (cost_unseen(60, true), cost_unseen(60, false));
+        assert!((0.6..1.3).contains(&hidden) && (4.4..4.9).contains(&dead), "{hidden} {dead}");
+    }
+
+    #[test]
+    fn what_was_seen_past_another_vehicle_is_missed_there() {
+        let mut silent = Silent::BEFOREHAND;
+        silent.learn(0, None);
+        silent.blame(&Silent::BEFOREHAND, &[true], true);
+        let mut lit = [1.0, 1.0];
+        silent.dim(&mut lit, &[true, true]);
+        assert!(lit[0] > 0.98 && (0.49..0.5).contains(&lit[1]), "{lit:?}");
+        // Elsewhere it is new.
+        silent.blame(&silent.clone(), &[false], true);
+        let mut lit = [1.0];
+        silent.dim(&mut lit, &[true]);
+        assert!(lit[0] < 0.5, "{lit:?}");
+    }
+}

@@ -283,7 +283,7 @@ impl Stepper {
             log_wrong: before.log_wrong,
         });
         let repeats = model.repeats_of(before, moment, scene.own_interval_s);
-        doubting::doubt(scene, ways, repeats, straight_rad, reduced, after);
+        doubting::doubt(scene, ways, vehicle, repeats, straight_rad, reduced, after);
     }
 }
 

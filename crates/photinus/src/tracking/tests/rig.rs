@@ -256,7 +256,7 @@ fn a_mounting_that_is_off_by_what_it_says_makes_nobody_sure() {
     let (nees, tracks) = worst(&told);
     assert!(nees < 5.0 && tracks == 1, "{nees} {tracks}");
     let (_, tracks) = worst(&mountings());
-    assert_eq!(tracks, 2, "what is not said is believed: another vehicle");
+    assert!(tracks > 1, "what is not said is believed: another vehicle");
 }
 
 /// Frames come up to 0.15 s late, as cameras, cables and other work have it.

@@ -58,9 +58,6 @@ const ODD_SIGMA: f64 = 3.0;
 /// This share of exposures straddles an edge of what an LED blinks, and a marker that shines for a part of one shows so likely.
 const PARTLY: f64 = 0.06;
 const DIM_SHOWS: f64 = 0.5;
-/// A spot is another's from this probability on, and then as good as never a marker of this vehicle, nats.
-const SURELY_HEARD: f64 = 0.95;
-const ANOTHERS_NATS: f64 = 50.0;
 /// Spots within so many radii of a vehicle may hide its markers.
 const NEAR_RADII: f64 = 3.0;
 
@@ -447,12 +444,9 @@ fn is_known_aside(component: &Component, radius_m: f64) -> bool {
 fn signal_nats(model: &Model, moment: &Moment, who: Option<u32>, spot: usize, marker: usize) -> f64 {
     let told = moment.signals[spot];
     if moment.blinks_alike {
-        // Of a vehicle that nobody named any spot may be a marker; what is surely another's is no clutter either, and explained without it.
+        // Of a vehicle that nobody named any spot may be a marker. Where two cross, words are heard from the wrong one for a while.
         let of_another = told.filter(|told| who.is_some() && told.vehicle != who);
-        return of_another.map_or(0.0, |told| match told.probability {
-            sure if sure > SURELY_HEARD => ANOTHERS_NATS,
-            unsure => -libm::log(1.0 - unsure),
-        });
+        return of_another.map_or(0.0, |told| -libm::log((1.0 - told.probability).max(WRONG_MARKER)));
     }
     let carries =
         |signal: Option<u32>| signal.is_none_or(|signal| model.symmetry.carries(marker as u16, signal));

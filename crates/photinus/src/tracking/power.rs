@@ -99,11 +99,9 @@ impl Fleet {
         self.speaks.clear();
         self.together = [1.0; STEPS];
         self.sorted.clear();
-        let likeliest = |target| {
-            let told = state.components(target).iter().find_map(|own| own.power.log_power(camera));
-            told
-        };
-        self.sorted.extend(state.targets.iter().filter_map(likeliest));
+        self.sorted.extend(state.targets.iter().filter_map(|target| {
+            state.components(target).iter().find_map(|own| own.power.log_power(camera))
+        }));
         self.sorted.sort_unstable_by(f64::total_cmp);
         let Some(&middle) = self.sorted.get(self.sorted.len() / 2) else { return };
         self.first = middle - 0.5 * STEPS as f64 * STEP;
@@ -137,9 +135,9 @@ impl Fleet {
     fn spread(&self, shares: &[f64; STEPS]) -> [f64; STEPS] {
         let mut said = [0.0; STEPS];
         for (step, share) in shares.iter().enumerate().filter(|(_, share)| **share > 0.0) {
-            for to in step.saturating_sub(REACH)..=(step + REACH).min(STEPS - 1) {
-                said[to] += share * self.kernel[step.abs_diff(to)];
-            }
+            let first = step.saturating_sub(REACH);
+            let near = said.iter_mut().enumerate().skip(first).take(step + REACH + 1 - first);
+            near.for_each(|(to, said)| *said += share * self.kernel[step.abs_diff(to)]);
         }
         let sum: f64 = said.iter().sum();
         said.map(|own| (1.0 - ODD) * own / sum + ODD / STEPS as f64)

@@ -143,3 +143,21 @@ pub(super) fn merged<'a>(all: impl Iterator<Item = &'a Component> + Clone) -> Op
         ..heaviest.stepped(&mean)
     })
 }
+
+#[cfg(test)]
+impl Component {
+    /// A vehicle at a place that is known to so much, everything else to one unit.
+    pub(super) fn somewhere(position_m: Vector3<f64>, sigma_m: f64) -> Self {
+        let mut covariance = Covariance::identity();
+        covariance.fixed_view_mut::<3, 3>(0, 0).copy_from(&Matrix3::from_diagonal_element(sigma_m * sigma_m));
+        Self {
+            weight: 1.0,
+            pose: Pose { position_m, camera_from_body: Rotation3::identity() },
+            velocity_m_s: Vector3::zeros(),
+            yaw_rate_rad_s: 0.0,
+            covariance,
+            silent: Silent::BEFOREHAND,
+            power: Power::UNKNOWN,
+        }
+    }
+}

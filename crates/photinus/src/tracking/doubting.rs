@@ -126,7 +126,7 @@ fn along(position_m: &nalgebra::Vector3<f64>, covariance_m2: &nalgebra::Matrix3<
 
 #[cfg(test)]
 mod tests {
-    use nalgebra::{Matrix3, Rotation3};
+    use nalgebra::Rotation3;
     use rand_pcg::Pcg64;
 
     use super::*;
@@ -181,21 +181,10 @@ mod tests {
         state.components.extend_from_slice(&modes);
         state.members.extend_from_slice(members);
         state.targets.push(Target {
-            id: 0,
-            vehicle: None,
-            existence: 1.0,
-            hidden: 0.0,
-            seen_s: 1.0,
-            seen_by: 0,
-            seen_by_each_s: [1.0; Rig::MOST],
-            is_predicted: false,
-            is_odd: false,
-            calibration_rad2: Matrix3::zeros(),
             log_wrong: beforehand(),
-            first_component: 0,
             components: modes.len(),
-            first_member: 0,
             members: members.len(),
+            ..Target::somebody(1.0)
         });
         state
     }

@@ -8,6 +8,8 @@ use alloc::vec::Vec;
 
 use super::state::State;
 use crate::camera::Rig;
+#[cfg(not(feature = "std"))]
+use crate::float::Float as _;
 use crate::pose::LogLight;
 
 /// LEDs of a fleet differ in power by so much from vehicle to vehicle, as a logarithm, with what distances leave of it.
@@ -166,14 +168,12 @@ impl Fleet {
 
 #[cfg(test)]
 mod tests {
-    use nalgebra::{Matrix3, Rotation3, Vector3};
+    use nalgebra::Vector3;
     use proptest::prelude::*;
 
-    use super::super::component::{Component, Covariance};
-    use super::super::silent::Silent;
+    use super::super::component::Component;
     use super::super::state::Target;
     use super::*;
-    use crate::pose::Pose;
 
     /// Vehicles whose distributions have these weights and powers.
     fn state(vehicles: &[&[(f64, f64)]]) -> State {
@@ -183,33 +183,9 @@ mod tests {
             state.components.extend(modes.iter().map(|&(weight, log_power)| {
                 let mut power = Power::UNKNOWN;
                 power.learn(0, Some(log_power));
-                Component {
-                    weight,
-                    pose: Pose { position_m: Vector3::z(), camera_from_body: Rotation3::identity() },
-                    velocity_m_s: Vector3::zeros(),
-                    yaw_rate_rad_s: 0.0,
-                    covariance: Covariance::identity(),
-                    silent: Silent::BEFOREHAND,
-                    power,
-                }
+                Component { weight, power, ..Component::somewhere(Vector3::z(), 1.0) }
             }));
-            state.targets.push(Target {
-                id: state.targets.len() as u64,
-                vehicle: None,
-                existence: 1.0,
-                hidden: 0.0,
-                seen_s: 0.0,
-                seen_by: 0,
-                seen_by_each_s: [0.0; Rig::MOST],
-                is_predicted: false,
-                is_odd: false,
-                calibration_rad2: Matrix3::zeros(),
-                log_wrong: 0.0,
-                first_component,
-                components: modes.len(),
-                first_member: 0,
-                members: 0,
-            });
+            state.targets.push(Target { first_component, components: modes.len(), ..Target::somebody(0.0) });
         }
         state
     }

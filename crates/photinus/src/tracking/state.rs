@@ -143,3 +143,59 @@ impl State {
         &self.markers[target.first_member..][..target.members]
     }
 }
+
+#[cfg(test)]
+impl Target {
+    /// Somebody who is seen at a time, and of whom nothing else is known.
+    pub(super) fn somebody(seen_s: f64) -> Self {
+        Self {
+            id: 0,
+            vehicle: None,
+            existence: 1.0,
+            hidden: 0.0,
+            seen_s,
+            seen_by: 0,
+            seen_by_each_s: [seen_s; Rig::MOST],
+            is_predicted: false,
+            is_odd: false,
+            calibration_rad2: Matrix3::zeros(),
+            log_wrong: 0.0,
+            first_component: 0,
+            components: 0,
+            first_member: 0,
+            members: 0,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const RADIUS_M: f64 = 0.4;
+
+    /// Who is left of vehicles at these distances straight ahead, known to so much, m.
+    fn left(places: &[(f64, f64)]) -> Vec<u64> {
+        let mut state = State::empty(0.0, 0);
+        for (place, &(ahead_m, sigma_m)) in places.iter().enumerate() {
+            state.components.push(Component::somewhere(Vector3::z() * ahead_m, sigma_m));
+            state.targets.push(Target {
+                id: place as u64,
+                first_component: place,
+                components: 1,
+                ..Target::somebody(0.0)
+            });
+        }
+        state.end_doubles(RADIUS_M);
+        state.targets.iter().map(|target| target.id).collect()
+    }
+
+    #[test]
+    fn of_two_in_one_place_the_younger_ends() {
+        assert_eq!(left(&[(5.0, 0.1), (9.0, 0.1), (5.2, 0.1), (5.1, 0.2)]), [0, 1]);
+        // Two that nearly touch, and one that may be anywhere along the line of sight.
+        assert_eq!(left(&[(5.0, 0.1), (5.5, 0.1)]), [0, 1]);
+        assert_eq!(left(&[(5.0, 0.1), (5.1, 0.5)]), [0, 1]);
+        assert!(left(&[]).is_empty());
+    }
+}

@@ -333,22 +333,6 @@ mod tests {
     }
 
     fn target(seen_s: f64, seen_by_each_s: [f64; Rig::MOST]) -> Target {
-        Target {
-            id: 0,
-            vehicle: None,
-            existence: 1.0,
-            hidden: 0.0,
-            seen_s,
-            seen_by: 0,
-            seen_by_each_s,
-            is_predicted: false,
-            is_odd: false,
-            calibration_rad2: Matrix3::zeros(),
-            log_wrong: doubting::beforehand(),
-            first_component: 0,
-            components: 0,
-            first_member: 0,
-            members: 0,
-        }
+        Target { seen_by_each_s, ..Target::somebody(seen_s) }
     }
 }

@@ -13,11 +13,10 @@ fn files(folder: &Path) -> Vec<PathBuf> {
     let entries = std::fs::read_dir(folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
     let mut found = Vec::new();
     for path in entries.map(|entry| entry.expect("an entry of a folder").path()) {
-        if path.is_dir() {
+        let is_of_tests = path.file_stem().is_some_and(|stem| stem == "tests");
+        if path.is_dir() && !is_of_tests {
             found.extend(files(&path));
-        } else if path.extension().is_some_and(|end| end == "rs")
-            && path.file_stem().is_some_and(|stem| stem != "tests")
-        {
+        } else if path.extension().is_some_and(|end| end == "rs") && !is_of_tests {
             found.push(path);
         }
     }

@@ -146,7 +146,7 @@ impl Motion {
             velocity_m_s,
             yaw_rate_rad_s,
             covariance,
-            silent: before.silent.after(interval_s, settings.hidden_s),
+            silent: before.silent.after(interval_s, settings.correlation_s),
             power: before.power,
         }
     }

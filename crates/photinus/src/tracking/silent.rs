@@ -27,7 +27,7 @@ impl Silent {
     /// To add to.
     pub(super) const NONE: Self = Self { silent: [0.0; MOST_SPOTS], hidden: [0.0; MOST_SPOTS] };
 
-    /// A while later, where what hides a marker moves on in a given time.
+    /// A while later, where what hides a marker is another after a given time.
     pub(super) fn after(&self, interval_s: f64, hidden_s: f64) -> Self {
         let gone = |lasts_s: f64| -libm::expm1(-interval_s / lasts_s);
         let (silent, hidden) = (gone(LASTS_S), gone(hidden_s));

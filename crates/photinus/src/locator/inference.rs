@@ -269,7 +269,8 @@ impl Inference {
     }
 
     /// What neighbours that are sure tell of the light of the frame's LEDs: the median of their logarithms, as they look whatever power was known before. A
-    /// first look at how observations lie beside each other is not sure: it takes a lamp that goes along with a neighbour for its marker time and again.
+    /// first look at how observations lie beside each other is not sure: it takes a lamp that goes along with a neighbour for its marker time and again. Two
+    /// spots tell it only where no neighbour shows three.
     fn power(&mut self, context: &Context<'_>) -> Option<Told> {
         let Self { log_powers, candidates, explanation, kinds, .. } = self;
         for fewest in [CLEAR_SPOTS, 2] {

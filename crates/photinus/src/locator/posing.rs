@@ -6,7 +6,7 @@
 use alloc::vec::Vec;
 use core::f64::consts::TAU;
 
-use nalgebra::{Matrix3, Unit, Vector3};
+use nalgebra::{Matrix3, Vector3};
 
 use super::Sighting;
 use super::blinking::lit;
@@ -21,8 +21,7 @@ use crate::camera::Bearing;
 #[cfg(not(feature = "std"))]
 use crate::float::Float as _;
 use crate::pose::{
-    self, Estimator, Hypotheses, Known, LogDistance, Observation, POWER_RANGE, Pose, Posterior,
-    SettingsError, Summary, Visible,
+    self, Estimator, Hypotheses, Known, Observation, POWER_RANGE, Posterior, SettingsError, Summary, Visible,
 };
 use crate::ranging::Interval;
 
@@ -116,7 +115,9 @@ impl Poser {
         let mut size = None;
         if let [only] = group {
             let distance = matcher.lone_distance(&sightings[*only], &bounds);
-            self.suppose_one_marker(&sightings[*only], up, distance);
+            let airframe = (&self.airframe, self.estimator.symmetry());
+            let seen = (&sightings[*only].bearing, distance);
+            self.hypotheses.suppose_one_marker(airframe, seen, up, |_| true);
             size = Some(distance);
         } else {
             matcher.hypotheses(context, group, &mut self.hypotheses);
@@ -148,29 +149,6 @@ impl Poser {
                 self.others.push(sightings[index].bearing);
             }
         });
-    }
-
-    /// A lone spot is any of the markers, turned to the camera.
-    fn suppose_one_marker(
-        &mut self,
-        sighting: &Sighting,
-        up: Option<Unit<Vector3<f64>>>,
-        distance: LogDistance,
-    ) {
-        self.hypotheses.begin(1);
-        let ahead = *sighting.bearing.vector();
-        let up = up.map_or(-Vector3::y(), Unit::into_inner);
-        let position_m = ahead * libm::exp(distance.mean);
-        let symmetry = self.estimator.symmetry();
-        for marker in 0..self.airframe.markers().len() {
-            let number = marker as u16;
-            if symmetry.canonical_turn(&[number]) == 0 {
-                self.hypotheses.offer(&[Some(number)], 0.0, 0, || Pose {
-                    position_m,
-                    camera_from_body: self.airframe.facing(marker, &ahead, &up),
-                });
-            }
-        }
     }
 
     /// Adds the candidate whose posterior was estimated last.

@@ -33,54 +33,64 @@ impl Missing {
         (belongings, naming): (&Belongings, &Naming),
         tracked: &Tracked,
     ) {
-        let Self { heard, calls } = self;
-        heard.clear();
-        calls.clear();
+        self.hear(camera, markers, directory, belongings);
+        self.calls.clear();
+        // Who would have LEDs unlike all others' is to be placed by what was heard of it, too.
+        for track in tracked.tracks.iter().filter(|track| track.is_odd) {
+            let is_name = |heard: &&(u32, Option<u64>)| naming.likely_track(heard.0) == Some(track.id);
+            let name = self.heard.iter().find(is_name);
+            self.calls.extend(name.map(|&(vehicle, _)| (vehicle, Calls::Doubting(track.id))));
+        }
+        for place in 0..self.heard.len() {
+            let (vehicle, track) = self.heard[place];
+            let has_other_track = naming.likely_track(vehicle).is_some_and(|other| Some(other) != track);
+            if has_other_track || tracked.is_followed(vehicle) || self.call(vehicle).is_some() {
+                continue;
+            }
+            let calls = match track {
+                Some(track) => self.is_mixed_into(track, vehicle, naming).then_some(Calls::InsteadOf(track)),
+                // Another of its markers may have a track.
+                None => {
+                    self.heard.iter().all(|own| own.0 != vehicle || own.1.is_none()).then_some(Calls::New)
+                }
+            };
+            self.calls.extend(calls.map(|calls| (vehicle, calls)));
+        }
+    }
+
+    /// Takes in whose markers are heard, and which tracks have them; those for which that is not clear are left out.
+    fn hear(
+        &mut self,
+        camera: usize,
+        markers: &[MarkerTrack],
+        directory: &Directory,
+        belongings: &Belongings,
+    ) {
+        self.heard.clear();
         for marker in markers {
             let identity = marker.identity.filter(|own| own.probability > SURELY_HEARD);
             let Some(entry) = identity.and_then(|own| directory.entry(own.who)) else { continue };
-            let own = belongings.of_marker(camera, marker.number);
-            match own {
-                Some(own) if own.share > SURELY_ITS => heard.push((entry.vehicle, Some(own.track))),
+            match belongings.of_marker(camera, marker.number) {
+                Some(own) if own.share > SURELY_ITS => self.heard.push((entry.vehicle, Some(own.track))),
                 Some(own) if own.share > SURELY_NOT => {}
-                _ => heard.push((entry.vehicle, None)),
+                _ => self.heard.push((entry.vehicle, None)),
             }
         }
-        let is_followed = |vehicle: u32| tracked.is_followed(vehicle);
-        let is_named = |vehicle: u32, but: Option<u64>| {
-            naming.likely_track(vehicle).is_some_and(|track| Some(track) != but)
-        };
-        // Who would have LEDs unlike all others' is to be placed by what was heard of it, too.
-        for track in tracked.tracks.iter().filter(|track| track.is_odd) {
-            let name = heard.iter().map(|own| own.0).find(|&own| naming.likely_track(own) == Some(track.id));
-            calls.extend(name.map(|vehicle| (vehicle, Calls::Doubting(track.id))));
+    }
+
+    /// Whether a track has another vehicle's markers beside those of this one, and is rather this one: by its name, or else by most of its markers. One vehicle
+    /// is enough for a track.
+    fn is_mixed_into(&self, track: u64, vehicle: u32, naming: &Naming) -> bool {
+        let of_track = || self.heard.iter().filter(|own| own.1 == Some(track)).map(|own| own.0);
+        if of_track().all(|own| own == vehicle)
+            || self.calls.iter().any(|own| own.1 == Calls::InsteadOf(track))
+        {
+            return false;
         }
-        for place in 0..heard.len() {
-            let (vehicle, track) = heard[place];
-            if calls.iter().any(|call| call.0 == vehicle) || is_followed(vehicle) || is_named(vehicle, track)
-            {
-                continue;
-            }
-            let Some(track) = track else {
-                // Another of its markers may have a track.
-                if !heard.iter().any(|other| other.0 == vehicle && other.1.is_some()) {
-                    calls.push((vehicle, Calls::New));
-                }
-                continue;
-            };
-            let of_track = |own: &&(u32, Option<u64>)| own.1 == Some(track);
-            let is_mixed = heard.iter().filter(of_track).any(|other| other.0 != vehicle);
-            let count = |of: u32| heard.iter().filter(of_track).filter(|own| own.0 == of).count();
-            let is_its = naming.likely_track(vehicle) == Some(track);
-            let has_most = heard.iter().filter(of_track).all(|other| {
-                other.0 == vehicle
-                    || naming.likely_track(other.0) != Some(track) && count(other.0) <= count(vehicle)
-            });
-            let is_taken = calls.iter().any(|call| call.1 == Calls::InsteadOf(track));
-            if is_mixed && !is_taken && (is_its || has_most) {
-                calls.push((vehicle, Calls::InsteadOf(track)));
-            }
-        }
+        let is_name = |own: u32| naming.likely_track(own) == Some(track);
+        let count = |of: u32| of_track().filter(|&own| own == of).count();
+        is_name(vehicle)
+            || of_track().all(|own| own == vehicle || !is_name(own) && count(own) <= count(vehicle))
     }
 
     /// How a vehicle may call, if it is one of them.

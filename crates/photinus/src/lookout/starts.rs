@@ -88,23 +88,15 @@ impl Starts {
 
     /// Offers the poses in which this is one marker, turned to the camera, of an airframe that is upright.
     pub(super) fn offer_lone(
-        &mut self,
+        &self,
         only: &Observation,
         up: Option<Unit<Vector3<f64>>>,
         distance: LogDistance,
         hypotheses: &mut Hypotheses,
     ) {
-        hypotheses.begin(1);
-        let ahead = *only.bearing.vector();
-        let up = up.map_or(-Vector3::y(), Unit::into_inner);
-        let position_m = ahead * libm::exp(distance.mean);
-        for marker in 0..self.airframe.markers().len() {
-            let number = marker as u16;
-            if self.symmetry.canonical_turn(&[number]) == 0 && self.carries(marker, only.signal) {
-                let camera_from_body = self.airframe.facing(marker, &ahead, &up);
-                hypotheses.offer(&[Some(number)], 0.0, 0, || Pose { position_m, camera_from_body });
-            }
-        }
+        let may_be = |marker| self.carries(marker, only.signal);
+        let airframe = (&self.airframe, &self.symmetry);
+        hypotheses.suppose_one_marker(airframe, (&only.bearing, distance), up, may_be);
     }
 
     /// How far apart two markers with these signals are at most, in radii.

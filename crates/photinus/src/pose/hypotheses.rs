@@ -2,7 +2,13 @@
 
 use alloc::vec::Vec;
 
+use nalgebra::{Unit, Vector3};
+
+use super::known::LogDistance;
 use super::problem::Pose;
+use super::symmetry::Symmetry;
+use crate::airframe::Airframe;
+use crate::camera::Bearing;
 
 /// The branch of starts whose assignment is not settled.
 const LOOSE: u8 = u8::MAX;
@@ -57,6 +63,28 @@ impl Hypotheses {
             None => {
                 self.starts.push(Start { pose: pose(), nats, branch });
                 self.markers.extend_from_slice(markers);
+            }
+        }
+    }
+
+    /// Forgets all hypotheses; those that follow are that a lone spot is one marker, turned to the camera, of an airframe that is upright against `up`, or in
+    /// the image: any marker that it may be, but for those that look the same.
+    pub(crate) fn suppose_one_marker(
+        &mut self,
+        (airframe, symmetry): (&Airframe, &Symmetry),
+        (bearing, distance): (&Bearing, LogDistance),
+        up: Option<Unit<Vector3<f64>>>,
+        may_be: impl Fn(usize) -> bool,
+    ) {
+        self.begin(1);
+        let ahead = *bearing.vector();
+        let up = up.map_or(-Vector3::y(), Unit::into_inner);
+        let position_m = ahead * libm::exp(distance.mean);
+        for marker in (0..airframe.markers().len()).filter(|&marker| may_be(marker)) {
+            let number = marker as u16;
+            if symmetry.canonical_turn(&[number]) == 0 {
+                let camera_from_body = airframe.facing(marker, &ahead, &up);
+                self.offer(&[Some(number)], 0.0, 0, || Pose { position_m, camera_from_body });
             }
         }
     }

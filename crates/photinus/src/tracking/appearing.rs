@@ -107,10 +107,7 @@ pub(super) fn begun(
 ) {
     let Scene { model, moment, .. } = *scene;
     modes.clear();
-    let is_dumb = |&spot: &usize| moment.signals[spot].is_none();
-    let anonymous =
-        moment.blinks_alike || appearance.vehicle.is_none() && moment.members(appearance).iter().all(is_dumb);
-    let turns = if anonymous { model.symmetry.turns() } else { 1 };
+    let turns = if moment.is_turned_anyhow(appearance) { model.symmetry.turns() } else { 1 };
     for mode in moment.modes(appearance) {
         let first = modes.first().copied();
         let mut begun = begin(model, mode, first.as_ref(), turns);

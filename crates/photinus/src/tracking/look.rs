@@ -308,6 +308,12 @@ impl Moment {
         heard.any(|own| Some(own) != first)
     }
 
+    /// Whether nothing tells which turn of a symmetric airframe an appearance is: of LEDs that blink alike nothing does, else what is heard of them.
+    pub(super) fn is_turned_anyhow(&self, appearance: &Appearance) -> bool {
+        let is_dumb = |&spot: &usize| self.signals[spot].is_none();
+        self.blinks_alike || appearance.vehicle.is_none() && self.members(appearance).iter().all(is_dumb)
+    }
+
     /// Which vehicle a track is, where that was heard: when it appeared, or since.
     pub(super) fn who(&self, track: u64, when_it_appeared: Option<u32>) -> Option<u32> {
         let named = || self.named.iter().find(|named| named.0 == track).map(|named| named.1);

@@ -145,13 +145,14 @@ impl Fleet {
         said.map(|own| (1.0 - ODD) * own / sum + ODD / STEPS as f64)
     }
 
-    /// The power of the LEDs of a vehicle by what all others say, `None` of too few.
-    pub(super) fn of(&self, vehicle: usize) -> Option<LogLight> {
-        let others = self.speaks.iter().enumerate().filter(|&(other, speaks)| other != vehicle && *speaks);
+    /// The power of the LEDs by what all say but this vehicle, `None` of too few.
+    pub(super) fn but_for(&self, vehicle: Option<usize>) -> Option<LogLight> {
+        let is_other = |other: usize| Some(other) != vehicle;
+        let others = self.speaks.iter().enumerate().filter(|&(other, speaks)| is_other(other) && *speaks);
         if others.count() + 1 < FEWEST {
             return None;
         }
-        let own = self.said.get(vehicle).copied().unwrap_or([1.0; STEPS]);
+        let own = vehicle.and_then(|vehicle| self.said.get(vehicle)).copied().unwrap_or([1.0; STEPS]);
         let weight = |step: usize| self.together[step] / own[step];
         let power = |step: usize| self.first + step as f64 * STEP;
         let (mut all, mut mean) = (0.0, 0.0);
@@ -190,10 +191,10 @@ mod tests {
         state
     }
 
-    fn of(vehicles: &[&[(f64, f64)]], vehicle: usize) -> Option<LogLight> {
+    fn of(vehicles: &[&[(f64, f64)]], vehicle: impl Into<Option<usize>>) -> Option<LogLight> {
         let mut fleet = Fleet::with_room(4);
         fleet.listen(&state(vehicles), 0);
-        fleet.of(vehicle)
+        fleet.but_for(vehicle.into())
     }
 
     /// The mean and the standard deviation of what the others say, by sums over a fine grid.
@@ -230,7 +231,7 @@ mod tests {
         assert_eq!(of(&[near, far], 0), None);
         assert_eq!(of(&[near, far, &[]], 0), None);
         // Nobody's own.
-        assert!(of(&[far, far, far], usize::MAX).is_some_and(|told| (told.value - 10.1).abs() < 0.1));
+        assert!(of(&[far, far, far], None).is_some_and(|told| (told.value - 10.1).abs() < 0.1));
     }
 
     #[test]

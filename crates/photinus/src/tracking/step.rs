@@ -133,7 +133,7 @@ impl Stepper {
     /// The light of an LED of intensity 1 at 1 m in a camera, as far as the vehicles of a state tell it.
     pub(super) fn power(&mut self, camera: usize, state: &State) -> Option<LogLight> {
         self.fleet.listen(state, camera);
-        self.fleet.of(usize::MAX)
+        self.fleet.but_for(None)
     }
 
     /// Fills `after` with what is believed after a frame.
@@ -173,7 +173,7 @@ impl Stepper {
         let scene = Scene { model, watched, moment, interval_s, own_interval_s };
         let clutter = before.clutter[moment.camera];
         self.fleet.listen(before, moment.camera);
-        let powers = (0..before.targets.len()).map(|vehicle| self.fleet.of(vehicle));
+        let powers = (0..before.targets.len()).map(|vehicle| self.fleet.but_for(Some(vehicle)));
         self.ways.begin(&scene, clutter, powers);
         for (vehicle, range) in self.first_predicted.windows(2).enumerate() {
             self.ways.may_screen(vehicle, &self.predicted[range[0]..range[1]]);

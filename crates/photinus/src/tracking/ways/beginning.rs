@@ -18,11 +18,7 @@ impl Ways {
     ) {
         let (before, pose) = (begun.silent, begun.pose);
         let Some(pairs) = self.pairs_of(scene.model, members, &pose) else { return };
-        self.markers.clear();
-        self.markers.resize(self.observations.len(), None);
-        for &(spot, marker) in pairs.as_slice() {
-            self.markers[usize::from(spot)] = Some(marker);
-        }
+        self.assign(&pairs);
         self.gather_others(scene, &pose);
         self.whiten(0.0);
         let lit = scene.moment.others_lit.filter(|_| !scene.moment.blinks_alike).unwrap_or(1.0);

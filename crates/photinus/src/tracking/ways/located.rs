@@ -45,11 +45,7 @@ impl Ways {
         if self.candidates[first..].iter().any(|own| is_whole(&own.pairs)) {
             return;
         }
-        let turns = if moment.blinks_alike || members.iter().all(|&spot| moment.signals[spot].is_none()) {
-            model.symmetry.turns()
-        } else {
-            1
-        };
+        let turns = if moment.is_turned_anyhow(appearance) { model.symmetry.turns() } else { 1 };
         for mode in
             moment.modes(appearance).iter().take_while(|mode| mode.weight > LEAST_START).take(MOST_STARTS)
         {

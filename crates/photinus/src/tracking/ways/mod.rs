@@ -388,8 +388,7 @@ impl Ways {
     /// How likely no marker of a vehicle is seen that nothing hides.
     fn unseen(&mut self, scene: &Scene<'_>, vehicle: usize, component: &Component) -> f64 {
         let alike = self.light(scene, vehicle, component, &component.pose);
-        self.markers.clear();
-        self.markers.resize(self.observations.len(), None);
+        self.assign(&Pairs::default());
         self.gather_others(scene, &component.pose);
         let nats = self.measured(scene, &component.pose, |measurement| {
             measurement.visibility(&component.pose, component.power.log_power(scene.moment.camera), |_, _| ())
@@ -417,6 +416,15 @@ impl Ways {
             known: &known,
         };
         with(&Measurement::new(&seen, &self.markers, near))
+    }
+
+    /// Takes spots for the markers that a way has them for, all others for none.
+    fn assign(&mut self, pairs: &Pairs) {
+        self.markers.clear();
+        self.markers.resize(self.observations.len(), None);
+        for &(spot, marker) in pairs.as_slice() {
+            self.markers[usize::from(spot)] = Some(marker);
+        }
     }
 
     /// The directions of spots near a vehicle that are not its own.

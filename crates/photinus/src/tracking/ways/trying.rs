@@ -41,13 +41,11 @@ impl Ways {
     ) {
         let Scene { model, moment, .. } = *scene;
         let Candidate { from, pairs, spots, ref start, .. } = *candidate;
-        self.markers.clear();
-        self.markers.resize(self.observations.len(), None);
-        let mut signals = 0.0;
-        for &(spot, marker) in pairs.as_slice() {
-            self.markers[usize::from(spot)] = Some(marker);
-            signals += signal_nats(model, moment, self.who, usize::from(spot), usize::from(marker));
-        }
+        self.assign(&pairs);
+        let of_pair = |&(spot, marker): &(u16, u16)| {
+            signal_nats(model, moment, self.who, usize::from(spot), usize::from(marker))
+        };
+        let signals: f64 = pairs.as_slice().iter().map(of_pair).sum();
         self.gather_others(scene, start);
         let alike = self.light(scene, vehicle, &prior.component, start);
         let shows = if moment.blinks_alike { self.dim_beside_seen(alike) } else { 1.0 };

@@ -130,20 +130,12 @@ mod tests {
     use rand_pcg::Pcg64;
 
     use super::*;
-    use crate::camera::{Mounting, Rig};
+    use crate::camera::Mounting;
     use crate::locator::{Input, Locator};
-    use crate::pose::Symmetry;
-    use crate::tracking::step::Model;
-    use crate::tracking::tests::simulator::{Vehicle, camera, down, hexarotor, located_by, look};
-    use crate::tracking::{Look, Settings};
+    use crate::tracking::Look;
+    use crate::tracking::tests::simulator::{Vehicle, camera, down, hexarotor, located_by, look, model};
 
     const AWAY_M: f64 = 8.0;
-
-    fn model() -> Model {
-        let airframe = hexarotor();
-        let (symmetry, pose) = (Symmetry::of(&airframe), located_by().pose);
-        Model { rig: Rig::from(camera()), airframe, symmetry, pose, settings: Settings::default() }
-    }
 
     /// A frame with one hexarotor that is as likely there as told.
     fn frame(probability: f64) -> Moment {
@@ -195,7 +187,7 @@ mod tests {
         let (watched, interval_s) = (model.rig.watched(0), 0.1);
         let scene = Scene { model: &model, watched, moment, interval_s, own_interval_s: interval_s };
         let mut ways = Ways::with_room(&model.airframe);
-        ways.begin(&scene, 0.5, core::iter::once(None));
+        ways.begin(&scene, 0.5, &[0.0; 3], core::iter::once(None));
         let mut state = believed(&scene, &mut ways, times, members);
         let distance_m = |state: &State| state.components[0].pose.position_m.norm();
         let before_m = distance_m(&state);

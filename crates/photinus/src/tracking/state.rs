@@ -7,6 +7,7 @@ use nalgebra::{Matrix3, Unit, Vector3};
 use super::appearing::LOST_S;
 use super::component::Component;
 use super::look::Moving;
+use super::strangers::{self, Stranger};
 use crate::camera::Rig;
 
 /// Most vehicles that are followed at once.
@@ -67,6 +68,8 @@ pub(super) struct State {
     pub(super) members: Vec<usize>,
     /// Which marker each of them most probably is.
     pub(super) markers: Vec<Option<u16>>,
+    /// Lights that are nobody's.
+    pub(super) strangers: Vec<Stranger>,
 }
 
 impl State {
@@ -84,6 +87,7 @@ impl State {
             components: Vec::with_capacity(2 * MOST_TARGETS),
             members: Vec::with_capacity(128),
             markers: Vec::with_capacity(128),
+            strangers: Vec::with_capacity(strangers::MOST),
         }
     }
 
@@ -97,6 +101,7 @@ impl State {
         self.components.clear();
         self.members.clear();
         self.markers.clear();
+        self.strangers.clear();
     }
 
     /// Whether a vehicle that was heard would have shown by now where its track is.

@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! predicted   every normal distribution, carried on to the frame       motion, splitting
+//! lasting     lights that were nobody's, where they must be            strangers
 //! ways        which spots may be which of its markers, each updated    ways (branches, update)
 //! joint       how likely each is, no spot being two vehicles'          joint
 //! concluded   vehicles as sums of those, few; whether they exist       reduction, existence
@@ -25,6 +26,7 @@ use super::power::Fleet;
 use super::reduction::reduce;
 use super::splitting::{split, straight_rad};
 use super::state::{MOST_TARGETS, State, Target};
+use super::strangers::Strangers;
 use super::ways::{Scene, Way, Ways};
 use crate::airframe::Airframe;
 use crate::camera::Rig;
@@ -89,11 +91,16 @@ impl Model {
 
     /// Whether a frame shows anything where a vehicle may be.
     fn shows_any(&self, component: &Component, moment: &Moment) -> bool {
+        let may_be_there = self.may_be_at(component);
+        moment.observations.iter().any(may_be_there)
+    }
+
+    /// Whether a spot is where a vehicle may be.
+    pub(super) fn may_be_at(&self, component: &Component) -> impl Fn(&Observation) -> bool {
         let distance_m = component.pose.position_m.norm();
         let ahead = component.pose.position_m / distance_m;
         let reach_m = self.airframe.max_radius_m() + SURELY_SIGMA * component.aside_m2(&ahead).sqrt();
-        let is_near = |seen: &Observation| (seen.bearing.vector() - ahead).norm() * distance_m < reach_m;
-        moment.observations.iter().any(is_near)
+        move |seen| (seen.bearing.vector() - ahead).norm() * distance_m < reach_m
     }
 
     /// Whether a marker blinks a signal: LEDs without one blink the first.
@@ -115,6 +122,7 @@ pub(super) struct Stepper {
     claimed: Vec<f64>,
     reduced: Vec<Component>,
     fleet: Fleet,
+    strangers: Strangers,
 }
 
 impl Stepper {
@@ -127,6 +135,7 @@ impl Stepper {
             claimed: Vec::new(),
             reduced: Vec::with_capacity(512),
             fleet: Fleet::with_room(MOST_TARGETS),
+            strangers: Strangers::with_room(),
         }
     }
 
@@ -174,7 +183,9 @@ impl Stepper {
         let clutter = before.clutter[moment.camera];
         self.fleet.listen(before, moment.camera);
         let powers = (0..before.targets.len()).map(|vehicle| self.fleet.but_for(Some(vehicle)));
-        self.ways.begin(&scene, clutter, powers);
+        let errors = [model.pose.marker_sigma_m, model.repeats(own_interval_s)];
+        let lasting = self.strangers.expect(&before.strangers, moment, &motion, &model.settings, errors);
+        self.ways.begin(&scene, clutter, lasting, powers);
         for (vehicle, range) in self.first_predicted.windows(2).enumerate() {
             self.ways.may_screen(vehicle, &self.predicted[range[0]..range[1]]);
         }
@@ -200,6 +211,7 @@ impl Stepper {
         }
         let unexplained =
             appearing::appear(&scene, &mut self.ways, straight_rad, &self.claimed, &mut self.reduced, after);
+        self.strangers.remember(model, moment, &self.claimed, after);
         after.end_doubles(model.airframe.max_radius_m());
         let clutter = clutter + (unexplained - clutter) / CLUTTER_FRAMES;
         after.clutter[moment.camera] = clutter.max(LEAST_CLUTTER);
@@ -303,14 +315,11 @@ fn marker_of<'a>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::tracking::tests::simulator::{camera, hexarotor, located_by};
+    use crate::tracking::tests::simulator::model;
 
     #[test]
     fn what_cameras_see_at_nearly_one_time_repeats_once_each() {
-        let airframe = hexarotor();
-        let (symmetry, pose) = (Symmetry::of(&airframe), located_by().pose);
-        let model =
-            Model { rig: Rig::from(camera()), airframe, symmetry, pose, settings: Settings::default() };
+        let model = model();
         let mut moment = Moment::default();
         (moment.time_s, moment.share_lit) = (7.0, 1.0);
         let period_s = 0.0625;

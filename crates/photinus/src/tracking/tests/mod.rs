@@ -7,4 +7,5 @@ mod order;
 mod parts;
 mod rig;
 pub(crate) mod simulator;
+mod strangers;
 mod told;

@@ -7,10 +7,11 @@ use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64;
 
 use crate::airframe::{Airframe, Ring};
-use crate::camera::{Bearing, Camera, Ideal, IdealLaw, Model, Pixel};
+use crate::camera::{self, Bearing, Camera, Ideal, IdealLaw, Pixel, Rig};
 use crate::locator::{self, Input, Locator};
-use crate::pose;
+use crate::pose::{self, Symmetry};
 use crate::spots::{Extent, Spot};
+use crate::tracking::step::Model;
 use crate::tracking::{Look, Moving, Settings, Track, TrackError, Tracked, Tracker, Turned};
 
 pub(crate) const SIGMA_PX: f64 = 0.1;
@@ -27,7 +28,7 @@ const FINE_S: f64 = 1e-3;
 
 pub(crate) fn camera() -> Camera {
     let lens = Ideal::new(IdealLaw::Equidistant, [1.0 / RAD_PER_PX; 2], Pixel::new(375.5, 239.5)).unwrap();
-    Camera::new(Model::Ideal(lens), 752, 480, None).unwrap()
+    Camera::new(camera::Model::Ideal(lens), 752, 480, None).unwrap()
 }
 
 pub(crate) fn hexarotor() -> Airframe {
@@ -49,6 +50,13 @@ pub(crate) fn located_by() -> locator::Settings {
         ..pose::Settings::default()
     };
     locator::Settings { pose, ..locator::Settings::default() }
+}
+
+/// What a tracker of hexarotors does not change.
+pub(in crate::tracking) fn model() -> Model {
+    let airframe = hexarotor();
+    let (symmetry, pose) = (Symmetry::of(&airframe), located_by().pose);
+    Model { rig: Rig::from(camera()), airframe, symmetry, pose, settings: Settings::default() }
 }
 
 /// An observer: camera, locator and tracker.
@@ -256,7 +264,7 @@ pub(crate) fn look(
     seen
 }
 
-fn spot(centre: Pixel, flux: f64) -> Spot {
+pub(crate) fn spot(centre: Pixel, flux: f64) -> Spot {
     let half = 1.5;
     let within = |at: f64| at.round().max(0.0) as u32;
     Spot {

@@ -218,11 +218,13 @@ impl Ways {
         self.screens.add(vehicle, components);
     }
 
-    /// Begins a frame with so many points of clutter, and LEDs of this power, vehicle by vehicle, where that is known.
+    /// Begins a frame with so many points of clutter, spots that are so dense beyond that for lights that last (a spot per sr and unit of the logarithm of its
+    /// light), and LEDs of this power, vehicle by vehicle, where that is known.
     pub(super) fn begin(
         &mut self,
         scene: &Scene<'_>,
         clutter: f64,
+        lasting: &[f64],
         powers: impl Iterator<Item = Option<LogLight>>,
     ) {
         let Scene { moment, .. } = *scene;
@@ -247,12 +249,11 @@ impl Ways {
         self.used_bits = 0;
         let log_per_sr = libm::log(clutter / FIELD_SR);
         self.observations.clear();
-        self.observations.extend(
-            moment.observations.iter().map(|seen| Observation {
-                clutter_log_density: seen.clutter_log_density + log_per_sr,
-                ..*seen
-            }),
-        );
+        self.observations.extend(moment.observations.iter().zip(lasting).map(|(seen, lasting)| {
+            let new = seen.clutter_log_density + log_per_sr;
+            let clutter_log_density = if *lasting > 0.0 { libm::log(libm::exp(new) + lasting) } else { new };
+            Observation { clutter_log_density, ..*seen }
+        }));
         self.clutter_nats = -self.observations.iter().map(|seen| seen.clutter_log_density).sum::<f64>();
     }
 

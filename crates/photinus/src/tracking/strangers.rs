@@ -1,0 +1,329 @@
+//! Spots that are no vehicle's, frame after frame -> where such a spot is no news.
+//!
+//! One LED of a vehicle far off, a lamp, a vehicle of another kind: a light that nobody claims goes on. Were clutter new in every frame, each sight of it would be
+//! a surprise, and a vehicle nearby that takes it for a marker would gain that much in every frame, while what speaks against that (errors that frames repeat)
+//! counts once. So lights that were nobody's are expected again, no less surely than the markers of a vehicle nearby are.
+//!
+//! Each is followed by a Kalman filter of its direction and its rate, with one variance for both axes across the line of sight.
+
+use alloc::vec::Vec;
+
+use nalgebra::Vector3;
+
+use super::look::Moment;
+use super::motion::Motion;
+use super::settings::Settings;
+use super::state::State;
+use super::step::Model;
+#[cfg(not(feature = "std"))]
+use crate::float::Float as _;
+use crate::pose::{LogLight, Observation};
+
+/// Most lights that are remembered.
+pub(super) const MOST: usize = 128;
+/// What is rather somebody's is none, nor what was not seen for as long as that takes.
+const LEAST: f64 = 0.5;
+/// A light lasts so long on average, s.
+const LASTS_S: f64 = 0.5;
+/// Lights wander as those of vehicles so far off, m; and are no surer to be where they are expected than markers of one so near.
+const AWAY_M: f64 = 10.0;
+const NEAR_M: f64 = 5.0;
+/// How far the light of a spot is off that of the frame before, as a logarithm.
+const LIGHT_SIGMA: f64 = 0.5;
+/// A light so far from where one is expected, squared and in variances, is another.
+const GATE: f64 = 16.0;
+
+/// A light that may be nobody's.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Stranger {
+    /// Which camera sees it.
+    camera: usize,
+    /// Where, in the axes of what is believed, which are another camera's meanwhile.
+    direction: Vector3<f64>,
+    rate_rad_s: Vector3<f64>,
+    /// Of the direction, of both, of the rate, per axis.
+    variance: [f64; 3],
+    log_light: Option<LogLight>,
+    /// How likely it is nobody's, and is there.
+    probability: f64,
+}
+
+/// The lights of nobody around a frame. Keeps its room.
+#[derive(Debug, Default)]
+pub(super) struct Strangers {
+    predicted: Vec<Stranger>,
+    /// Whether each of them is among the frame's spots.
+    found: Vec<bool>,
+    /// By spot: which of them it most likely is, and the density of such a spot by all of them, per sr and unit of the logarithm of its light.
+    continues: Vec<Option<usize>>,
+    density: Vec<f64>,
+    /// By spot: how likely it is a vehicle's.
+    somebodys: Vec<f64>,
+}
+
+impl Strangers {
+    pub(super) fn with_room() -> Self {
+        Self { predicted: Vec::with_capacity(MOST), found: Vec::with_capacity(MOST), ..Self::default() }
+    }
+
+    /// Carries lights on to a frame, and tells how dense they make its spots; errors of markers, m, are the same in so many frames.
+    pub(super) fn expect(
+        &mut self,
+        before: &[Stranger],
+        moment: &Moment,
+        motion: &Motion,
+        settings: &Settings,
+        [marker_sigma_m, repeats]: [f64; 2],
+    ) -> &[f64] {
+        let unsure_rad2 = repeats * (marker_sigma_m / NEAR_M) * (marker_sigma_m / NEAR_M);
+        self.predicted.clear();
+        self.predicted.extend(before.iter().map(|own| own.after(motion, settings)));
+        self.found.clear();
+        self.found.resize(self.predicted.len(), false);
+        self.continues.clear();
+        self.density.clear();
+        for seen in &moment.observations {
+            let (mut density, mut best) = (0.0, None);
+            for (place, own) in self.predicted.iter().enumerate().filter(|own| own.1.camera == moment.camera)
+            {
+                let there = own.density(seen, unsure_rad2);
+                self.found[place] |= there > 0.0;
+                density += there;
+                if there > best.map_or(0.0, |(_, most)| most) {
+                    best = Some((place, there));
+                }
+            }
+            self.continues.push(best.map(|(place, _)| place));
+            self.density.push(density);
+        }
+        &self.density
+    }
+
+    /// Remembers the spots of a frame that no vehicle claims, and lights that it does not show.
+    pub(super) fn remember(&mut self, model: &Model, moment: &Moment, claimed: &[f64], after: &mut State) {
+        let Self { predicted, found, continues, somebodys, .. } = self;
+        somebodys.clear();
+        somebodys.extend_from_slice(claimed);
+        let mut belong = |members: &[usize], probability: f64| {
+            members.iter().for_each(|&spot| somebodys[spot] = somebodys[spot].max(probability));
+        };
+        after.targets.iter().for_each(|target| belong(after.members(target), target.existence));
+        moment.appearances.iter().for_each(|own| belong(moment.members(own), own.probability));
+        // Whoever is missing may show again there.
+        for target in after.targets.iter().filter(|target| target.is_predicted) {
+            for component in after.components(target) {
+                let may_be_there = model.may_be_at(component);
+                let spots = moment.observations.iter().zip(&mut *somebodys);
+                let there = spots.filter(|(seen, _)| may_be_there(seen));
+                there.for_each(|(_, own)| *own = own.max(target.existence));
+            }
+        }
+        let seen = moment.observations.iter().enumerate().map(|(spot, seen)| {
+            let new = || Stranger::new(moment.camera, seen, &model.settings);
+            let here = continues[spot].map_or_else(new, |place| predicted[place].with(seen));
+            Stranger { probability: 1.0 - somebodys[spot], ..here }
+        });
+        let unseen = predicted.iter().zip(&*found).filter(|own| !own.1).map(|own| *own.0);
+        after.strangers.clear();
+        after.strangers.extend(seen.chain(unseen).filter(|own| own.probability > LEAST).take(MOST));
+    }
+}
+
+impl Stranger {
+    /// A spot that was never seen before.
+    fn new(camera: usize, seen: &Observation, settings: &Settings) -> Self {
+        let rate_sigma = settings.velocity_sigma_m_s / AWAY_M;
+        Self {
+            camera,
+            direction: *seen.bearing.vector(),
+            rate_rad_s: Vector3::zeros(),
+            variance: [noise_rad2(seen), 0.0, rate_sigma * rate_sigma],
+            log_light: seen.log_light,
+            probability: 1.0,
+        }
+    }
+
+    /// The same with a spot that is this light.
+    fn with(&self, seen: &Observation) -> Self {
+        let [own, both, rate] = self.variance;
+        let noise = noise_rad2(seen);
+        let [by, by_rate] = [own, both].map(|variance| variance / (own + noise));
+        let off = seen.bearing.vector() - self.direction;
+        Self {
+            direction: (self.direction + off * by).normalize(),
+            rate_rad_s: self.rate_rad_s + off * by_rate,
+            variance: [own * (1.0 - by), both * (1.0 - by), rate - by_rate * both],
+            log_light: seen.log_light,
+            ..*self
+        }
+    }
+
+    /// The same a while later.
+    fn after(&self, motion: &Motion, settings: &Settings) -> Self {
+        let (interval_s, turn) = (motion.interval_s, &motion.turn);
+        let [own, both, rate] = self.variance;
+        let density = (settings.acceleration / AWAY_M) * (settings.acceleration / AWAY_M);
+        let (square, cube) = (interval_s * interval_s, interval_s * interval_s * interval_s);
+        Self {
+            direction: turn.now_from_before * (self.direction + self.rate_rad_s * interval_s).normalize(),
+            rate_rad_s: turn.now_from_before * self.rate_rad_s,
+            variance: [
+                own + 2.0 * both * interval_s
+                    + rate * square
+                    + density * cube / 3.0
+                    + turn.sigma_rad * turn.sigma_rad,
+                both + rate * interval_s + density * square / 2.0,
+                rate + density * interval_s,
+            ],
+            probability: self.probability * libm::exp(-interval_s / LASTS_S),
+            ..*self
+        }
+    }
+
+    /// The density of a spot as this light, with its probability; 0 where it is none.
+    fn density(&self, seen: &Observation, unsure_rad2: f64) -> f64 {
+        let variance = self.variance[0] + noise_rad2(seen) + unsure_rad2;
+        let square = (seen.bearing.vector() - self.direction).norm_squared() / variance;
+        if square > GATE {
+            return 0.0;
+        }
+        let of_light = match (self.log_light, seen.log_light) {
+            (Some(own), Some(seen)) => {
+                let sigma = libm::hypot(LIGHT_SIGMA, libm::hypot(own.sigma, seen.sigma));
+                let off = (seen.value - own.value) / sigma;
+                libm::exp(-0.5 * off * off) / (sigma * core::f64::consts::TAU.sqrt())
+            }
+            _ => 1.0,
+        };
+        self.probability * of_light * libm::exp(-0.5 * square) / (core::f64::consts::TAU * variance)
+    }
+}
+
+/// The variance of a spot's direction, of one axis.
+fn noise_rad2(seen: &Observation) -> f64 {
+    0.5 * seen.covariance_rad2.trace()
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{Matrix3, Rotation3};
+
+    use super::super::component::Component;
+    use super::super::motion::Turn;
+    use super::super::state::Target;
+    use super::super::tests::simulator::model;
+    use super::*;
+    use crate::camera::Bearing;
+
+    const INTERVAL_S: f64 = 1.0 / 30.0;
+    const NOISE_RAD: f64 = 4e-4;
+    const TURN_RAD: f64 = 0.05;
+    /// Markers to 3 mm, whose errors last for 30 frames.
+    const MARKERS: [f64; 2] = [0.003, 30.0];
+
+    fn spot(direction: Vector3<f64>) -> Observation {
+        Observation {
+            bearing: Bearing::new(direction).unwrap(),
+            covariance_rad2: (Matrix3::identity() - direction * direction.transpose())
+                * (NOISE_RAD * NOISE_RAD),
+            log_light: Some(LogLight { value: 5.0, sigma: 0.05 }),
+            resolution_rad: 0.0,
+            signal: None,
+            clutter_log_density: 0.0,
+        }
+    }
+
+    /// Lights at these angles to the axis, rad, in a frame of a camera.
+    fn frame(camera: usize, angles_rad: &[f64]) -> Moment {
+        let mut moment = Moment::default();
+        moment.camera = camera;
+        moment.observations.extend(
+            angles_rad.iter().map(|angle_rad| spot(Vector3::new(angle_rad.sin(), 0.0, angle_rad.cos()))),
+        );
+        moment
+    }
+
+    /// A camera that turns.
+    fn turning(turn_rad: f64, interval_s: f64) -> Motion {
+        let now_from_before = Rotation3::from_axis_angle(&Vector3::y_axis(), turn_rad);
+        Motion {
+            interval_s,
+            turn: Turn { now_from_before, ..Turn::none(Vector3::zeros()) },
+            faster: None,
+            up: None,
+            tilt_sigma_rad: 0.1,
+        }
+    }
+
+    /// How dense what is remembered makes the spots of the next frame.
+    fn dense(before: &State, moment: &Moment) -> Vec<f64> {
+        let (mut strangers, motion) = (Strangers::with_room(), turning(TURN_RAD, INTERVAL_S));
+        strangers.expect(&before.strangers, moment, &motion, &Settings::default(), MARKERS).to_vec()
+    }
+
+    /// What is remembered after frames of lights that wander at a rate, rad/s, while the camera turns evenly.
+    fn remembered(frames: usize, rate_rad_s: f64, claimed: f64) -> (State, f64) {
+        let mut state = State::empty(0.0, 0);
+        let mut strangers = Strangers::with_room();
+        let at_rad = |frame: usize| frame as f64 * (TURN_RAD + rate_rad_s * INTERVAL_S);
+        let motion = turning(TURN_RAD, INTERVAL_S);
+        for number in 0..frames {
+            let moment = frame(0, &[at_rad(number)]);
+            let before = core::mem::take(&mut state.strangers);
+            strangers.expect(&before, &moment, &motion, &Settings::default(), MARKERS);
+            strangers.remember(&model(), &moment, &[claimed], &mut state);
+        }
+        (state, at_rad(frames))
+    }
+
+    #[test]
+    fn a_light_that_wanders_is_expected_where_it_will_be() {
+        let clutter = 0.1;
+        for rate_rad_s in [-0.3, 0.0, 0.3] {
+            let (state, next_rad) = remembered(12, rate_rad_s, 0.0);
+            let there = dense(&state, &frame(0, &[next_rad, next_rad + 0.05]));
+            assert!(there[0] > 1e4 * clutter && there[1] < clutter, "{rate_rad_s}: {there:?}");
+            // A camera that looks elsewhere knows nothing of it.
+            assert_eq!(dense(&state, &frame(1, &[next_rad])), [0.0]);
+            // One that was seen once may wander anywhere near.
+            let (state, next_rad) = remembered(1, rate_rad_s, 0.0);
+            let once = dense(&state, &frame(0, &[next_rad]))[0];
+            assert!(once > 10.0 * clutter && once < 0.2 * there[0], "{rate_rad_s}: {once}");
+        }
+    }
+
+    #[test]
+    fn what_is_somebodys_is_no_stranger() {
+        assert_eq!(remembered(5, 0.0, 0.0).0.strangers.len(), 1);
+        assert!(remembered(5, 0.0, 0.6).0.strangers.is_empty());
+        // A vehicle that has just appeared has its spots, though none claimed them.
+        let moment = frame(0, &[0.0, 0.1]);
+        let mut state = State::empty(0.0, 0);
+        state.members.push(1);
+        state.targets.push(Target { existence: 0.9, members: 1, ..Target::somebody(0.0) });
+        let mut strangers = Strangers::with_room();
+        strangers.continues.resize(2, None);
+        strangers.remember(&model(), &moment, &[0.0; 2], &mut state);
+        assert!(state.strangers.len() == 1 && state.strangers[0].direction.x.abs() < 1e-9);
+        // Nor what may be a vehicle that is missing there.
+        state.components.push(Component::somewhere(Vector3::z() * 9.0, 0.01));
+        let missing = Target { components: 1, is_predicted: true, ..Target::somebody(0.0) };
+        state.targets.push(missing);
+        strangers.remember(&model(), &moment, &[0.0; 2], &mut state);
+        assert!(state.strangers.is_empty());
+    }
+
+    #[test]
+    fn a_light_that_goes_out_is_forgotten() {
+        let (mut state, _) = remembered(5, 0.0, 0.0);
+        let nothing = frame(0, &[]);
+        let motion = turning(0.0, 0.1);
+        let lasted = (0..20).take_while(|_| {
+            let mut strangers = Strangers::with_room();
+            strangers.expect(&state.strangers, &nothing, &motion, &Settings::default(), MARKERS);
+            strangers.remember(&model(), &nothing, &[], &mut state);
+            !state.strangers.is_empty()
+        });
+        assert!((2..=4).contains(&lasted.count()));
+    }
+}

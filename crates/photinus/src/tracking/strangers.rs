@@ -238,7 +238,9 @@ mod tests {
         let mut moment = Moment::default();
         moment.camera = camera;
         moment.observations.extend(
-            angles_rad.iter().map(|angle_rad| spot(Vector3::new(angle_rad.sin(), 0.0, angle_rad.cos()))),
+            angles_rad
+                .iter()
+                .map(|&angle_rad| spot(Vector3::new(libm::sin(angle_rad), 0.0, libm::cos(angle_rad)))),
         );
         moment
     }

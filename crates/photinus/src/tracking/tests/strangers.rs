@@ -47,7 +47,8 @@ fn surely_wrong(seeds: std::ops::Range<u64>) -> f64 {
             let mut seen = look(&observer.airframe, &[vehicle], &still, &mut rng);
             let light_m = vehicle.position_m + past_m + wanders_m_s * (time_s - 1.5);
             let at = camera().pixel(&Bearing::new(light_m).unwrap()).unwrap();
-            let is_apart = |seen: &Seen| (seen.spot.centre.u - at.u).hypot(seen.spot.centre.v - at.v) > 3.0;
+            let is_apart =
+                |seen: &Seen| libm::hypot(seen.spot.centre.u - at.u, seen.spot.centre.v - at.v) > 3.0;
             if seen.iter().all(is_apart) {
                 seen.push(Seen { spot: spot(at, flux), marker: usize::MAX, is_alone: true });
             }

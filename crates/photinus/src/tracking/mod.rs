@@ -3,7 +3,7 @@
 //! ```text
 //! look        what a frame brings, and how the camera turned                look
 //! motion      where everybody is expected                                   motion, splitting
-//! strangers   lights that were nobody's: another sight of them is no news
+//! clutter     lights that were nobody's: another sight of them is no news
 //! ways        which spots may be which markers of whom, each with its       ways (branches, update)
 //!             Kalman update; the pose room brings the measurement
 //! joint       how likely each way is, no spot being two vehicles'           joint
@@ -22,6 +22,7 @@
 
 mod appearing;
 mod branches;
+mod clutter;
 mod component;
 mod doubting;
 mod error;
@@ -38,7 +39,6 @@ mod silent;
 mod splitting;
 mod state;
 mod step;
-mod strangers;
 #[cfg(test)]
 pub(crate) mod tests;
 mod track;

@@ -5,9 +5,9 @@ use alloc::vec::Vec;
 use nalgebra::{Matrix3, Unit, Vector3};
 
 use super::appearing::LOST_S;
+use super::clutter::{self, ClutterPoint};
 use super::component::Component;
 use super::look::Moving;
-use super::strangers::{self, Stranger};
 use crate::camera::Rig;
 
 /// Most vehicles that are followed at once.
@@ -69,7 +69,7 @@ pub(super) struct State {
     /// Which marker each of them most probably is.
     pub(super) markers: Vec<Option<u16>>,
     /// Lights that are nobody's.
-    pub(super) strangers: Vec<Stranger>,
+    pub(super) persistent: Vec<ClutterPoint>,
 }
 
 impl State {
@@ -87,7 +87,7 @@ impl State {
             components: Vec::with_capacity(2 * MOST_TARGETS),
             members: Vec::with_capacity(128),
             markers: Vec::with_capacity(128),
-            strangers: Vec::with_capacity(strangers::MOST),
+            persistent: Vec::with_capacity(clutter::MOST),
         }
     }
 
@@ -101,7 +101,7 @@ impl State {
         self.components.clear();
         self.members.clear();
         self.markers.clear();
-        self.strangers.clear();
+        self.persistent.clear();
     }
 
     /// Whether a vehicle that was heard would have shown by now where its track is.

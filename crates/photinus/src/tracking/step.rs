@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! predicted   every normal distribution, carried on to the frame       motion, splitting
-//! lasting     lights that were nobody's, where they must be            strangers
+//! lasting     lights that were nobody's, where they must be            clutter
 //! ways        which spots may be which of its markers, each updated    ways (branches, update)
 //! joint       how likely each is, no spot being two vehicles'          joint
 //! concluded   vehicles as sums of those, few; whether they exist       reduction, existence
@@ -16,6 +16,7 @@ use nalgebra::Matrix3;
 
 use super::Settings;
 use super::appearing::{self, LOST_S};
+use super::clutter::PersistentClutter;
 use super::component::Component;
 use super::doubting;
 use super::existence::Existence;
@@ -26,7 +27,6 @@ use super::power::Fleet;
 use super::reduction::reduce;
 use super::splitting::{split, straight_rad};
 use super::state::{MOST_TARGETS, State, Target};
-use super::strangers::Strangers;
 use super::ways::{Scene, Way, Ways};
 use crate::airframe::Airframe;
 use crate::camera::Rig;
@@ -122,7 +122,7 @@ pub(super) struct Stepper {
     claimed: Vec<f64>,
     reduced: Vec<Component>,
     fleet: Fleet,
-    strangers: Strangers,
+    persistent: PersistentClutter,
 }
 
 impl Stepper {
@@ -135,7 +135,7 @@ impl Stepper {
             claimed: Vec::new(),
             reduced: Vec::with_capacity(512),
             fleet: Fleet::with_room(MOST_TARGETS),
-            strangers: Strangers::with_room(),
+            persistent: PersistentClutter::with_room(),
         }
     }
 
@@ -184,7 +184,7 @@ impl Stepper {
         self.fleet.listen(before, moment.camera);
         let powers = (0..before.targets.len()).map(|vehicle| self.fleet.but_for(Some(vehicle)));
         let errors = [model.pose.marker_sigma_m, model.repeats(own_interval_s)];
-        let lasting = self.strangers.expect(&before.strangers, moment, &motion, &model.settings, errors);
+        let lasting = self.persistent.expect(&before.persistent, moment, &motion, &model.settings, errors);
         self.ways.begin(&scene, clutter, lasting, powers);
         for (vehicle, range) in self.first_predicted.windows(2).enumerate() {
             self.ways.may_screen(vehicle, &self.predicted[range[0]..range[1]]);
@@ -211,7 +211,7 @@ impl Stepper {
         }
         let unexplained =
             appearing::appear(&scene, &mut self.ways, straight_rad, &self.claimed, &mut self.reduced, after);
-        self.strangers.remember(model, moment, &self.claimed, after);
+        self.persistent.remember(model, moment, &self.claimed, after);
         after.end_doubles(model.airframe.max_radius_m());
         let clutter = clutter + (unexplained - clutter) / CLUTTER_FRAMES;
         after.clutter[moment.camera] = clutter.max(LEAST_CLUTTER);

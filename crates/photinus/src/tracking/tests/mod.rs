@@ -2,10 +2,10 @@
 
 mod accuracy;
 mod blinking;
+mod clutter;
 mod manoeuvres;
 mod order;
 mod parts;
 mod rig;
 pub(crate) mod simulator;
-mod strangers;
 mod told;

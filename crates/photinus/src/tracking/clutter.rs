@@ -1,4 +1,4 @@
-//! Spots that are no vehicle's, frame after frame -> where such a spot is no news.
+//! Spots that are no vehicle's, frame after frame -> persistent clutter: where such a spot is no news.
 //!
 //! One LED of a vehicle far off, a lamp, a vehicle of another kind: a light that nobody claims goes on. Were clutter new in every frame, each sight of it would be
 //! a surprise, and a vehicle nearby that takes it for a marker would gain that much in every frame, while what speaks against that (errors that frames repeat)
@@ -35,7 +35,7 @@ const GATE: f64 = 16.0;
 
 /// A light that may be nobody's.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Stranger {
+pub(super) struct ClutterPoint {
     /// Which camera sees it.
     camera: usize,
     /// Where, in the axes of what is believed, which are another camera's meanwhile.
@@ -50,8 +50,8 @@ pub(super) struct Stranger {
 
 /// The lights of nobody around a frame. Keeps its room.
 #[derive(Debug, Default)]
-pub(super) struct Strangers {
-    predicted: Vec<Stranger>,
+pub(super) struct PersistentClutter {
+    predicted: Vec<ClutterPoint>,
     /// Whether each of them is among the frame's spots.
     found: Vec<bool>,
     /// By spot: which of them it most likely is, and the density of such a spot by all of them, per sr and unit of the logarithm of its light.
@@ -61,7 +61,7 @@ pub(super) struct Strangers {
     somebodys: Vec<f64>,
 }
 
-impl Strangers {
+impl PersistentClutter {
     pub(super) fn with_room() -> Self {
         Self { predicted: Vec::with_capacity(MOST), found: Vec::with_capacity(MOST), ..Self::default() }
     }
@@ -69,7 +69,7 @@ impl Strangers {
     /// Carries lights on to a frame, and tells how dense they make its spots; errors of markers, m, are the same in so many frames.
     pub(super) fn expect(
         &mut self,
-        before: &[Stranger],
+        before: &[ClutterPoint],
         moment: &Moment,
         motion: &Motion,
         settings: &Settings,
@@ -101,35 +101,41 @@ impl Strangers {
 
     /// Remembers the spots of a frame that no vehicle claims, and lights that it does not show.
     pub(super) fn remember(&mut self, model: &Model, moment: &Moment, claimed: &[f64], after: &mut State) {
+        self.find_owners(model, moment, claimed, after);
         let Self { predicted, found, continues, somebodys, .. } = self;
+        let seen = moment.observations.iter().enumerate().map(|(spot, seen)| {
+            let new = || ClutterPoint::new(moment.camera, seen, &model.settings);
+            let here = continues[spot].map_or_else(new, |place| predicted[place].with(seen));
+            ClutterPoint { probability: 1.0 - somebodys[spot], ..here }
+        });
+        let unseen = predicted.iter().zip(&*found).filter(|own| !own.1).map(|own| *own.0);
+        after.persistent.clear();
+        after.persistent.extend(seen.chain(unseen).filter(|own| own.probability > LEAST).take(MOST));
+    }
+
+    /// Says how likely each spot is somebody's: whose who claims it, also who has just appeared, or is located only; and who is missing may show again there.
+    fn find_owners(&mut self, model: &Model, moment: &Moment, claimed: &[f64], after: &State) {
+        let somebodys = &mut self.somebodys;
         somebodys.clear();
         somebodys.extend_from_slice(claimed);
-        let mut belong = |members: &[usize], probability: f64| {
-            members.iter().for_each(|&spot| somebodys[spot] = somebodys[spot].max(probability));
-        };
-        after.targets.iter().for_each(|target| belong(after.members(target), target.existence));
-        moment.appearances.iter().for_each(|own| belong(moment.members(own), own.probability));
-        // Whoever is missing may show again there.
+        let mut belong = |spot: usize, probability: f64| somebodys[spot] = somebodys[spot].max(probability);
+        for target in &after.targets {
+            after.members(target).iter().for_each(|&spot| belong(spot, target.existence));
+        }
+        for appearance in &moment.appearances {
+            moment.members(appearance).iter().for_each(|&spot| belong(spot, appearance.probability));
+        }
         for target in after.targets.iter().filter(|target| target.is_predicted) {
             for component in after.components(target) {
                 let may_be_there = model.may_be_at(component);
-                let spots = moment.observations.iter().zip(&mut *somebodys);
-                let there = spots.filter(|(seen, _)| may_be_there(seen));
-                there.for_each(|(_, own)| *own = own.max(target.existence));
+                let spots = moment.observations.iter().enumerate().filter(|(_, seen)| may_be_there(seen));
+                spots.for_each(|(spot, _)| belong(spot, target.existence));
             }
         }
-        let seen = moment.observations.iter().enumerate().map(|(spot, seen)| {
-            let new = || Stranger::new(moment.camera, seen, &model.settings);
-            let here = continues[spot].map_or_else(new, |place| predicted[place].with(seen));
-            Stranger { probability: 1.0 - somebodys[spot], ..here }
-        });
-        let unseen = predicted.iter().zip(&*found).filter(|own| !own.1).map(|own| *own.0);
-        after.strangers.clear();
-        after.strangers.extend(seen.chain(unseen).filter(|own| own.probability > LEAST).take(MOST));
     }
 }
 
-impl Stranger {
+impl ClutterPoint {
     /// A spot that was never seen before.
     fn new(camera: usize, seen: &Observation, settings: &Settings) -> Self {
         let rate_sigma = settings.velocity_sigma_m_s / AWAY_M;
@@ -259,60 +265,60 @@ mod tests {
 
     /// How dense what is remembered makes the spots of the next frame.
     fn dense(before: &State, moment: &Moment) -> Vec<f64> {
-        let (mut strangers, motion) = (Strangers::with_room(), turning(TURN_RAD, INTERVAL_S));
-        strangers.expect(&before.strangers, moment, &motion, &Settings::default(), MARKERS).to_vec()
+        let (mut clutter, motion) = (PersistentClutter::with_room(), turning(TURN_RAD, INTERVAL_S));
+        clutter.expect(&before.persistent, moment, &motion, &Settings::default(), MARKERS).to_vec()
     }
 
     /// What is remembered after frames of lights that wander at a rate, rad/s, while the camera turns evenly.
     fn remembered(frames: usize, rate_rad_s: f64, claimed: f64) -> (State, f64) {
         let mut state = State::empty(0.0, 0);
-        let mut strangers = Strangers::with_room();
+        let mut clutter = PersistentClutter::with_room();
         let at_rad = |frame: usize| frame as f64 * (TURN_RAD + rate_rad_s * INTERVAL_S);
         let motion = turning(TURN_RAD, INTERVAL_S);
         for number in 0..frames {
             let moment = frame(0, &[at_rad(number)]);
-            let before = core::mem::take(&mut state.strangers);
-            strangers.expect(&before, &moment, &motion, &Settings::default(), MARKERS);
-            strangers.remember(&model(), &moment, &[claimed], &mut state);
+            let before = core::mem::take(&mut state.persistent);
+            clutter.expect(&before, &moment, &motion, &Settings::default(), MARKERS);
+            clutter.remember(&model(), &moment, &[claimed], &mut state);
         }
         (state, at_rad(frames))
     }
 
     #[test]
     fn a_light_that_wanders_is_expected_where_it_will_be() {
-        let clutter = 0.1;
+        let new = 0.1;
         for rate_rad_s in [-0.3, 0.0, 0.3] {
             let (state, next_rad) = remembered(12, rate_rad_s, 0.0);
             let there = dense(&state, &frame(0, &[next_rad, next_rad + 0.05]));
-            assert!(there[0] > 1e4 * clutter && there[1] < clutter, "{rate_rad_s}: {there:?}");
+            assert!(there[0] > 1e4 * new && there[1] < new, "{rate_rad_s}: {there:?}");
             // A camera that looks elsewhere knows nothing of it.
             assert_eq!(dense(&state, &frame(1, &[next_rad])), [0.0]);
             // One that was seen once may wander anywhere near.
             let (state, next_rad) = remembered(1, rate_rad_s, 0.0);
             let once = dense(&state, &frame(0, &[next_rad]))[0];
-            assert!(once > 10.0 * clutter && once < 0.2 * there[0], "{rate_rad_s}: {once}");
+            assert!(once > 10.0 * new && once < 0.2 * there[0], "{rate_rad_s}: {once}");
         }
     }
 
     #[test]
-    fn what_is_somebodys_is_no_stranger() {
-        assert_eq!(remembered(5, 0.0, 0.0).0.strangers.len(), 1);
-        assert!(remembered(5, 0.0, 0.6).0.strangers.is_empty());
+    fn what_is_somebodys_is_no_clutter() {
+        assert_eq!(remembered(5, 0.0, 0.0).0.persistent.len(), 1);
+        assert!(remembered(5, 0.0, 0.6).0.persistent.is_empty());
         // A vehicle that has just appeared has its spots, though none claimed them.
         let moment = frame(0, &[0.0, 0.1]);
         let mut state = State::empty(0.0, 0);
         state.members.push(1);
         state.targets.push(Target { existence: 0.9, members: 1, ..Target::somebody(0.0) });
-        let mut strangers = Strangers::with_room();
-        strangers.continues.resize(2, None);
-        strangers.remember(&model(), &moment, &[0.0; 2], &mut state);
-        assert!(state.strangers.len() == 1 && state.strangers[0].direction.x.abs() < 1e-9);
+        let mut clutter = PersistentClutter::with_room();
+        clutter.continues.resize(2, None);
+        clutter.remember(&model(), &moment, &[0.0; 2], &mut state);
+        assert!(state.persistent.len() == 1 && state.persistent[0].direction.x.abs() < 1e-9);
         // Nor what may be a vehicle that is missing there.
         state.components.push(Component::somewhere(Vector3::z() * 9.0, 0.01));
         let missing = Target { components: 1, is_predicted: true, ..Target::somebody(0.0) };
         state.targets.push(missing);
-        strangers.remember(&model(), &moment, &[0.0; 2], &mut state);
-        assert!(state.strangers.is_empty());
+        clutter.remember(&model(), &moment, &[0.0; 2], &mut state);
+        assert!(state.persistent.is_empty());
     }
 
     #[test]
@@ -321,10 +327,10 @@ mod tests {
         let nothing = frame(0, &[]);
         let motion = turning(0.0, 0.1);
         let lasted = (0..20).take_while(|_| {
-            let mut strangers = Strangers::with_room();
-            strangers.expect(&state.strangers, &nothing, &motion, &Settings::default(), MARKERS);
-            strangers.remember(&model(), &nothing, &[], &mut state);
-            !state.strangers.is_empty()
+            let mut clutter = PersistentClutter::with_room();
+            clutter.expect(&state.persistent, &nothing, &motion, &Settings::default(), MARKERS);
+            clutter.remember(&model(), &nothing, &[], &mut state);
+            !state.persistent.is_empty()
         });
         assert!((2..=4).contains(&lasted.count()));
     }

@@ -66,16 +66,16 @@ impl PersistentClutter {
         Self { predicted: Vec::with_capacity(MOST), found: Vec::with_capacity(MOST), ..Self::default() }
     }
 
-    /// Carries lights on to a frame, and tells how dense they make its spots; errors of markers, m, are the same in so many frames.
+    /// Carries lights on to a frame, and tells how dense they make its spots, where a frame may count the place of a marker to this variance.
     pub(super) fn expect(
         &mut self,
         before: &[ClutterPoint],
         moment: &Moment,
         motion: &Motion,
         settings: &Settings,
-        [marker_sigma_m, repeats]: [f64; 2],
+        marker_m2: f64,
     ) -> &[f64] {
-        let unsure_rad2 = repeats * (marker_sigma_m / NEAR_M) * (marker_sigma_m / NEAR_M);
+        let unsure_rad2 = marker_m2 / (NEAR_M * NEAR_M);
         self.predicted.clear();
         self.predicted.extend(before.iter().map(|own| own.after(motion, settings)));
         self.found.clear();
@@ -225,7 +225,7 @@ mod tests {
     const NOISE_RAD: f64 = 4e-4;
     const TURN_RAD: f64 = 0.05;
     /// Markers to 3 mm, whose errors last for 30 frames.
-    const MARKERS: [f64; 2] = [0.003, 30.0];
+    const MARKER_M2: f64 = 30.0 * 0.003 * 0.003;
 
     fn spot(direction: Vector3<f64>) -> Observation {
         Observation {
@@ -266,7 +266,7 @@ mod tests {
     /// How dense what is remembered makes the spots of the next frame.
     fn dense(before: &State, moment: &Moment) -> Vec<f64> {
         let (mut clutter, motion) = (PersistentClutter::with_room(), turning(TURN_RAD, INTERVAL_S));
-        clutter.expect(&before.persistent, moment, &motion, &Settings::default(), MARKERS).to_vec()
+        clutter.expect(&before.persistent, moment, &motion, &Settings::default(), MARKER_M2).to_vec()
     }
 
     /// What is remembered after frames of lights that wander at a rate, rad/s, while the camera turns evenly.
@@ -278,7 +278,7 @@ mod tests {
         for number in 0..frames {
             let moment = frame(0, &[at_rad(number)]);
             let before = core::mem::take(&mut state.persistent);
-            clutter.expect(&before, &moment, &motion, &Settings::default(), MARKERS);
+            clutter.expect(&before, &moment, &motion, &Settings::default(), MARKER_M2);
             clutter.remember(&model(), &moment, &[claimed], &mut state);
         }
         (state, at_rad(frames))
@@ -328,7 +328,7 @@ mod tests {
         let motion = turning(0.0, 0.1);
         let lasted = (0..20).take_while(|_| {
             let mut clutter = PersistentClutter::with_room();
-            clutter.expect(&state.persistent, &nothing, &motion, &Settings::default(), MARKERS);
+            clutter.expect(&state.persistent, &nothing, &motion, &Settings::default(), MARKER_M2);
             clutter.remember(&model(), &nothing, &[], &mut state);
             !state.persistent.is_empty()
         });

@@ -183,8 +183,8 @@ impl Stepper {
         let clutter = before.clutter[moment.camera];
         self.fleet.listen(before, moment.camera);
         let powers = (0..before.targets.len()).map(|vehicle| self.fleet.but_for(Some(vehicle)));
-        let errors = [model.pose.marker_sigma_m, model.repeats(own_interval_s)];
-        let lasting = self.persistent.expect(&before.persistent, moment, &motion, &model.settings, errors);
+        let marker_m2 = model.repeats(own_interval_s) * model.pose.marker_sigma_m * model.pose.marker_sigma_m;
+        let lasting = self.persistent.expect(&before.persistent, moment, &motion, &model.settings, marker_m2);
         self.ways.begin(&scene, clutter, lasting, powers);
         for (vehicle, range) in self.first_predicted.windows(2).enumerate() {
             self.ways.may_screen(vehicle, &self.predicted[range[0]..range[1]]);

@@ -44,6 +44,7 @@ pub struct Follower {
     listeners: Listeners,
     field_sr: f64,
     last_s: Option<f64>,
+    /// First those that have a number, in its order.
     tracks: Vec<Track>,
     next_number: u64,
     own_turn: OwnTurn,
@@ -139,6 +140,7 @@ impl Follower {
         self.look_at_each(frame, passed_s);
         self.associate(frame);
         self.learn(frame);
+        self.number_tracks();
         self.begin_tracks(frame, passed_s);
         self.end_tracks();
         self.tell();
@@ -279,9 +281,18 @@ impl Follower {
             if track.may_listen() {
                 self.listeners.give(&mut track.hearing);
             }
-            if track.is_sure() && track.number.is_none() {
-                track.number = Some(self.next_number);
+        }
+    }
+
+    /// Tracks that are sure get a number: they stand before all others, in its order.
+    fn number_tracks(&mut self) {
+        let mut numbered = self.tracks.partition_point(Track::is_confirmed);
+        for index in numbered..self.tracks.len() {
+            if self.tracks[index].is_sure() {
+                self.tracks[index].number = Some(self.next_number);
                 self.next_number += 1;
+                self.tracks[numbered..=index].rotate_right(1);
+                numbered += 1;
             }
         }
     }
@@ -325,7 +336,6 @@ impl Follower {
         self.told.clear();
         let (listeners, common) = (&self.listeners, self.own_turn.common_rad2_s2());
         self.told.extend(self.tracks.iter().filter_map(|track| MarkerTrack::of(track, listeners, common)));
-        self.told.sort_unstable_by_key(|track| track.number);
     }
 
     /// Density of sightings that no track explains, 1/sr.

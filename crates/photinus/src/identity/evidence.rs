@@ -11,7 +11,7 @@ pub(crate) const SHARES: usize = 5;
 const AT: [f64; SHARES] = [0.0, 0.25, 0.5, 0.75, 1.0];
 
 /// This many standard deviations are not worth a function: what it gives is lost beside a surprise.
-const NEVER: f64 = 13.0;
+const NEVER: f64 = 7.0;
 
 /// A light that fits nothing still has this likelihood against the best fit, so that no frame rules out anything for ever.
 const LEAST: f64 = 1e-6;

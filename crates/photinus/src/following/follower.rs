@@ -286,13 +286,14 @@ impl Follower {
 
     /// Tracks that are sure get a number: they stand before all others, in its order.
     fn number_tracks(&mut self) {
-        let mut numbered = self.tracks.partition_point(Track::is_confirmed);
-        for index in numbered..self.tracks.len() {
+        let first = self.tracks.partition_point(Track::is_confirmed);
+        let mut new = 0;
+        for index in first..self.tracks.len() {
             if self.tracks[index].is_sure() {
                 self.tracks[index].number = Some(self.next_number);
                 self.next_number += 1;
-                self.tracks[numbered..=index].rotate_right(1);
-                numbered += 1;
+                self.tracks[first + new..=index].rotate_right(1);
+                new += 1;
             }
         }
     }

@@ -85,8 +85,9 @@ pub(super) struct Naming {
     /// Weight, and place of track and vehicle, of each claim.
     claims: Vec<(f64, usize, usize)>,
     names: Vec<Name>,
-    /// What one marker says, and by word the most that a marker with it says for the fleet.
-    own: Vec<f64>,
+    /// What each marker of a vehicle says, one after the other, by hypothesis, nats.
+    testimony: Vec<f64>,
+    /// By word: the most that a marker with it says for the fleet.
     surest: Vec<(usize, f64)>,
 }
 
@@ -115,7 +116,7 @@ impl Naming {
             association: Association::default(),
             claims: Vec::new(),
             names: Vec::new(),
-            own: Vec::new(),
+            testimony: Vec::new(),
             surest: Vec::new(),
         }
     }
@@ -168,7 +169,9 @@ impl Naming {
     pub(super) fn remember(&mut self, over: &Belonging) {
         let Some(place) = self.files.iter().position(|file| file.track == over.track) else { return };
         let mut file = core::mem::take(&mut self.files[place]);
-        self.add(over, &mut file.remembered);
+        self.testimony.clear();
+        self.hear(over);
+        add(&self.testimony, &mut file.remembered);
         settle(&mut file.remembered);
         file.remembered.iter_mut().for_each(|nats| *nats = nats.max(-REMEMBERED_NATS));
         self.files[place] = file;
@@ -180,9 +183,11 @@ impl Naming {
         for place in 0..self.files.len() {
             let mut file = core::mem::take(&mut self.files[place]);
             file.said.clone_from(&file.remembered);
+            self.testimony.clear();
             for own in belongings.of(file.track) {
-                self.add(own, &mut file.said);
+                self.hear(own);
             }
+            self.testimony.chunks_exact(file.said.len()).for_each(|own| add(own, &mut file.said));
             file.odds_nats = self.odds_by_chance(belongings, &file);
             settle(&mut file.said);
             file.turn = self.sure_turn(&file.said).or(file.turn);
@@ -208,32 +213,28 @@ impl Naming {
         files.sort_unstable_by_key(|file| tracked.tracks.iter().position(|track| track.id == file.track));
     }
 
-    /// Adds what a marker says to each hypothesis: vehicles and their turns, at last nobody of the fleet.
-    fn add(&self, own: &Belonging, nats: &mut [f64]) {
+    /// Hears what a marker says of each hypothesis: vehicles and their turns, at last nobody of the fleet.
+    fn hear(&mut self, own: &Belonging) {
+        let Self { testimony, vehicles, words, turns, signals, symmetry, beforehand, .. } = self;
         if own.words.is_empty() {
+            testimony.resize(testimony.len() + vehicles.len() * *turns + 1, 0.0);
             return;
         }
         let weigh = |ratio: f64| libm::log(own.share * ratio.max(LEAST) + 1.0 - own.share);
-        let of_word = |word: usize| own.words[word] / self.beforehand;
-        for (vehicle, nats) in self.vehicles.iter().zip(nats.chunks_mut(self.turns)) {
+        let of_word = |word: usize| own.words[word] / *beforehand;
+        for vehicle in vehicles.iter() {
             let any = mean(vehicle.words.iter().map(|&word| of_word(word)));
-            for (turn, nats) in nats.iter_mut().enumerate() {
+            testimony.extend((0..*turns).map(|turn| {
                 let placed = own.marker.map(|marker| {
-                    let signals = &self.signals[usize::from(self.symmetry.turned(turn, marker))];
-                    mean(
-                        signals
-                            .iter()
-                            .map(|&signal| vehicle.words.get(signal).map_or(0.0, |&word| of_word(word))),
-                    )
+                    let signals = signals[usize::from(symmetry.turned(turn, marker))].iter();
+                    mean(signals.map(|&signal| vehicle.words.get(signal).map_or(0.0, |&word| of_word(word))))
                 });
-                *nats += weigh(placed.map_or(any, |placed| PLACED * placed + (1.0 - PLACED) * any));
-            }
+                weigh(placed.map_or(any, |placed| PLACED * placed + (1.0 - PLACED) * any))
+            }));
         }
-        let known: f64 = self.words.iter().map(|&word| own.words[word]).sum();
-        let nobody = (1.0 - known).max(LEAST) / (1.0 - self.beforehand * self.words.len() as f64).max(LEAST);
-        if let Some(nats) = nats.last_mut() {
-            *nats += weigh(nobody);
-        }
+        let known: f64 = words.iter().map(|&word| own.words[word]).sum();
+        let nobody = (1.0 - known).max(LEAST) / (1.0 - *beforehand * words.len() as f64).max(LEAST);
+        testimony.push(weigh(nobody));
     }
 
     /// How much likelier than nobody of the fleet the best of it is, nats, if a word that is in no list looks like one that is to all markers that blink it at once: of those the
@@ -248,24 +249,20 @@ impl Naming {
         }
         let over_nobody = |said: &[f64]| said[best] - said[said.len() - 1];
         let mut odds_nats = over_nobody(&file.remembered);
-        let mut own = core::mem::take(&mut self.own);
         self.surest.clear();
-        for marker in belongings.of(file.track) {
+        let testimony = self.testimony.chunks_exact(file.said.len());
+        for (marker, own) in belongings.of(file.track).zip(testimony) {
             let words = &marker.words;
             let Some(word) = (0..words.len()).max_by(|&a, &b| words[a].total_cmp(&words[b])) else {
                 continue;
             };
-            own.clear();
-            own.resize(file.said.len(), 0.0);
-            self.add(marker, &mut own);
-            let nats = over_nobody(&own);
+            let nats = over_nobody(own);
             match self.surest.iter_mut().find(|surest| surest.0 == word) {
                 _ if nats <= 0.0 => odds_nats += nats,
                 Some((_, surest)) => *surest = surest.max(nats),
                 None => self.surest.push((word, nats)),
             }
         }
-        self.own = own;
         odds_nats + self.surest.iter().map(|surest| surest.1).sum::<f64>()
     }
 
@@ -331,6 +328,11 @@ impl Naming {
             first += own.len();
         }
     }
+}
+
+/// Adds what one marker says.
+fn add(own: &[f64], nats: &mut [f64]) {
+    nats.iter_mut().zip(own).for_each(|(nats, own)| *nats += own);
 }
 
 /// Sets the best to 0.

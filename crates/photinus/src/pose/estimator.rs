@@ -193,7 +193,7 @@ impl Estimator {
             let signals = observations.iter().map(|seen| seen.signal);
             let nats = self.symmetry.signal_nats(turn, signals, markers) + libm::log(turns as f64);
             for index in first..last {
-                let mut component = self.components[index].turned(&self.symmetry.turn(turn));
+                let mut component = self.components[index].turned(self.symmetry.turn(turn));
                 component.log_weight -= nats;
                 component.hypothesis += turn * self.modes.len();
                 self.components.push(component);

@@ -10,7 +10,8 @@ use crate::airframe::{Airframe, Marker};
 /// The turns of an airframe, and which marker takes whose place in each.
 #[derive(Clone, Debug)]
 pub struct Symmetry {
-    turns: usize,
+    /// By turn: the rotation of the body after which its turned markers stand where the unturned ones stood.
+    turns: Vec<Rotation3<f64>>,
     /// By turn, then by marker: the marker that stands where this one stood.
     turned: Vec<u16>,
     markers: usize,
@@ -29,7 +30,7 @@ impl Symmetry {
             (0..markers.len()).min_by(|a, b| gap(a).total_cmp(&gap(b))).unwrap_or(0)
         };
         let turned = (0..turns).flat_map(|turn| {
-            let rotation = Self::rotation(turns, turn);
+            let rotation = rotation(turns, turn);
             markers.iter().map(move |marker| nearest(rotation * marker.position_m) as u16)
         });
         let signals_of = |marker: &Marker| {
@@ -39,7 +40,7 @@ impl Symmetry {
             signals
         };
         let mut symmetry = Self {
-            turns,
+            turns: (0..turns).map(|turn| rotation(turns, turn).inverse()).collect(),
             turned: turned.collect(),
             markers: markers.len(),
             signals: markers.iter().map(signals_of).collect(),
@@ -58,7 +59,7 @@ impl Symmetry {
 
     /// How many turns, at least 1.
     pub fn turns(&self) -> usize {
-        self.turns
+        self.turns.len()
     }
 
     /// How many turns leave the airframe as it was with its signals, at least 1.
@@ -68,7 +69,7 @@ impl Symmetry {
 
     /// How many turns signals tell apart: the first this many, at least 1.
     pub(crate) fn told_apart(&self) -> usize {
-        self.turns / self.turns_with_signals
+        self.turns() / self.turns_with_signals
     }
 
     /// Whether an LED of a marker carries a signal.
@@ -87,18 +88,18 @@ impl Symmetry {
             let turn = *turn;
             markers.iter().map(move |&marker| self.turned(turn, marker))
         };
-        (0..self.turns).min_by(|a, b| name(a).cmp(name(b))).unwrap_or(0)
-    }
-
-    /// A body turned by a turn: the rotation of its markers.
-    pub(crate) fn rotation(turns: usize, turn: usize) -> Rotation3<f64> {
-        Rotation3::from_axis_angle(&Vector3::z_axis(), TAU * turn as f64 / turns as f64)
+        (0..self.turns()).min_by(|a, b| name(a).cmp(name(b))).unwrap_or(0)
     }
 
     /// The rotation of the body after which its turned markers stand where the unturned ones stood.
-    pub(crate) fn turn(&self, turn: usize) -> Rotation3<f64> {
-        Self::rotation(self.turns, turn).inverse()
+    pub(crate) fn turn(&self, turn: usize) -> &Rotation3<f64> {
+        &self.turns[turn]
     }
+}
+
+/// The rotation of the markers of a body that is turned by one of so many turns.
+fn rotation(turns: usize, turn: usize) -> Rotation3<f64> {
+    Rotation3::from_axis_angle(&Vector3::z_axis(), TAU * turn as f64 / turns as f64)
 }
 
 #[cfg(test)]

@@ -142,7 +142,7 @@ fn begin(model: &Model, mode: &Mode, first: Option<&Component>, turns: usize) ->
         power: Power::UNKNOWN,
     };
     let turn = first.and_then(|first| turn_next_to(model, &begun.pose, &first.pose, turns));
-    turn.map_or(begun, |turn| begun.turned(&model.symmetry.turn(turn)))
+    turn.map_or(begun, |turn| begun.turned(model.symmetry.turn(turn)))
 }
 
 /// The turn of the airframe's symmetry that brings an attitude next to another one, of the first so many.

@@ -50,7 +50,7 @@ impl Ways {
             moment.modes(appearance).iter().take_while(|mode| mode.weight > LEAST_START).take(MOST_STARTS)
         {
             let turn = turn_next_to(model, &mode.pose, &predicted.pose, turns);
-            let turn = turn.map_or(Rotation3::identity(), |turn| model.symmetry.turn(turn));
+            let turn = turn.map_or(Rotation3::identity(), |turn| *model.symmetry.turn(turn));
             let start = Pose { camera_from_body: mode.pose.camera_from_body * turn, ..mode.pose };
             let off = pose_step(&predicted.pose, &start);
             let mut covariance = predicted.pose_covariance();

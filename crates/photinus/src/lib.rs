@@ -55,6 +55,7 @@ pub mod identity;
 mod lanes;
 pub mod locator;
 pub mod lookout;
+mod normal;
 pub mod optics;
 pub mod pose;
 pub mod ranging;

@@ -3,6 +3,7 @@
 //! The exposure may hold an edge of the signal, so that the LED shone for a part of it; a spot that is not there says something, too.
 
 use super::Level;
+use crate::normal;
 
 /// Shares of the exposure at which likelihoods are kept: 0, 1/4, 1/2, 3/4, 1; between them they are drawn straight.
 pub(crate) const SHARES: usize = 5;
@@ -102,7 +103,7 @@ pub(crate) fn density_of_light(light: f64, sigma: f64, level: &Level) -> [f64; S
         if off.abs() > NEVER {
             return stray;
         }
-        libm::exp(-0.5 * off * off) / (deviation * 2.506_628_274_631_000_7) + stray
+        normal::density(off, deviation) + stray
     })
 }
 
@@ -113,6 +114,6 @@ pub(crate) fn probability_of_absence(limit: f64, sigma: f64, level: &Level) -> [
         if off.abs() > NEVER {
             return if off > 0.0 { 1.0 + level.surprise } else { level.surprise };
         }
-        0.5 * libm::erfc(-off / core::f64::consts::SQRT_2) + level.surprise
+        normal::below(off) + level.surprise
     })
 }

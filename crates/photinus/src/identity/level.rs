@@ -1,5 +1,7 @@
 //! How much light an LED shows when it shines all the time, followed from frame to frame.
 
+use crate::normal;
+
 /// The light of an LED that shines during the whole exposure, with how sure it is. Any unit of light, the same for all.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Level {
@@ -73,7 +75,7 @@ impl Level {
             self.spread = self.spread.max(light / self.full - 1.0).min(Self::AT_FIRST);
         } else {
             // What has nothing to do with the LED tells nothing of it.
-            let own = libm::exp(-0.5 * off * off) / (deviation * 2.506_628_274_631_000_7);
+            let own = normal::density(off, deviation);
             lit *= own / (own + self.surprise / (2.0 * self.full));
         }
         let (own, noise) = (self.spread * self.spread * self.full * self.full, sigma * sigma);

@@ -10,6 +10,7 @@ use super::Sighting;
 use super::cells::{ByCell, Cells};
 #[cfg(not(feature = "std"))]
 use crate::float::Float as _;
+use crate::normal;
 
 /// A point of clutter has this many companions.
 const COMPANIONS: f64 = 0.2;
@@ -89,8 +90,5 @@ fn density(gap_px: f64, own: &Sighting, other: &Sighting, with_light: bool) -> f
 
 /// A density of places, of clutter about as bright as something: log-normal where it is known how much brighter it is.
 pub(super) fn about_as_bright(place: f64, brighter: Option<f64>, sigma: f64) -> f64 {
-    brighter.map_or(place, |brighter| {
-        let off = brighter / sigma;
-        place * libm::exp(-0.5 * off * off) / (sigma * TAU.sqrt())
-    })
+    brighter.map_or(place, |brighter| place * normal::density(brighter / sigma, sigma))
 }

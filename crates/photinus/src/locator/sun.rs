@@ -5,8 +5,7 @@ use core::f64::consts::{PI, TAU};
 use nalgebra::{Unit, Vector3};
 
 use crate::camera::Bearing;
-#[cfg(not(feature = "std"))]
-use crate::float::Float as _;
+use crate::normal;
 
 /// How likely the sun shows as a spot: clouds, filters and the image's border hide it, and a detector rejects what glares.
 const SHOWS: f64 = 0.5;
@@ -49,8 +48,8 @@ impl Sun {
     /// How many suns are seen in a direction, per sr: a normal distribution in elevation, one in azimuth.
     pub(super) fn per_sr(&self, bearing: &Bearing) -> f64 {
         let [there, sun] = [bearing.vector(), &self.towards].map(|direction| self.elevation_rad(direction));
-        let elevation = normal(there - sun, self.elevation_sigma_rad, PI);
-        let azimuth = normal(self.azimuth_rad(bearing.vector()), self.heading_sigma_rad, TAU);
+        let elevation = density(there - sun, self.elevation_sigma_rad, PI);
+        let azimuth = density(self.azimuth_rad(bearing.vector()), self.heading_sigma_rad, TAU);
         SHOWS * elevation * azimuth / libm::cos(there).max(self.elevation_sigma_rad.min(1.0))
     }
 
@@ -67,13 +66,11 @@ impl Sun {
 }
 
 /// The density of an angle that is off by this much, per rad; as wide as the whole `range`, it is even over it.
-fn normal(off_rad: f64, sigma_rad: f64, range_rad: f64) -> f64 {
-    let peak = 1.0 / (TAU.sqrt() * sigma_rad);
-    if peak * range_rad <= 1.0 {
+fn density(off_rad: f64, sigma_rad: f64, range_rad: f64) -> f64 {
+    if range_rad <= normal::ROOT_OF_TAU * sigma_rad {
         return 1.0 / range_rad;
     }
-    let off = off_rad / sigma_rad;
-    peak * libm::exp(-0.5 * off * off)
+    normal::density(off_rad / sigma_rad, sigma_rad)
 }
 
 #[cfg(test)]

@@ -5,12 +5,11 @@
 
 use alloc::vec::Vec;
 
-use super::SURELY_HEARD;
 use super::belonging::Belongings;
 use super::directory::Directory;
 use super::naming::Naming;
 use crate::following::MarkerTrack;
-use crate::tracking::{Calls, Tracked};
+use crate::tracking::{Calls, SURELY_HEARD, Tracked};
 
 /// A marker belongs to a track from this share on, and to none below the other.
 const SURELY_ITS: f64 = 0.9;

@@ -66,8 +66,6 @@ use naming::Naming;
 const ANY_BIT: f64 = 0.5;
 /// A light is nobody's from this probability on.
 const SURE_STRANGER: f64 = 0.95;
-/// A marker is a vehicle's from this probability on.
-const SURELY_HEARD: f64 = 0.95;
 
 /// A frame that was located.
 #[derive(Clone, Copy, Debug)]

@@ -12,6 +12,7 @@ use super::{OpticsError, check, spline};
 #[cfg(not(feature = "std"))]
 use crate::float::Float as _;
 use crate::lanes::{LANES, Lanes};
+use crate::normal;
 
 /// Samples per pixel: enough for a Gaussian of 0.3 px to a thousandth of its summit.
 const PER_PX: usize = 4;
@@ -37,12 +38,8 @@ pub(crate) struct Profile {
 
 impl Profile {
     pub(crate) fn new(sigma_px: f64) -> Self {
-        const ROOT_TAU: f64 = 2.506_628_274_631_000_5;
         let mut profile = Self { shares: [0.0; PointSpread::SIDE], by_ln_sigma: [0.0; PointSpread::SIDE] };
-        let edge = |sigmas: f64| {
-            let below = 0.5 * libm::erfc(-sigmas / core::f64::consts::SQRT_2);
-            (below, sigmas * libm::exp(-0.5 * sigmas * sigmas) / ROOT_TAU)
-        };
+        let edge = |sigmas: f64| (normal::below(sigmas), sigmas * normal::density(sigmas, 1.0));
         for index in 0..PointSpread::SIDE {
             let place_px = index as f64 / PER_PX as f64 - PointSpread::REACH_PX as f64;
             let (below, moment) = edge((place_px - 0.5) / sigma_px);

@@ -7,6 +7,7 @@ use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
 use super::problem::Pose;
 #[cfg(not(feature = "std"))]
 use crate::float::Float as _;
+use crate::normal;
 use crate::ranging::{Estimate, Interval};
 
 /// Most slices that one mode stands for: their valley is straight over so short a stretch.
@@ -115,12 +116,9 @@ fn truncated(low: f64, high: f64) -> Truncated {
         let Truncated { log_mass, shift, variance } = truncated(-high, -low);
         return Truncated { log_mass, shift: -shift, variance };
     }
-    const SQRT_2: f64 = core::f64::consts::SQRT_2;
-    let below = |x: f64| 0.5 * libm::erfc(-x / SQRT_2);
-    let density =
-        |x: f64| if x.is_finite() { libm::exp(-0.5 * x * x) / (core::f64::consts::TAU).sqrt() } else { 0.0 };
+    let density = |x: f64| if x.is_finite() { normal::density(x, 1.0) } else { 0.0 };
     let moment = |x: f64| if x.is_finite() { x * density(x) } else { 0.0 };
-    let mass = (below(high) - below(low)).max(1e-12);
+    let mass = (normal::below(high) - normal::below(low)).max(1e-12);
     let shift = ((density(low) - density(high)) / mass).clamp(low, high);
     let variance = (1.0 + (moment(low) - moment(high)) / mass - shift * shift).clamp(1e-6, 1.0);
     Truncated { log_mass: libm::log(mass), shift, variance }

@@ -20,13 +20,13 @@ use super::tiles::{Block, TILE_PX, Tiles};
 #[cfg(not(feature = "std"))]
 use crate::float::Float as _;
 use crate::frame::FrameView;
+use crate::normal::ROOT_OF_TAU;
 
 /// The spread that a quarter of the tiles of Gaussian noise do not exceed, in its sigmas; the same where half of it is cut off at 0.
 const SIGMAS: f64 = 3.1;
 const SIGMAS_CUT_OFF: f64 = 1.25;
 /// How far above the darkest pixel of a tile its mean is, sigmas of Gaussian noise.
 const DARKEST_SIGMAS: f64 = 2.4;
-const ROOT_OF_TAU: f64 = 2.506_628_274_631_000_2;
 
 /// Thresholds of one frame, tile by tile, and the room to compute them in.
 #[derive(Debug, Default)]

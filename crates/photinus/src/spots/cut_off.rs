@@ -9,6 +9,7 @@ use alloc::vec::Vec;
 #[cfg(not(feature = "std"))]
 use crate::float::Float as _;
 use crate::lanes::{LANES, Lanes};
+use crate::normal;
 
 /// Sigmas from the first entry of the table to the last, on both sides of 0, and entries per sigma.
 const FARTHEST: f64 = 4.0;
@@ -46,9 +47,8 @@ impl Default for CutOff {
     fn default() -> Self {
         let entry = |number: usize| {
             let t = number as f64 / PER_SIGMA as f64 - FARTHEST;
-            let density = 0.398_942_280_401_432_7 * libm::exp(-0.5 * t * t);
-            let above = 0.5 * libm::erfc(-t * core::f64::consts::FRAC_1_SQRT_2);
-            let mean = t * above + density;
+            let above = normal::below(t);
+            let mean = t * above + normal::density(t, 1.0);
             Entry { mean: mean as f32, slope: above as f32, square: (above + t * mean) as f32 }
         };
         Self { entries: (0..ENTRIES).map(entry).collect() }

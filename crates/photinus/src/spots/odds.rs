@@ -7,6 +7,7 @@
 
 use super::settings::Shape;
 use super::{Detections, Spot};
+use crate::normal;
 
 /// Odds for clutter of what lies beside the sun: its glare always does, a marker does as seldom as that part of the frame is small.
 pub(super) const BESIDE_SUN: f64 = 50.0;
@@ -28,12 +29,11 @@ const ANY_SPAN: f64 = 6.0;
 const LEAST_SHARE: f64 = 1e-3;
 /// Odds for clutter where nothing speaks for it: looks alone never make a marker more certain.
 const LEAST_ODDS: f64 = 0.02;
-const ROOT_OF_TAU: f64 = 2.506_628_274_631_000_2;
 
 /// Odds that a single bright pixel, so many sigmas above darkness in a frame of so many pixels, is noise: pixels of noise over markers, both per
 /// unit of the logarithm of height. Of markers there is about one.
 pub(super) fn of_noise(sigmas: f64, pixels: usize) -> f64 {
-    pixels as f64 * sigmas * libm::exp(-0.5 * sigmas * sigmas) / ROOT_OF_TAU
+    pixels as f64 * sigmas * normal::density(sigmas, 1.0)
 }
 
 /// How a spot looks by itself.
@@ -96,8 +96,8 @@ fn reflection_odds(share: f64, ratio: f64) -> f64 {
     // A share that has no meaning is that of what hardly shows.
     let fainter = -libm::log(if share > LEAST_SHARE { share.min(1.0) } else { LEAST_SHARE });
     let off = (fainter + libm::log(ratio) - REFLECTIONS_BELOW) / REFLECTIONS_SIGMA;
-    let normal = libm::exp(-0.5 * off * off) / (REFLECTIONS_SIGMA * ROOT_OF_TAU);
-    let reflections = (1.0 - ANY_REFLECTIONS) * normal + ANY_REFLECTIONS / ANY_SPAN;
+    let log_normal = normal::density(off, REFLECTIONS_SIGMA);
+    let reflections = (1.0 - ANY_REFLECTIONS) * log_normal + ANY_REFLECTIONS / ANY_SPAN;
     let markers = libm::exp(-fainter / MARKERS_FALL) / MARKERS_FALL;
     reflections / markers
 }

@@ -10,13 +10,12 @@ use alloc::vec::Vec;
 
 use nalgebra::Vector3;
 
-use super::look::Moment;
+use super::look::{Moment, Signalled};
 use super::motion::Motion;
 use super::settings::Settings;
 use super::state::State;
 use super::step::Model;
-#[cfg(not(feature = "std"))]
-use crate::float::Float as _;
+use crate::normal;
 use crate::pose::{LogLight, Observation};
 
 /// Most lights that are remembered.
@@ -113,7 +112,7 @@ impl PersistentClutter {
         after.persistent.extend(seen.chain(unseen).filter(|own| own.probability > LEAST).take(MOST));
     }
 
-    /// Says how likely each spot is somebody's: whose who claims it, also who has just appeared, or is located only; and who is missing may show again there.
+    /// Says how likely each spot is somebody's: whose who claims it, also who has just appeared, or is located only, or was heard to blink there; and who is missing may show again there.
     fn find_owners(&mut self, model: &Model, moment: &Moment, claimed: &[f64], after: &State) {
         let somebodys = &mut self.somebodys;
         somebodys.clear();
@@ -124,6 +123,11 @@ impl PersistentClutter {
         }
         for appearance in &moment.appearances {
             moment.members(appearance).iter().for_each(|&spot| belong(spot, appearance.probability));
+        }
+        for (spot, heard) in moment.signals.iter().enumerate() {
+            if let Some(Signalled { vehicle: Some(_), probability, .. }) = *heard {
+                belong(spot, probability);
+            }
         }
         for target in after.targets.iter().filter(|target| target.is_predicted) {
             for component in after.components(target) {
@@ -196,8 +200,7 @@ impl ClutterPoint {
         let of_light = match (self.log_light, seen.log_light) {
             (Some(own), Some(seen)) => {
                 let sigma = libm::hypot(LIGHT_SIGMA, libm::hypot(own.sigma, seen.sigma));
-                let off = (seen.value - own.value) / sigma;
-                libm::exp(-0.5 * off * off) / (sigma * core::f64::consts::TAU.sqrt())
+                normal::density((seen.value - own.value) / sigma, sigma)
             }
             _ => 1.0,
         };
@@ -319,6 +322,19 @@ mod tests {
         state.targets.push(missing);
         clutter.remember(&model(), &moment, &[0.0; 2], &mut state);
         assert!(state.persistent.is_empty());
+    }
+
+    /// Whichever place its track has.
+    #[test]
+    fn who_blinks_the_words_of_a_vehicle_is_no_clutter() {
+        let mut moment = frame(0, &[0.0, 0.1]);
+        let of = |vehicle| Some(Signalled { signal: Some(0), probability: 0.9, vehicle });
+        moment.signals.extend([of(Some(3)), of(None)]);
+        let mut state = State::empty(0.0, 0);
+        let mut clutter = PersistentClutter::with_room();
+        clutter.continues.resize(2, None);
+        clutter.remember(&model(), &moment, &[0.0; 2], &mut state);
+        assert!(state.persistent.len() == 1 && state.persistent[0].direction.x > 0.05);
     }
 
     #[test]

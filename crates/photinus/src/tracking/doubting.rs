@@ -17,6 +17,7 @@ use super::ways::{Scene, Ways};
 #[cfg(not(feature = "std"))]
 use crate::float::Float as _;
 use crate::locator::LOG_RANGE;
+use crate::normal;
 use crate::pose::Mode;
 
 /// A track has settled for the wrong pose so seldom, ...
@@ -90,8 +91,8 @@ fn most_right(moment: &Moment, appearance: &Appearance) -> f64 {
         let [at_m, _] = along(pose_m, covariance_m2);
         let density = |mode: &Mode| {
             let [far_m, var] = along(&mode.pose.position_m, &mode.position_covariance_m2);
-            let off = libm::log(far_m / at_m);
-            mode.weight * libm::exp(-0.5 * off * off / var) / (core::f64::consts::TAU * var).sqrt()
+            let sigma = var.sqrt();
+            mode.weight * normal::density(libm::log(far_m / at_m) / sigma, sigma)
         };
         moment.modes(appearance).iter().map(density).sum::<f64>() * LOG_RANGE
     };
@@ -107,9 +108,8 @@ fn how_right(moment: &Moment, appearance: &Appearance, components: &[Component])
         let [far_m, far_var] = along(&mode.pose.position_m, &mode.position_covariance_m2);
         for component in components {
             let [track_m, track_var] = along(&component.pose.position_m, &component.block(0));
-            let var = far_var + track_var;
-            let off = libm::log(far_m / track_m);
-            let density = libm::exp(-0.5 * off * off / var) / (core::f64::consts::TAU * var).sqrt();
+            let sigma = (far_var + track_var).sqrt();
+            let density = normal::density(libm::log(far_m / track_m) / sigma, sigma);
             right += mode.weight * component.weight * density * LOG_RANGE;
         }
     }

@@ -17,8 +17,8 @@ const FOLLOWED: usize = 128;
 const NEIGHBOURS: usize = 4;
 /// A marker is lit in no smaller share of the frames.
 const LEAST_LIT: f64 = 0.05;
-/// Sightings of several vehicles are no neighbour from this probability of each on.
-const SURELY_HEARD: f64 = 0.95;
+/// A light is a vehicle's, by what it blinks, from this probability on; and sightings of several vehicles are no neighbour.
+pub(crate) const SURELY_HEARD: f64 = 0.95;
 /// A signal that comes with its sighting is right so often.
 const SIGNAL_IS_RIGHT: f64 = 0.99;
 

@@ -53,6 +53,7 @@ use crate::pose::{LogLight, Symmetry};
 pub use error::{TrackError, TrackerError};
 pub use gyro::turned;
 use history::History;
+pub(crate) use look::SURELY_HEARD;
 pub use look::{Blinking, Called, Calls, Followed, Lit, Look, Moving, Signalled, Turned};
 use motion::{Motion, Turn};
 pub use settings::{Association, Settings};

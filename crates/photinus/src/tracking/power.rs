@@ -175,6 +175,7 @@ mod tests {
     use super::super::component::Component;
     use super::super::state::Target;
     use super::*;
+    use crate::normal;
 
     /// Vehicles whose distributions have these weights and powers.
     fn state(vehicles: &[&[(f64, f64)]]) -> State {
@@ -201,8 +202,7 @@ mod tests {
     fn summed(vehicles: &[&[(f64, f64)]], vehicle: usize) -> (f64, f64) {
         let said = |modes: &[(f64, f64)], at: f64| {
             let density = |&(weight, log_power): &(f64, f64)| {
-                weight * libm::exp(-0.5 * ((at - log_power) / SPREAD).powi(2))
-                    / (SPREAD * core::f64::consts::TAU.sqrt())
+                weight * normal::density((at - log_power) / SPREAD, SPREAD)
             };
             (1.0 - ODD) * modes.iter().map(density).sum::<f64>() + ODD / (STEPS as f64 * STEP)
         };

@@ -7,12 +7,11 @@
 use alloc::vec::Vec;
 use core::f64::consts::TAU;
 
-#[cfg(not(feature = "std"))]
-use crate::float::Float as _;
 use crate::locator::Sighting;
 use crate::locator::context::Context;
 use crate::locator::matching::ordered::GRID_ERROR;
 use crate::locator::posing::LOG_RANGE;
+use crate::normal::ROOT_OF_TAU;
 use crate::pose::{self, LogLight, POWER_RANGE};
 
 /// Without gravity the image tells upright as a sine of this sigma, as [`crate::pose`] has it.
@@ -130,7 +129,7 @@ impl Most {
         let first_light = first_light(context);
         let first_light = if peak.is_lit { first_light } else { first_light.max(0.0) };
         let further = spots as f64 - 2.0;
-        log_orders - libm::log(widest2_rad2) - libm::log(TAU.sqrt() * tilt_sigma)
+        log_orders - libm::log(widest2_rad2) - libm::log(ROOT_OF_TAU * tilt_sigma)
             + further * peak.direction
             + first_light
             + (further + 1.0) * peak.light
@@ -149,7 +148,7 @@ impl Most {
 /// The most that the first light can be, which tells the power of the LEDs where that is not known.
 fn first_light(context: &Context<'_>) -> f64 {
     match context.power {
-        Some(LogLight { sigma, .. }) => -libm::log(TAU.sqrt() * sigma),
+        Some(LogLight { sigma, .. }) => -libm::log(ROOT_OF_TAU * sigma),
         None => -libm::log(POWER_RANGE),
     }
 }

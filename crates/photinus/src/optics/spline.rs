@@ -1,6 +1,6 @@
 //! Cubic B-splines: smooth to the second derivative, and through every sample.
 
-/// Turns samples into the coefficients of the spline through them (M. Unser, IEEE SPM 16, 1999): c[k-1] + 4 c[k] + c[k+1] = 6 s[k],
+/// Turns samples into the coefficients of the spline through them (M. Unser, IEEE SPM 16, 1999): `c[k-1] + 4 c[k] + c[k+1] = 6 s[k]`,
 /// nothing outside. `room` is as long as the samples.
 pub(super) fn coefficients(samples: &mut [f64], room: &mut [f64]) {
     let mut factor = 0.0;

@@ -12,7 +12,7 @@
 //! mixture       weights, truncation to the strict bounds, moments, modes
 //! ```
 //!
-//! `measurement` hands on the cost of the spots without priors, to tracks, which have their own. Beside the flow stand [`p3p`] and [`pnp`], closed forms for callers who know which bearing is which marker; first guesses
+//! `measurement` hands on the cost of the spots without priors, to tracks, which have their own. Beside the flow stand [`p3p`](fn@p3p) and [`pnp`](fn@pnp), closed forms for callers who know which bearing is which marker; first guesses
 //! of hypotheses come from the locator's views instead.
 //!
 //! The prior prefers no direction, no yaw and no scale (even over the logarithm of distance): of all priors it is the one

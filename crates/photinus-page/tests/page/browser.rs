@@ -144,6 +144,7 @@ fn entry(camera: usize, index: u64) -> Entry {
 
 #[test]
 fn a_browser_shows_what_comes_pauses_goes_back_and_fits_a_phone() {
+    let _others = crate::MEMORY.read();
     let Some(mut browser) = Browser::start() else {
         Skipped::current_test("there is no chromium (PHOTINUS_CHROMIUM names another)");
         return;
@@ -173,7 +174,8 @@ fn a_browser_shows_what_comes_pauses_goes_back_and_fits_a_phone() {
         assert!(told.contains(part), "{part}: {told}");
     }
     // It goes on by itself, and the picture is the camera's.
-    let frame = "+document.querySelector('section h2 span').innerText.match(/frame (\\d+)/)[1]";
+    let frame = "+(document.querySelector('section h2 span').innerText.match(/frame (\\d+)/)?.[1] ?? 0)";
+    browser.wait_for(&format!("{frame} > 0"));
     let before = browser.ask(frame).as_f64().unwrap();
     browser.wait_for(&format!("{frame} > {}", before + 30.0));
     let lit = "(() => { const canvas = document.querySelector('canvas'), pen = canvas.getContext('2d'); return pen.getImageData(0, 0, canvas.width, canvas.height).data.some((level, at) => at % 4 === 0 && level > 240); })()";

@@ -4,6 +4,7 @@
 
 use std::io::{Read, Write};
 use std::net::{SocketAddr, TcpStream};
+use std::sync::PoisonError;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
@@ -52,6 +53,7 @@ fn json(message: &[u8]) -> serde_json::Value {
 
 #[test]
 fn a_browser_gets_the_page_and_then_frames_health_and_earlier_notices() {
+    let _others = crate::MEMORY.read();
     let mut page = page();
     let address = page.address();
     let answer = get(address);
@@ -79,6 +81,7 @@ fn a_browser_gets_the_page_and_then_frames_health_and_earlier_notices() {
 
 #[test]
 fn one_who_looks_may_say_little_and_changes_nothing() {
+    let _others = crate::MEMORY.read();
     let page = page();
     let url = format!("ws://{}/live", page.address());
     let (mut socket, _) = tungstenite::connect(&url).unwrap();
@@ -103,6 +106,7 @@ fn cases() -> u64 {
 
 #[test]
 fn bad_traffic_neither_ends_it_nor_fills_memory() {
+    let _alone = crate::MEMORY.write().unwrap_or_else(PoisonError::into_inner);
     let mut page = page();
     let address = page.address();
     let over = AtomicBool::new(false);

@@ -18,7 +18,7 @@ pub(super) const NEAREST: usize = 6;
 /// Most handfuls that are weighed in full.
 pub(super) const MOST_WEIGHED: usize = 8;
 /// A handful that is this much less likely by a first look than what its observations are already, nats, is not weighed: first looks are as good.
-pub(super) const POOR_GAIN: f64 = -8.0;
+pub(super) const POOR_GAIN: f64 = -4.0;
 
 /// An observation and those next to it.
 type Window = [Option<usize>; 1 + NEAREST];
@@ -84,13 +84,7 @@ pub(super) struct Question<'a> {
 impl Question<'_> {
     /// Whether a handful that is at most so likely may be worth to be weighed: not much less likely than what its observations are already.
     fn is_worth(&self, handful: &[usize], log_density: f64) -> bool {
-        self.gain(handful, log_density) > self.explanation.held(self.candidates, handful) + POOR_GAIN
-    }
-
-    /// What a handful gains over clutter.
-    fn gain(&self, handful: &[usize], log_density: f64) -> f64 {
-        let Context { clutter, log_neighbours, .. } = *self.context;
-        log_density + log_neighbours - handful.iter().map(|&spot| clutter[spot]).sum::<f64>()
+        self.context.gain(handful, log_density) > self.explanation.held(self.candidates, handful) + POOR_GAIN
     }
 }
 
@@ -175,7 +169,7 @@ impl Alternatives {
         while let Some(index) = next {
             let members = self.members(index);
             if asked.is_worth(members, self.looks[index].log_density) {
-                self.chosen.push((asked.gain(members, self.looks[index].log_density), index));
+                self.chosen.push((asked.context.gain(members, self.looks[index].log_density), index));
             }
             next = self.looks[index].before;
         }

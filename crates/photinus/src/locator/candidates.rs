@@ -2,6 +2,7 @@
 
 use alloc::vec::Vec;
 
+use super::context::Context;
 use super::neighbour::{Distance, Orientation, Position};
 use crate::camera::Bearing;
 use crate::pose::{Misfit, Mode};
@@ -57,6 +58,9 @@ pub(super) struct Candidates {
     modes: Vec<Mode>,
     /// By observation: the last candidate of which it is the first.
     last: Vec<Option<usize>>,
+    /// Groups that were weighed and are no candidate, one after the other, and where each ends.
+    in_vain: Vec<usize>,
+    ends_in_vain: Vec<usize>,
 }
 
 impl Candidates {
@@ -67,6 +71,8 @@ impl Candidates {
             members: Vec::with_capacity(8 * count),
             modes: Vec::with_capacity(MODES_EACH * count),
             last: Vec::new(),
+            in_vain: Vec::with_capacity(4 * count),
+            ends_in_vain: Vec::with_capacity(count),
         }
     }
 
@@ -75,6 +81,8 @@ impl Candidates {
         self.members.clear();
         self.modes.clear();
         self.last.clear();
+        self.in_vain.clear();
+        self.ends_in_vain.clear();
     }
 
     pub(super) fn len(&self) -> usize {
@@ -104,9 +112,24 @@ impl Candidates {
         with_first.filter(move |&index| self.members(index) == group).map(|index| &self.all[index])
     }
 
-    /// Whether just these observations, ascending, are a candidate.
-    pub(super) fn has(&self, group: &[usize]) -> bool {
-        self.of(group).next().is_some()
+    /// Notes that a group was weighed.
+    pub(super) fn note(&mut self, group: &[usize]) {
+        if !self.was_weighed(group) {
+            self.in_vain.extend_from_slice(group);
+            self.ends_in_vain.push(self.in_vain.len());
+        }
+    }
+
+    /// Whether just these observations, ascending, are a candidate, or were found to be none.
+    pub(super) fn was_weighed(&self, group: &[usize]) -> bool {
+        let mut start = 0;
+        let is_it = |&end: &usize| &self.in_vain[core::mem::replace(&mut start, end)..end] == group;
+        self.of(group).next().is_some() || self.ends_in_vain.iter().any(is_it)
+    }
+
+    /// Logarithm of the density of just these observations, ascending, as the likeliest kind.
+    pub(super) fn log_density(&self, group: &[usize]) -> Option<f64> {
+        self.of(group).map(|candidate| candidate.log_density).reduce(f64::max)
     }
 
     /// Whether they are one of this kind.
@@ -115,15 +138,9 @@ impl Candidates {
     }
 
     /// Whether these observations may be something else than one neighbour, for all that is known.
-    pub(super) fn is_doubtful(
-        &self,
-        group: &[usize],
-        clutter_log_density: &[f64],
-        log_neighbours: f64,
-    ) -> bool {
-        let clutter: f64 = group.iter().map(|&spot| clutter_log_density[spot]).sum();
+    pub(super) fn is_doubtful(&self, context: &Context<'_>, group: &[usize]) -> bool {
         let is_clear = |Candidate { log_density, misfit, worst_sigma, .. }: &Candidate| {
-            log_density + log_neighbours - clutter > CLEAR_GAIN
+            context.gain(group, *log_density) > CLEAR_GAIN
                 && *worst_sigma < CLEAR_SIGMAS
                 && misfit.p_value() > CLEAR_P_VALUE
         };

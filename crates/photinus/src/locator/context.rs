@@ -26,3 +26,10 @@ pub(super) struct Context<'a> {
     /// Logarithm of how many neighbours there are per sr.
     pub(super) log_neighbours: f64,
 }
+
+impl Context<'_> {
+    /// How much likelier observations are one neighbour than clutter, as a logarithm, where that has this logarithm of the density.
+    pub(super) fn gain(&self, group: &[usize], log_density: f64) -> f64 {
+        log_density + self.log_neighbours - group.iter().map(|&spot| self.clutter[spot]).sum::<f64>()
+    }
+}

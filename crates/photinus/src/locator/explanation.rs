@@ -13,8 +13,8 @@ const MOST_TOGETHER: usize = 12;
 /// A candidate whose gain over clutter is this much less than that of another it shares an observation with is left out, nats; the
 /// next is tried where too much hangs together.
 const HOPELESS: [f64; 5] = [25.0, 14.0, 8.0, 4.0, 0.0];
-/// Gains over clutter are cut off here, nats: surer is not told, and numbers stay finite.
-const LARGEST_GAIN: f64 = 50.0;
+/// Gains over clutter are cut off here, nats per observation, so that numbers stay finite: no candidate comes near it.
+const LARGEST_GAIN: f64 = 55.0;
 
 /// How likely candidates are.
 #[derive(Debug)]
@@ -45,7 +45,7 @@ pub(super) struct Explanation {
 struct Choice {
     candidate: usize,
     mask: usize,
-    odds: f64,
+    weight: f64,
 }
 
 impl Explanation {
@@ -136,9 +136,10 @@ impl Explanation {
         self.clutter.resize(count, 1.0);
         self.gains.clear();
         self.gains.extend((0..candidates.len()).map(|index| {
-            let clutter: f64 = candidates.members(index).iter().map(|&spot| clutter_log_density[spot]).sum();
+            let members = candidates.members(index);
+            let clutter: f64 = members.iter().map(|&spot| clutter_log_density[spot]).sum();
             let gain = candidates.get(index).log_density + log_neighbours - clutter;
-            if gain.is_nan() { f64::NEG_INFINITY } else { gain.min(LARGEST_GAIN) }
+            if gain.is_nan() { f64::NEG_INFINITY } else { gain.min(LARGEST_GAIN * members.len() as f64) }
         }));
         self.log_gain = 0.0;
         self.done.clear();
@@ -219,26 +220,26 @@ impl Explanation {
         let first = left.partition_point(|&index| part(index) < roots[spots[0]]);
         let own = left[first..].iter().take_while(|&&index| part(index) == roots[spots[0]]);
         options.clear();
-        options.extend(own.map(|&candidate| Choice {
-            candidate,
-            mask: 0,
-            odds: libm::exp(gains[candidate]),
-        }));
+        options.extend(own.map(|&candidate| Choice { candidate, mask: 0, weight: 0.0 }));
         if spots.len() > MOST_TOGETHER {
             self.take_the_best(candidates);
             return;
         }
+        let each = |candidate: usize| gains[candidate] / candidates.members(candidate).len() as f64;
+        let scale = options.iter().map(|choice| each(choice.candidate)).fold(0.0, f64::max);
         for choice in options.iter_mut() {
+            let members = candidates.members(choice.candidate);
             let bit = |spot: &usize| spots.binary_search(spot).map_or(0, |bit| 1 << bit);
-            choice.mask = candidates.members(choice.candidate).iter().map(bit).sum();
+            choice.mask = members.iter().map(bit).sum();
+            choice.weight = libm::exp(gains[choice.candidate] - scale * members.len() as f64);
         }
         options.sort_unstable_by_key(|choice| (choice.mask.trailing_zeros(), choice.candidate));
-        self.add_up(spots);
+        self.add_up(spots, scale);
     }
 
     /// Adds up the weights of all explanations of a part: forwards the weight of what is left, backwards the ways to come there. What is explained next
-    /// is the first observation that is left.
-    fn add_up(&mut self, spots: &[usize]) {
+    /// is the first observation that is left. Weights are those over clutter, less so many nats for each observation.
+    fn add_up(&mut self, spots: &[usize], scale: f64) {
         let Self { options, sums, ways, probability, clutter, done, log_gain, .. } = self;
         let mut of_first = [0; MOST_TOGETHER + 1];
         for (first, end) in of_first.iter_mut().enumerate() {
@@ -251,18 +252,19 @@ impl Explanation {
                 .filter(move |choice| choice.mask & !mask == 0)
         };
         let all = (1usize << spots.len()) - 1;
+        let alone = libm::exp(-scale);
         sums.clear();
         sums.push(1.0);
         for mask in 1..=all {
-            let clutter = mask & (mask - 1);
-            let taken: f64 = choices(mask).map(|choice| choice.odds * sums[mask & !choice.mask]).sum();
-            sums.push(sums[clutter] + taken);
+            let rest = mask & (mask - 1);
+            let taken: f64 = choices(mask).map(|choice| choice.weight * sums[mask & !choice.mask]).sum();
+            sums.push(alone * sums[rest] + taken);
         }
         ways.clear();
         ways.resize(all + 1, 0.0);
         ways[all] = 1.0;
         let total = sums[all];
-        *log_gain += libm::log(total);
+        *log_gain += libm::log(total) + scale * spots.len() as f64;
         for &spot in spots {
             clutter[spot] = 0.0;
             done[spot] = true;
@@ -273,29 +275,32 @@ impl Explanation {
                 continue;
             }
             let rest = mask & (mask - 1);
-            ways[rest] += here;
-            clutter[spots[mask.trailing_zeros() as usize]] += here * sums[rest] / total;
+            ways[rest] += here * alone;
+            clutter[spots[mask.trailing_zeros() as usize]] += here * alone * (sums[rest] / total);
             for choice in choices(mask) {
                 let rest = mask & !choice.mask;
-                ways[rest] += here * choice.odds;
-                probability[choice.candidate] += here * choice.odds * (sums[rest] / total);
+                ways[rest] += here * choice.weight;
+                probability[choice.candidate] += here * choice.weight * (sums[rest] / total);
             }
         }
     }
 
     /// Where too much hangs together to weigh it all: the best candidates that share nothing, each against clutter alone.
     fn take_the_best(&mut self, candidates: &Candidates) {
-        let Self { options, probability, clutter, done, log_gain, .. } = self;
-        options.sort_unstable_by(|a, b| b.odds.total_cmp(&a.odds).then(a.candidate.cmp(&b.candidate)));
-        for Choice { candidate, odds, .. } in options.iter() {
+        let Self { options, gains, probability, clutter, done, log_gain, .. } = self;
+        options.sort_unstable_by(|a, b| {
+            gains[b.candidate].total_cmp(&gains[a.candidate]).then(a.candidate.cmp(&b.candidate))
+        });
+        for Choice { candidate, .. } in options.iter() {
             let members = candidates.members(*candidate);
             if members.iter().any(|&spot| done[spot]) {
                 continue;
             }
-            probability[*candidate] = odds / (1.0 + odds);
-            *log_gain += libm::log(1.0 + odds);
+            let gain = gains[*candidate];
+            probability[*candidate] = 1.0 / (1.0 + libm::exp(-gain));
+            *log_gain += gain.max(0.0) + libm::log1p(libm::exp(-gain.abs()));
             for &spot in members {
-                clutter[spot] = 1.0 / (1.0 + odds);
+                clutter[spot] = 1.0 / (1.0 + libm::exp(gain));
                 done[spot] = true;
             }
         }

@@ -3,8 +3,8 @@
 //! ```text
 //! groups        which observations are next to each other          grouping
 //! first looks   how much of that is clutter                        matching, clutter
-//! candidates    each group in full, and other ways to put together  posing; alternatives
-//!               what is doubtful
+//! candidates    each group in full, its rivals, and other ways to   posing; grouping; alternatives
+//!               put together what is doubtful
 //! explanation   how likely each candidate is, all taken together    explanation, clutter
 //! neighbours    the likeliest that share nothing                    telling
 //! ```
@@ -14,7 +14,7 @@
 
 use alloc::vec::Vec;
 
-use super::alternatives::{Alternatives, POOR_GAIN, Question};
+use super::alternatives::{Alternatives, Question};
 use super::candidates::Candidates;
 use super::clutter::{Clutter, Counts, Surroundings};
 use super::companions::Companions;
@@ -30,7 +30,7 @@ use super::neighbour::Located;
 use super::places::Places;
 use super::settings::Settings;
 use super::telling::Telling;
-use super::{LocatorError, Sighting, Stage};
+use super::{LocatorError, Stage};
 use crate::camera::{Camera, Watched};
 use crate::pose::LogLight;
 
@@ -50,6 +50,8 @@ const FEWEST_NEIGHBOURS: f64 = 0.2;
 const CLUTTER_ROUNDS: usize = 2;
 /// Asked for neighbours less likely than this, it also tells what a first look takes for clutter.
 const UNLIKELY: f64 = 1e-3;
+/// A group that a first look has for so much less likely than clutter, nats, is not weighed.
+const UNPROMISING: f64 = -8.0;
 /// A look that changes no more than this, nats, is the last.
 const SMALL_GAIN: f64 = 1e-3;
 /// Weighing a candidate in full is as much work as this many first looks.
@@ -164,7 +166,7 @@ impl Inference {
         self.alternatives.begin(sightings.len());
         self.doubtful.clear();
         for round in 0..ROUNDS {
-            self.doubt(sightings, round);
+            self.doubt(&context, round);
             self.look_for_others(&context, round, &mut work);
             self.settle();
         }
@@ -210,30 +212,42 @@ impl Inference {
         }
     }
 
-    /// Weighs the groups that may be neighbours by a first look, the likeliest first.
+    /// Weighs the groups that may be neighbours by a first look, the likeliest first, and then their rivals.
     fn weigh_groups(&mut self, context: &Context<'_>, work: &mut Work) {
-        let Self { groups, memory, first_clutter, candidates, promising, kinds, .. } = self;
+        let Self { groups, memory, first_clutter, candidates, promising, kinds, budget, .. } = self;
         let log_neighbours = log_neighbours(groups.neighbours(), memory);
         let context = Context { clutter: first_clutter.log_density(), log_neighbours, ..*context };
         candidates.clear();
         promising.clear();
-        let poor_gain = if self.min_probability > UNLIKELY { POOR_GAIN } else { f64::NEG_INFINITY };
+        let poor_gain = if self.min_probability > UNLIKELY { UNPROMISING } else { f64::NEG_INFINITY };
         promising.extend((0..groups.len()).filter(|&group| groups.gain(group) > poor_gain));
         promising.sort_unstable_by(|&a, &b| groups.gain(b).total_cmp(&groups.gain(a)).then(a.cmp(&b)));
         for &group in promising.iter() {
             kinds.weigh(&context, groups.group(group), candidates, || work.weigh());
         }
+        for &group in promising.iter() {
+            // Half of the work is kept for what a first look does not take for a neighbour.
+            if work.left < *budget / 2 {
+                break;
+            }
+            work.look(groups.find_rivals(group, &context, kinds, candidates));
+            for rival in groups.rivals() {
+                kinds.weigh(&context, rival, candidates, || work.weigh());
+            }
+        }
         self.explanation.explain(&self.candidates, context.clutter, log_neighbours);
     }
 
     /// Finds the observations that may be something else than they seem, or might before, the brightest first.
-    fn doubt(&mut self, sightings: &[Sighting], round: usize) {
+    fn doubt(&mut self, context: &Context<'_>, round: usize) {
         let Self { doubtful, explanation, groups, candidates, memory, first_clutter, .. } = self;
+        let sightings = context.sightings;
         doubtful.extend((0..sightings.len()).filter(|&spot| explanation.clutter(spot) > DOUBTFUL));
         if round == 0 {
             let log_neighbours = log_neighbours(groups.neighbours(), memory);
+            let context = Context { clutter: first_clutter.log_density(), log_neighbours, ..*context };
             for members in (0..groups.len()).map(|group| groups.group(group)) {
-                if candidates.is_doubtful(members, first_clutter.log_density(), log_neighbours) {
+                if candidates.is_doubtful(&context, members) {
                     doubtful.extend_from_slice(members);
                 }
             }
@@ -261,7 +275,7 @@ impl Inference {
             work.look(alternatives.look(&asked, spot, kinds));
             alternatives.choose(&asked, spot, kinds);
             for handful in alternatives.chosen() {
-                if !candidates.has(handful) {
+                if !candidates.was_weighed(handful) {
                     kinds.weigh(&context, handful, candidates, || work.weigh());
                 }
             }

@@ -77,6 +77,11 @@ impl Kinds {
         self.each.iter_mut().for_each(|kind| kind.matcher.begin());
     }
 
+    /// How many first looks at a handful the frame took so far.
+    pub(super) fn looks(&self) -> u32 {
+        self.each.iter().map(|kind| kind.matcher.compared()).sum()
+    }
+
     /// Most spots that one neighbour can show.
     pub(super) fn most_visible(&self) -> usize {
         self.each.iter().map(|kind| kind.matcher.most_visible()).max().unwrap_or(0)
@@ -177,6 +182,7 @@ impl Kinds {
                 poser.weigh(context, group, matcher, candidates);
             }
         }
+        candidates.note(group);
     }
 }
 

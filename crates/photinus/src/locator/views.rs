@@ -101,6 +101,9 @@ pub(super) struct Quad {
     /// What the view costs in itself, nats: its rarity and the markers not seen.
     pub(super) nats: Lanes,
     pub(super) elevation_rad: Lanes,
+    /// Logarithm of the power of the LEDs of a neighbour of this view, where the mean of the logarithms of its lights less twice that of its size in the
+    /// image is 0, seen from afar.
+    pub(super) log_power: Lanes,
     /// How firmly a tilt holds the turn of the image: the squared cosine of the elevation, seen from the side 1.
     pub(super) firmness: Lanes,
 }
@@ -121,6 +124,13 @@ pub(super) struct Band<'a> {
     pub(super) all: &'a [Arrangement],
     /// The same, four by four.
     pub(super) quads: &'a [Quad],
+}
+
+impl Arrangement {
+    /// Logarithm of the power of its LEDs, where the mean of the logarithms of its lights less twice that of its size in the image is 0, seen from afar.
+    pub(super) fn far_log_power(&self) -> f64 {
+        2.0 * libm::log(self.size_m.max(1e-9)) - self.mean_log_intensity
+    }
 }
 
 impl Arrangements {
@@ -159,6 +169,7 @@ impl Arrangements {
             log_intensity: core::array::from_fn(|spot| number(four, &|a| a.log_intensity[spot])),
             nats: number(four, &|a| a.unseen_nats - a.log_prior),
             elevation_rad: number(four, &|a| a.elevation_rad),
+            log_power: number(four, &Arrangement::far_log_power),
             firmness: number(four, &|a| firmness(a.elevation_rad)),
         };
         self.quads = self.all.chunks_exact(LANES).map(pack).collect();
@@ -179,7 +190,9 @@ pub(super) struct Views {
     pub(super) outlines: Vec<Outline>,
     /// Most markers that show at once.
     pub(super) most_visible: usize,
-    /// What it costs that all bright markers but the brightest are not seen, on average over the views, nats.
+    /// Logarithm of how many views of an elevation there are, less that of the weight of all views.
+    log_share: f64,
+    /// What it costs that one marker is seen and no other bright one, all views in which some show taken together, nats.
     pub(super) lone_nats: f64,
 }
 
@@ -190,22 +203,35 @@ struct Seen {
     intensity: f64,
 }
 
+impl Seen {
+    /// What it costs that it is not seen, nats, where one that is bright costs this much, by marker.
+    fn unseen_nats(&self, of_bright: &[f64]) -> f64 {
+        of_bright[self.marker] * (self.intensity / BRIGHT).min(1.0)
+    }
+}
+
 impl Views {
     /// What `airframe` can look like, where a bright marker that is not seen costs `unseen_nats`, by marker.
     pub(super) fn of(airframe: &Airframe, symmetry: &Symmetry, unseen_nats: &[f64]) -> Self {
         let sector_rad = TAU / symmetry.turns() as f64;
         let yaws = (sector_rad / YAW_STEP_RAD).ceil().max(1.0) as usize;
-        let mut views =
-            Self { arrangements: Default::default(), outlines: Vec::new(), most_visible: 0, lone_nats: 0.0 };
-        let mut total = 0.0;
+        let mut views = Self {
+            arrangements: Default::default(),
+            outlines: Vec::new(),
+            most_visible: 0,
+            log_share: 0.0,
+            lone_nats: 0.0,
+        };
+        let [mut total, mut showing, mut alone] = [0.0; 3];
         for row in 0..ELEVATIONS {
             let elevation_rad = row as f64 * ELEVATION_STEP_RAD - HIGHEST_RAD;
-            let share = elevation_rad / ELEVATION_SIGMA_RAD;
-            let log_prior = libm::log(libm::cos(elevation_rad)) - 0.5 * share * share;
+            let log_prior = log_prior(elevation_rad);
             for column in 0..yaws {
                 let yaw_rad = sector_rad * column as f64 / yaws as f64;
                 let seen = look(airframe, yaw_rad, elevation_rad);
                 views.most_visible = views.most_visible.max(seen.len());
+                showing += libm::exp(log_prior) * f64::from(u8::from(!seen.is_empty()));
+                alone += libm::exp(log_prior) * alone_share(&seen, unseen_nats);
                 if seen.len() >= 2 {
                     total += libm::exp(log_prior);
                     views.add(&seen, symmetry, [yaw_rad, elevation_rad], log_prior, unseen_nats);
@@ -213,8 +239,16 @@ impl Views {
             }
             views.arrangements.iter_mut().for_each(|arrangements| arrangements.finish_row(elevation_rad));
         }
-        views.finish(libm::log(total));
+        let log_total = libm::log(total);
+        views.log_share = libm::log(yaws as f64) - log_total;
+        views.lone_nats = if alone > 0.0 { libm::log(showing / alone).max(0.0) } else { 0.0 };
+        views.finish(log_total);
         views
+    }
+
+    /// Logarithm of the share of all views, without gravity, that are of an elevation, per step of elevations.
+    pub(super) fn log_prior_of_elevation(&self, elevation_rad: f64) -> f64 {
+        log_prior(elevation_rad.clamp(-HIGHEST_RAD, HIGHEST_RAD)) + self.log_share
     }
 
     /// The arrangements of `spots` markers; `None` where only outlines tell.
@@ -231,10 +265,7 @@ impl Views {
         log_prior: f64,
         unseen_nats: &[f64],
     ) {
-        let cost_of_unseen = |seen: &Seen| unseen_nats[seen.marker] * (seen.intensity / BRIGHT).min(1.0);
-        let all_unseen_nats: f64 = seen.iter().map(cost_of_unseen).sum();
-        let brightest = seen.iter().map(cost_of_unseen).fold(0.0, f64::max);
-        self.lone_nats += libm::exp(log_prior) * (all_unseen_nats - brightest);
+        let all_unseen_nats: f64 = seen.iter().map(|seen| seen.unseen_nats(unseen_nats)).sum();
         self.outlines.push(outline(seen, towards, log_prior));
         for (spots, arrangements) in (2..).zip(&mut self.arrangements) {
             let arrangements = &mut arrangements.all;
@@ -244,7 +275,7 @@ impl Views {
             each_order(seen.len(), spots, &mut |order| {
                 if arrangements.len() <= MOST_ARRANGEMENTS {
                     let unseen_nats = all_unseen_nats
-                        - order.iter().map(|&index| cost_of_unseen(&seen[index])).sum::<f64>();
+                        - order.iter().map(|&index| seen[index].unseen_nats(unseen_nats)).sum::<f64>();
                     arrangements.push(arrange(seen, order, symmetry, unseen_nats, towards, log_prior));
                 }
             });
@@ -252,7 +283,6 @@ impl Views {
     }
 
     fn finish(&mut self, log_total: f64) {
-        self.lone_nats /= libm::exp(log_total).max(f64::MIN_POSITIVE);
         for arrangements in &mut self.arrangements {
             if arrangements.all.len() > MOST_ARRANGEMENTS {
                 arrangements.all.clear();
@@ -267,6 +297,19 @@ impl Views {
             outline.log_prior -= log_total;
         }
     }
+}
+
+/// Logarithm of how likely an elevation is without gravity, but for a factor.
+fn log_prior(elevation_rad: f64) -> f64 {
+    let share = elevation_rad / ELEVATION_SIGMA_RAD;
+    libm::log(libm::cos(elevation_rad)) - 0.5 * share * share
+}
+
+/// How likely it is that one marker of a view is seen and no other bright one; some markers hardly show, so that it may add up to more than 1.
+fn alone_share(seen: &[Seen], unseen_nats: &[f64]) -> f64 {
+    let nats = |seen: &Seen| seen.unseen_nats(unseen_nats);
+    let all: f64 = seen.iter().map(nats).sum();
+    seen.iter().map(|seen| libm::exp(nats(seen) - all)).sum()
 }
 
 /// The markers that show from a direction.

@@ -7,6 +7,9 @@
 //! 2. their cheapest cut into branches, from the top down, without looking into a branch that cannot be beaten;
 //! 3. [`partition`]: where groups overlap in the image (side by side, one behind the other) the cheapest of all partitions
 //!    of a few spots, exactly.
+//!
+//! Those costs are coarse. Once groups are weighed in full, the handfuls of the same few spots that may still be likelier, as far as first looks tell, are
+//! their *rivals*, to be weighed in full as well.
 
 mod partition;
 mod tree;
@@ -16,12 +19,13 @@ use alloc::vec::Vec;
 use nalgebra::Vector3;
 
 use super::Sighting;
+use super::candidates::Candidates;
 use super::context::Context;
 use super::kinds::Kinds;
 use super::matching::NEIGHBOUR_NATS;
 use super::memory::LOG_POWER_SIGMA;
 use crate::pose::LogLight;
-use partition::{MOST_PARTITIONED, Partition};
+use partition::{Cost, MOST_PARTITIONED, Partition};
 use tree::Tree;
 
 /// Groups of this many spots tell their distance and so the light of their LEDs.
@@ -32,6 +36,9 @@ const LARGEST_GAIN: f64 = 50.0;
 const MOST_ROUNDS: usize = 12;
 /// Larger groups are not taken apart spot by spot.
 const LARGEST_ORDERED: usize = 6;
+/// A handful may cost so much less in full than it looks, nats: of 20,000 neighbours of two or three spots in crowds of 20, nineteen in twenty cost no more
+/// than 2.6 less.
+const SLACK_NATS: f64 = 3.0;
 /// A group that costs more than this, nats, may not be one: half-way from a good match to two neighbours.
 const DOUBTFUL_NATS: f64 = 1.5 * NEIGHBOUR_NATS;
 
@@ -39,6 +46,9 @@ const DOUBTFUL_NATS: f64 = 1.5 * NEIGHBOUR_NATS;
 #[derive(Debug, Default)]
 pub(super) struct Groups {
     list: GroupList,
+    /// Handfuls that may be right as well, and the observations among which they were looked for.
+    rivals: GroupList,
+    searched: GroupList,
     spare: GroupList,
     tree: Tree,
     partition: Partition,
@@ -111,6 +121,8 @@ impl Groups {
         }
         self.part_overlapping(context, kinds);
         self.put_in_order();
+        self.measure_circles(context.sightings, kinds);
+        self.searched.clear();
         power
     }
 
@@ -176,6 +188,59 @@ impl Groups {
     /// A group, ascending; groups are in the order of their first member.
     pub(super) fn group(&self, group: usize) -> &[usize] {
         self.list.group(group)
+    }
+
+    /// Finds the handfuls of a group and of those that it touches which may be right and are no candidates. Returns how many looks that took.
+    pub(super) fn find_rivals(
+        &mut self,
+        group: usize,
+        context: &Context<'_>,
+        kinds: &mut Kinds,
+        candidates: &Candidates,
+    ) -> u32 {
+        self.rivals.clear();
+        self.gather_around(group);
+        if !self.is_anew() {
+            return 0;
+        }
+        let Self { partition, rivals, .. } = self;
+        let (looks, most_visible) = (kinds.looks(), kinds.most_visible());
+        let cost = |handful: &[usize]| {
+            // One spot alone may be clutter as well.
+            let at_most = if handful.len() == 1 { 0.0 } else { f64::INFINITY };
+            let cost = |log_density: f64| at_most.min(-context.gain(handful, log_density));
+            match candidates.log_density(handful) {
+                Some(log_density) => Cost::Known(cost(log_density)),
+                None if candidates.was_weighed(handful) => Cost::Known(at_most),
+                None => {
+                    let nats = kinds.log_density(context, handful).map_or(at_most, cost);
+                    Cost::Looks { nats, known: at_most }
+                }
+            }
+        };
+        partition.each_rival(SLACK_NATS, most_visible, cost, |handful| rivals.push(handful, 0.0));
+        kinds.looks() - looks
+    }
+
+    /// Whether the groups that were gathered are not among those gathered before in search of rivals.
+    fn is_anew(&mut self) -> bool {
+        let own = &mut self.near;
+        own.clear();
+        own.extend_from_slice(self.partition.spots());
+        own.sort_unstable();
+        let is_known = (0..self.searched.len()).any(|other| {
+            let other = self.searched.group(other);
+            own.iter().all(|spot| other.binary_search(spot).is_ok())
+        });
+        if !is_known {
+            self.searched.push(own.iter().copied(), 0.0);
+        }
+        !is_known
+    }
+
+    /// The handfuls that were found, each ascending.
+    pub(super) fn rivals(&self) -> impl Iterator<Item = &[usize]> {
+        (0..self.rivals.len()).map(|rival| self.rivals.group(rival))
     }
 
     /// The group of an observation, ascending.
@@ -260,7 +325,7 @@ impl Groups {
         self.partition.clear();
         for &group in &self.near {
             let members = self.list.group(group);
-            if self.partition.spots() + members.len() <= MOST_PARTITIONED {
+            if self.partition.spots().len() + members.len() <= MOST_PARTITIONED {
                 self.partition.add(group, members);
             }
         }

@@ -7,9 +7,12 @@ use alloc::vec;
 
 use super::image::Image;
 use super::ordered::{Best, Ordered};
+#[cfg(not(feature = "std"))]
+use crate::float::Float as _;
 use crate::lanes::{self, Lanes};
 use crate::locator::Sighting;
 use crate::locator::views::MOST_ORDERED;
+use crate::pose::LogLight;
 
 /// Views that cost this much more than the best, nats, add nothing that a sum in 32 bits would show.
 const WEIGHTLESS_NATS: f32 = 20.0;
@@ -23,26 +26,44 @@ pub(super) struct Likeness {
     pub(super) distance_m: f64,
     /// Mean of the logarithms of its markers' intensities then.
     log_intensity: f64,
-    /// Root of the summed squares of its places in the image.
-    pub(super) size: f64,
-    /// Variance of a place per axis, in the image, with the error of the grid of views.
-    pub(super) variance: f64,
-    /// Logarithm of the width of the distribution of a light against the others'.
-    pub(super) log_light_width: f64,
+    /// How much more powerful its LEDs are on average over the views than as the best of them, as a logarithm, and the variance over the views.
+    log_power_off: f64,
+    log_power_variance: f64,
+    /// Logarithm of the density of its places and of its lights against each other, as all views together have it at whatever distance.
+    pub(super) log_density: f64,
+    /// Whether some of its spots have a light.
+    pub(super) is_lit: bool,
 }
 
 impl Likeness {
-    pub(super) fn of(seen: &Ordered, image: &Image<'_>, best: &Best<'_>, costs: &[Lanes]) -> Self {
+    /// Of the costs of the views, in which places and lights have this density where they are as a view has them.
+    pub(super) fn of(
+        seen: &Ordered,
+        image: &Image<'_>,
+        best: &Best<'_>,
+        costs: &[Lanes],
+        (log_peak, is_lit): (f64, bool),
+    ) -> Self {
         let (least, most) = (Lanes::splat(best.nats), Lanes::splat(best.nats + WEIGHTLESS_NATS));
-        let weighty = costs.iter().filter(|four| four.simd_lt(most).any());
-        let weight = weighty.fold(Lanes::ZERO, |sum, &four| sum + lanes::exp(least - four));
+        let of_best = Lanes::splat(best.arrangement.far_log_power() as f32);
+        let [mut weight, mut first, mut second] = [Lanes::ZERO; 3];
+        for (&four, quad) in costs.iter().zip(best.quads).filter(|(four, _)| four.simd_lt(most).any()) {
+            let (each, off) = (lanes::exp(least - four), quad.log_power - of_best);
+            weight += each;
+            first += each * off;
+            second += each * off * off;
+        }
+        let [weight, first, second] = [weight, first, second].map(|sum| f64::from(lanes::sum(sum)));
+        let off = first / weight;
+        let views_nats = f64::from(best.nats) - libm::log(weight);
         Self {
-            views_nats: f64::from(best.nats) - libm::log(f64::from(lanes::sum(weight))),
+            views_nats,
+            log_power_off: off,
+            log_power_variance: (second / weight - off * off).max(0.0),
             distance_m: seen.place(best.arrangement, image).0.norm(),
             log_intensity: best.arrangement.mean_log_intensity,
-            size: image.size,
-            variance: seen.variance(image),
-            log_light_width: seen.log_light_width(),
+            log_density: log_peak - views_nats,
+            is_lit,
         }
     }
 
@@ -50,6 +71,12 @@ impl Likeness {
     pub(super) fn log_power(&self, sightings: &[Sighting], group: &[usize]) -> Option<f64> {
         let sum = group.iter().try_fold(0.0, |sum, &spot| Some(sum + sightings[spot].log_light?.value))?;
         Some(sum / group.len() as f64 + 2.0 * libm::log(self.distance_m) - self.log_intensity)
+    }
+
+    /// The same of all views together: they have a group at many distances.
+    pub(super) fn log_power_of_views(&self, sightings: &[Sighting], group: &[usize]) -> Option<LogLight> {
+        let value = self.log_power(sightings, group)? + self.log_power_off;
+        Some(LogLight { value, sigma: self.log_power_variance.sqrt() })
     }
 }
 
@@ -135,9 +162,10 @@ mod tests {
             views_nats: 0.0,
             distance_m,
             log_intensity: 0.0,
-            size: 0.0,
-            variance: 0.0,
-            log_light_width: 0.0,
+            log_power_off: 0.0,
+            log_power_variance: 0.0,
+            log_density: 0.0,
+            is_lit: true,
         })
     }
 

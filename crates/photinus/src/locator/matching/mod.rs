@@ -26,11 +26,12 @@ use crate::airframe::Airframe;
 #[cfg(not(feature = "std"))]
 use crate::float::Float as _;
 use crate::lanes::{LANES, Lanes};
-use crate::pose::{self, Hypotheses, LogDistance, LogLight, POWER_RANGE, Pose, Symmetry};
+use crate::normal::ROOT_OF_TAU;
+use crate::pose::{self, Hypotheses, LogDistance, POWER_RANGE, Pose, Symmetry};
 use crate::ranging::{BoundedBearing, DistanceBounds, Interval};
 use image::Image;
 use likeness::{Handful, Likeness, Likenesses};
-use most::{GRID_NATS, Most, Peak};
+use most::{GRID_NATS, Most, Peak, first_light};
 use ordered::Ordered;
 use outlined::overlay;
 use size::{plausible_m, size_nats};
@@ -67,6 +68,7 @@ pub(super) struct Matcher {
     places: Vec<Vector2<f64>>,
     costs: Vec<Lanes>,
     likenesses: Likenesses,
+    compared: u32,
 }
 
 impl Matcher {
@@ -94,12 +96,19 @@ impl Matcher {
             places: Vec::new(),
             costs: Vec::new(),
             likenesses: Likenesses::none(),
+            compared: 0,
         }
     }
 
     /// Begins a frame: what handfuls of another looked like is forgotten.
     pub(super) fn begin(&mut self) {
         self.likenesses.forget();
+        self.compared = 0;
+    }
+
+    /// How many handfuls of the frame were compared with the views so far; to know one again is no work.
+    pub(super) fn compared(&self) -> u32 {
+        self.compared
     }
 
     /// Most spots that one neighbour can show.
@@ -195,6 +204,7 @@ impl Matcher {
         if let Some(known) = self.likenesses.of(&handful) {
             return known;
         }
+        self.compared += 1;
         let likeness = self.compare(context, handful.spots());
         self.likenesses.keep(handful, likeness);
         likeness
@@ -207,7 +217,11 @@ impl Matcher {
         let arrangements = self.views.arrangements(group.len())?;
         let seen = Ordered::of(&image, context.sightings, group, self.log_flux_sigma);
         let best = seen.costs(arrangements, &image, self.tilt_sigma_rad, &mut self.costs);
-        Some(Likeness::of(&seen, &image, &best, &self.costs))
+        let lit = group.iter().filter(|&&spot| context.sightings[spot].log_light.is_some()).count();
+        let log_peak = log_peak_of_places(&self.views, &seen, &image, self.tilt_sigma_rad)
+            - lit.saturating_sub(1) as f64 * seen.log_light_width()
+            - libm::log(LOG_RANGE);
+        Some(Likeness::of(&seen, &image, &best, &self.costs, (log_peak, lit > 0)))
     }
 
     /// A first look at how likely a handful is one neighbour: the logarithm of its density, as [`crate::pose::Posterior::log_evidence`] has it but from the
@@ -223,7 +237,7 @@ impl Matcher {
         }
         let likeness = self.likeness(context, group)?;
         Some(
-            self.log_density_of_views(context, group, &likeness)
+            log_density_of_views(context, &likeness)
                 - power_nats(context, group, &likeness)
                 - size_nats(context.sightings, group, likeness.distance_m),
         )
@@ -234,30 +248,7 @@ impl Matcher {
     /// against that one alone.
     pub(super) fn most_of_pair(&mut self, context: &Context<'_>, pair: &[usize]) -> f64 {
         let likeness = self.likeness(context, pair);
-        likeness.map_or(f64::NEG_INFINITY, |likeness| self.log_density_of_views(context, pair, &likeness))
-    }
-
-    /// The part of a look that does not depend on how far away a group is.
-    fn log_density_of_views(&self, context: &Context<'_>, group: &[usize], likeness: &Likeness) -> f64 {
-        let lit = group.iter().filter(|&&spot| context.sightings[spot].log_light.is_some()).count();
-        let light = if lit == 0 {
-            0.0
-        } else {
-            -(lit as f64 - 1.0) * likeness.log_light_width - libm::log(POWER_RANGE)
-        };
-        self.log_density_of_places(context, group.len(), likeness) + light
-            - likeness.views_nats
-            - libm::log(LOG_RANGE)
-    }
-
-    /// The part of it that the places of so many spots have.
-    fn log_density_of_places(&self, context: &Context<'_>, spots: usize, likeness: &Likeness) -> f64 {
-        let turn_sigma_rad = if context.gravity.is_some() { self.tilt_sigma_rad } else { TAU.sqrt() };
-        let count = spots as f64;
-        -(count - 2.0) * libm::log(TAU * likeness.variance)
-            - libm::log(count)
-            - 2.0 * libm::log(likeness.size)
-            - 0.5 * libm::log(TAU * turn_sigma_rad * turn_sigma_rad)
+        likeness.map_or(f64::NEG_INFINITY, |likeness| log_density_of_views(context, &likeness))
     }
 
     /// The same look at the most that a full one can make of it, whatever the lights of the handful, of at least two: what hardly shows is hardly told by its
@@ -270,12 +261,10 @@ impl Matcher {
         let Some(image) = Image::of(context, group, &mut self.places) else { return f64::NEG_INFINITY };
         let seen = Ordered::of(&image, context.sightings, group, f64::INFINITY);
         let best = seen.costs(arrangements, &image, self.tilt_sigma_rad, &mut self.costs);
-        let likeness = Likeness::of(&seen, &image, &best, &self.costs);
-        self.log_density_of_places(context, group.len(), &likeness)
-            + self.most.log_light(context, group)
-            + GRID_NATS
-            - likeness.views_nats
-            - libm::log(LOG_RANGE)
+        let log_peak =
+            log_peak_of_places(&self.views, &seen, &image, self.tilt_sigma_rad) - libm::log(LOG_RANGE);
+        let likeness = Likeness::of(&seen, &image, &best, &self.costs, (log_peak, false));
+        likeness.log_density + self.most.log_light(context, group) + GRID_NATS
     }
 
     /// The most that [`Self::log_density`] can be for so many spots, the farthest apart at this squared gap, and how much less it is for each spot fewer;
@@ -407,12 +396,36 @@ fn outlined_nats(
     Some((best.nats - libm::log(weight), best.place_m.norm()))
 }
 
+/// Logarithm of the density of the places of spots that are as a view has them.
+fn log_peak_of_places(views: &Views, seen: &Ordered, image: &Image<'_>, tilt_sigma_rad: f64) -> f64 {
+    // Views have the shares that they have without gravity, which tells their elevation to within the tilt.
+    let (turn_sigma_rad, of_elevation) = match image.elevation_rad {
+        Some(elevation_rad) => {
+            let width = ROOT_OF_TAU * tilt_sigma_rad / ELEVATION_STEP_RAD;
+            (tilt_sigma_rad, -views.log_prior_of_elevation(elevation_rad) - libm::log(width))
+        }
+        None => (TAU.sqrt(), 0.0),
+    };
+    let count = image.places.len() as f64;
+    of_elevation
+        - (count - 2.0) * libm::log(TAU * seen.variance(image))
+        - libm::log(count)
+        - 2.0 * libm::log(image.size)
+        - 0.5 * libm::log(TAU * turn_sigma_rad * turn_sigma_rad)
+}
+
+/// The part of a look that does not depend on how far away a group is.
+fn log_density_of_views(context: &Context<'_>, likeness: &Likeness) -> f64 {
+    likeness.log_density + if likeness.is_lit { first_light(context) } else { 0.0 }
+}
+
 /// What it costs that spots of this light are so far away, nats.
 fn power_nats(context: &Context<'_>, group: &[usize], likeness: &Likeness) -> f64 {
-    let own = likeness.log_power(context.sightings, group);
-    let Some((LogLight { value, sigma }, own)) = context.power.zip(own) else { return 0.0 };
-    let off = (own - value) / sigma;
-    (0.5 * off * off).min(MOST_POWER_NATS)
+    let own = likeness.log_power_of_views(context.sightings, group);
+    let Some((known, own)) = context.power.zip(own) else { return 0.0 };
+    let sigma = libm::hypot(known.sigma, own.sigma);
+    let off = (own.value - known.value) / sigma;
+    (0.5 * off * off).min(MOST_POWER_NATS) + libm::log(sigma / known.sigma)
 }
 
 fn widened(range: &Interval, reach_m: f64) -> Option<Interval> {

@@ -146,7 +146,7 @@ impl Most {
 }
 
 /// The most that the first light can be, which tells the power of the LEDs where that is not known.
-fn first_light(context: &Context<'_>) -> f64 {
+pub(super) fn first_light(context: &Context<'_>) -> f64 {
     match context.power {
         Some(LogLight { sigma, .. }) => -libm::log(ROOT_OF_TAU * sigma),
         None => -libm::log(POWER_RANGE),

@@ -9,7 +9,7 @@ use super::image::{Image, turned};
 use crate::float::Float as _;
 use crate::lanes::{self, Lanes};
 use crate::locator::Sighting;
-use crate::locator::views::{Arrangement, Arrangements, Band, MOST_ORDERED};
+use crate::locator::views::{Arrangement, Arrangements, Band, MOST_ORDERED, Quad};
 use crate::pose::LogLight;
 
 /// How far the grid of views leaves a true shape from the nearest one, as a share of its size.
@@ -96,7 +96,7 @@ impl Ordered {
         let least = costs.iter().fold(Lanes::splat(f32::INFINITY), |least, &four| least.fast_min(four));
         let nats = least.to_array().into_iter().fold(f32::INFINITY, f32::min);
         let of_best = costs.iter().flat_map(|four| four.to_array()).position(|cost| cost <= nats);
-        Best { nats, arrangement: &all[of_best.unwrap_or(0)], among: all }
+        Best { nats, arrangement: &all[of_best.unwrap_or(0)], among: all, quads }
     }
 
     /// Variance of a place per axis, in the image, with the error of the grid of views.
@@ -146,4 +146,6 @@ pub(super) struct Best<'a> {
     pub(super) arrangement: &'a Arrangement,
     /// All that were compared, in the order of the costs.
     pub(super) among: &'a [Arrangement],
+    /// The same, four by four.
+    pub(super) quads: &'a [Quad],
 }

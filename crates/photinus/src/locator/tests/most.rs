@@ -79,8 +79,8 @@ fn check(
             closest[0] = closest[0].min(most - look);
             let mut candidates = Candidates::with_room(4);
             kinds.weigh(&context, &group, &mut candidates, || true);
-            if candidates.was_weighed(&group) {
-                let (full, most) = (candidates.get(0).log_density, kinds.most_in_full(&context, &group));
+            if let Some(full) = candidates.log_density(&group) {
+                let most = kinds.most_in_full(&context, &group);
                 assert!(full <= most + SLICES_NATS, "{group:?}: {full}, at most {most}");
                 closest[1] = closest[1].min(most - full);
             }

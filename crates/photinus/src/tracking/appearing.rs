@@ -2,7 +2,8 @@
 //!
 //! A neighbour that is a vehicle's own spots, located again, is claimed and no news. The mixture of a neighbour's poses enters as it is. A vehicle that is
 //! heard appears once; where its track is lost, that one begins anew where the vehicle shows. So does a track that has its markers together with another
-//! vehicle's.
+//! vehicle's. Where one that was hidden may be what comes out, one that nobody knew of does so as seldom: a marker that comes out from behind another vehicle
+//! is the known one's rather than a stranger's.
 
 use alloc::vec::Vec;
 
@@ -10,6 +11,7 @@ use nalgebra::Matrix3;
 
 use super::component::{Component, Covariance, YAW_RATE};
 use super::doubting;
+use super::existence;
 use super::look::{Appearance, Calls, Moment};
 use super::power::Power;
 use super::reduction::reduce;
@@ -34,7 +36,7 @@ pub(super) fn appear(
     modes: &mut Vec<Component>,
     after: &mut State,
 ) -> f64 {
-    let moment = scene.moment;
+    let Scene { model, moment, interval_s, .. } = *scene;
     let mut unexplained: f64 = claimed.iter().map(|claimed| (1.0 - claimed).max(0.0)).sum();
     for appearance in &moment.appearances {
         let members = moment.members(appearance);
@@ -46,8 +48,14 @@ pub(super) fn appear(
             Calls::Doubting(_) => continue,
         };
         let free = if instead.is_some() { 1.0 } else { (1.0 - of_others).max(0.0) };
-        let existence = appearance.probability * free;
-        unexplained -= existence * members.len() as f64;
+        let is_anybody = instead.is_none() && appearance.vehicle.is_none();
+        let seldom = if is_anybody && ways.may_be_hidden(members) {
+            existence::shows(interval_s, &model.settings)
+        } else {
+            1.0
+        };
+        let exists = free * seldom_as(appearance.probability, seldom);
+        unexplained -= exists * members.len() as f64;
         let is_there = |own: &Target| {
             appearance.vehicle.is_some() && moment.who(own.id, own.vehicle) == appearance.vehicle
         };
@@ -57,7 +65,7 @@ pub(super) fn appear(
             Some(before) => !members.is_empty() && after.is_lost(&after.targets[before]),
             None => after.targets.len() < MOST_TARGETS,
         };
-        if existence < LEAST || !may_begin {
+        if exists < LEAST || !may_begin {
             continue;
         }
         begun(scene, ways, appearance, straight_rad, modes);
@@ -72,7 +80,7 @@ pub(super) fn appear(
         let target = Target {
             id: before.map_or(after.next_id, |before| after.targets[before].id),
             vehicle: appearance.vehicle,
-            existence,
+            existence: exists,
             hidden: 0.0,
             seen_s: moment.time_s,
             seen_by: moment.camera,
@@ -95,6 +103,11 @@ pub(super) fn appear(
         }
     }
     unexplained.max(0.0)
+}
+
+/// How likely something is, told where it had even chances beforehand, if it is so seldom.
+fn seldom_as(probability: f64, seldom: f64) -> f64 {
+    probability * seldom / (probability * seldom + 1.0 - probability)
 }
 
 /// Fills `modes` with what a neighbour tells of a vehicle of which nothing else is known.

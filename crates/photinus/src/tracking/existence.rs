@@ -9,6 +9,16 @@ use super::settings::Settings;
 const LEAVES_SHOWN: f64 = 1.0 / 600.0;
 const LEAVES_HIDDEN: f64 = 1.0 / 60.0;
 
+/// How likely one that is hidden shows after a while.
+pub(super) fn shows(interval_s: f64, settings: &Settings) -> f64 {
+    within(1.0 / settings.hidden_s, interval_s)
+}
+
+/// How likely what happens at a rate has happened after a while.
+fn within(rate: f64, interval_s: f64) -> f64 {
+    -libm::expm1(-rate * interval_s)
+}
+
 /// How likely a vehicle is shown or hidden; the rest is that there is none.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Existence {
@@ -28,8 +38,8 @@ impl Existence {
 
     /// A while later.
     pub(super) fn after(&self, interval_s: f64, settings: &Settings) -> Self {
-        let within = |rate: f64| -libm::expm1(-rate * interval_s);
-        let (hides, shows) = (within(settings.hiding_per_s), within(1.0 / settings.hidden_s));
+        let within = |rate: f64| within(rate, interval_s);
+        let (hides, shows) = (within(settings.hiding_per_s), shows(interval_s, settings));
         let shown = self.shown * (1.0 - within(LEAVES_SHOWN));
         let hidden = self.hidden * (1.0 - within(LEAVES_HIDDEN));
         Self { shown: shown * (1.0 - hides) + hidden * shows, hidden: hidden * (1.0 - shows) + shown * hides }

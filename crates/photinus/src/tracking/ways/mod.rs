@@ -207,6 +207,15 @@ impl Ways {
         self.unseen_of[self.first_unseen[vehicle]..].iter().copied()
     }
 
+    /// Whether a vehicle that was likelier hidden than shown before the frame may be seen by one of these spots.
+    pub(super) fn may_be_hidden(&self, spots: &[usize]) -> bool {
+        self.choices.iter().any(|choice| {
+            let pairs = &self.all[choice.way].pairs;
+            self.log_shown[choice.vehicle] < -core::f64::consts::LN_2
+                && spots.iter().any(|&spot| pairs.has_spot(spot))
+        })
+    }
+
     /// Whether LEDs of a vehicle would be of another power than others say, if it is there; `None` where that is not known.
     pub(super) fn is_odd(&self, vehicle: usize, there: &Component, camera: usize) -> Option<bool> {
         let (others, own) = (self.powers[vehicle]?, there.power.log_power(camera)?);

@@ -50,12 +50,23 @@ pub(super) struct Told {
     pub(super) log_density: f64,
 }
 
+/// A spot that a marker of a candidate may be part of, though it is not one of its observations.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Merging {
+    pub(super) spot: usize,
+    pub(super) candidate: usize,
+    pub(super) probability: f64,
+    /// Logarithm of the density of the spot if two markers are in it: per sr and per unit of the logarithm of light.
+    pub(super) log_density: f64,
+}
+
 /// The candidates of a frame.
 #[derive(Debug)]
 pub(super) struct Candidates {
     all: Vec<Candidate>,
     members: Vec<usize>,
     modes: Vec<Mode>,
+    merging: Vec<Merging>,
     /// By observation: the last candidate of which it is the first.
     last: Vec<Option<usize>>,
     /// Groups that were weighed and are no candidate, one after the other, and where each ends.
@@ -70,6 +81,7 @@ impl Candidates {
             all: Vec::with_capacity(count),
             members: Vec::with_capacity(8 * count),
             modes: Vec::with_capacity(MODES_EACH * count),
+            merging: Vec::with_capacity(count),
             last: Vec::new(),
             in_vain: Vec::with_capacity(4 * count),
             ends_in_vain: Vec::with_capacity(count),
@@ -80,6 +92,7 @@ impl Candidates {
         self.all.clear();
         self.members.clear();
         self.modes.clear();
+        self.merging.clear();
         self.last.clear();
         self.in_vain.clear();
         self.ends_in_vain.clear();
@@ -103,6 +116,17 @@ impl Candidates {
     pub(super) fn modes(&self, index: usize) -> &[Mode] {
         let Candidate { first_mode, modes, .. } = self.all[index];
         &self.modes[first_mode..first_mode + modes]
+    }
+
+    /// Which spots that are not its own a candidate's marker may be part of.
+    pub(super) fn merging(&self) -> &[Merging] {
+        &self.merging
+    }
+
+    /// Notes that a marker of the candidate that was added last may be part of a spot that is not its own.
+    pub(super) fn merge(&mut self, spot: usize, probability: f64, log_density: f64) {
+        let candidate = self.all.len() - 1;
+        self.merging.push(Merging { spot, candidate, probability, log_density });
     }
 
     /// The candidates of just these observations, ascending: one of each kind at most.

@@ -3,10 +3,13 @@
 //! An explanation of a frame takes some candidates that share no observation; what is left is clutter. Its weight is the product of the densities.
 //! What has no candidate in common is explained apart; in each such part the weights of *all* explanations are added up (dynamic programming over
 //! subsets, as bit masks), which gives the probability of every candidate, and of every observation to be clutter.
+//!
+//! A spot in which markers of two neighbours merge is neither's: it lies between them, and would pull either away. Two candidates without it that each have a
+//! marker there explain it together.
 
 use alloc::vec::Vec;
 
-use super::candidates::Candidates;
+use super::candidates::{Candidates, Merging};
 
 /// Most observations that are explained together.
 const MOST_TOGETHER: usize = 12;
@@ -31,6 +34,10 @@ pub(super) struct Explanation {
     /// Whether an observation is one of a candidate's that is left.
     claimed: Vec<bool>,
     spots: Vec<usize>,
+    merging: Vec<Merging>,
+    shared: Vec<Shared>,
+    left_shared: Vec<usize>,
+    is_left: Vec<bool>,
     options: Vec<Choice>,
     sums: Vec<f64>,
     ways: Vec<f64>,
@@ -44,8 +51,18 @@ pub(super) struct Explanation {
 #[derive(Clone, Copy, Debug)]
 struct Choice {
     candidate: usize,
+    /// Another one beside it, with the spot that the two share.
+    with: Option<usize>,
     mask: usize,
     weight: f64,
+}
+
+/// Two candidates and the spot that a marker of each is part of.
+#[derive(Clone, Copy, Debug)]
+struct Shared {
+    candidates: [usize; 2],
+    spot: usize,
+    gain: f64,
 }
 
 impl Explanation {
@@ -60,6 +77,10 @@ impl Explanation {
             roots: Vec::new(),
             claimed: Vec::new(),
             spots: Vec::with_capacity(512),
+            merging: Vec::with_capacity(count),
+            shared: Vec::with_capacity(count),
+            left_shared: Vec::with_capacity(count),
+            is_left: Vec::with_capacity(count),
             options: Vec::with_capacity(count),
             sums: Vec::with_capacity(1 << MOST_TOGETHER),
             ways: Vec::with_capacity(1 << MOST_TOGETHER),
@@ -141,6 +162,7 @@ impl Explanation {
             let gain = candidates.get(index).log_density + log_neighbours - clutter;
             if gain.is_nan() { f64::NEG_INFINITY } else { gain.min(LARGEST_GAIN * members.len() as f64) }
         }));
+        self.share(candidates, clutter_log_density);
         self.log_gain = 0.0;
         self.done.clear();
         self.done.resize(count, false);
@@ -164,6 +186,26 @@ impl Explanation {
         }
     }
 
+    /// Finds the pairs of candidates that explain a spot together.
+    fn share(&mut self, candidates: &Candidates, clutter_log_density: &[f64]) {
+        let Self { merging, shared, gains, .. } = self;
+        merging.clear();
+        merging.extend_from_slice(candidates.merging());
+        merging.sort_unstable_by_key(|own| (own.spot, own.candidate));
+        shared.clear();
+        for (place, &Merging { spot, candidate, probability, log_density }) in merging.iter().enumerate() {
+            for other in merging[place + 1..].iter().take_while(|other| other.spot == spot) {
+                let [own, others] = [candidate, other.candidate].map(|index| candidates.members(index));
+                let both =
+                    libm::log(probability * other.probability) + log_density - clutter_log_density[spot];
+                let gain = gains[candidate] + gains[other.candidate] + both;
+                if both > 0.0 && gain > 0.0 && own.iter().all(|member| !others.contains(member)) {
+                    shared.push(Shared { candidates: [candidate, other.candidate], spot, gain });
+                }
+            }
+        }
+    }
+
     /// Leaves out candidates that others beat by this much wherever they are, and those of what is done.
     fn leave_out(&mut self, candidates: &Candidates, count: usize, hopeless: f64) {
         self.best.clear();
@@ -179,6 +221,20 @@ impl Explanation {
             let members = candidates.members(index);
             let rival = members.iter().map(|&spot| best[spot]).fold(0.0, f64::max);
             gains[index] >= rival - hopeless && members.iter().all(|&spot| !done[spot])
+        }));
+        self.is_left.clear();
+        self.is_left.resize(self.gains.len(), false);
+        for &index in &self.left {
+            self.is_left[index] = true;
+        }
+        let Self { best, shared, left_shared, is_left, done, .. } = self;
+        left_shared.clear();
+        left_shared.extend((0..shared.len()).filter(|&index| {
+            let own = &shared[index];
+            let rival = own.spots(candidates).map(|spot| best[spot]).fold(0.0, f64::max);
+            own.gain >= rival - hopeless
+                && !done[own.spot]
+                && own.candidates.iter().all(|&candidate| is_left[candidate])
         }));
     }
 
@@ -196,6 +252,14 @@ impl Explanation {
                 self.roots[a.max(b)] = a.min(b);
             }
         }
+        for &index in &self.left_shared {
+            let own = self.shared[index];
+            self.claimed[own.spot] = true;
+            for spot in own.spots(candidates) {
+                let [a, b] = [own.spot, spot].map(|spot| root(&mut self.roots, spot));
+                self.roots[a.max(b)] = a.min(b);
+            }
+        }
         for spot in 0..count {
             self.roots[spot] = root(&mut self.roots, spot);
         }
@@ -203,11 +267,12 @@ impl Explanation {
 
     /// Sorts what is not done yet, so that what hangs together is together. What no candidate claims is clutter, as it began.
     fn sort_into_parts(&mut self, candidates: &Candidates) {
-        let Self { spots, left, roots, done, claimed, .. } = self;
+        let Self { spots, left, left_shared, shared, roots, done, claimed, .. } = self;
         spots.clear();
         spots.extend((0..roots.len()).filter(|&spot| claimed[spot] && !done[spot]));
         spots.sort_unstable_by_key(|&spot| (roots[spot], spot));
         left.sort_unstable_by_key(|&index| (roots[candidates.members(index)[0]], index));
+        left_shared.sort_unstable_by_key(|&index| (roots[shared[index].spot], index));
     }
 
     /// Explains a part of a frame; if it is too large, only what is certain to be the `last` try.
@@ -215,25 +280,38 @@ impl Explanation {
         if spots.len() > MOST_TOGETHER && !last {
             return;
         }
-        let Self { options, left, gains, roots, .. } = self;
+        let Self { options, left, left_shared, shared, gains, roots, .. } = self;
         let part = |index: usize| roots[candidates.members(index)[0]];
         let first = left.partition_point(|&index| part(index) < roots[spots[0]]);
         let own = left[first..].iter().take_while(|&&index| part(index) == roots[spots[0]]);
         options.clear();
-        options.extend(own.map(|&candidate| Choice { candidate, mask: 0, weight: 0.0 }));
+        options.extend(own.map(|&candidate| Choice { candidate, with: None, mask: 0, weight: 0.0 }));
         if spots.len() > MOST_TOGETHER {
             self.take_the_best(candidates);
             return;
         }
-        let each = |candidate: usize| gains[candidate] / candidates.members(candidate).len() as f64;
-        let scale = options.iter().map(|choice| each(choice.candidate)).fold(0.0, f64::max);
+        let mask_of = |own: &mut dyn Iterator<Item = usize>| -> usize {
+            own.map(|spot| spots.binary_search(&spot).map_or(0, |bit| 1 << bit)).sum()
+        };
         for choice in options.iter_mut() {
-            let members = candidates.members(choice.candidate);
-            let bit = |spot: &usize| spots.binary_search(spot).map_or(0, |bit| 1 << bit);
-            choice.mask = members.iter().map(bit).sum();
-            choice.weight = libm::exp(gains[choice.candidate] - scale * members.len() as f64);
+            choice.mask = mask_of(&mut candidates.members(choice.candidate).iter().copied());
+            choice.weight = gains[choice.candidate];
         }
-        options.sort_unstable_by_key(|choice| (choice.mask.trailing_zeros(), choice.candidate));
+        let first = left_shared.partition_point(|&index| roots[shared[index].spot] < roots[spots[0]]);
+        for &index in
+            left_shared[first..].iter().take_while(|&&index| roots[shared[index].spot] == roots[spots[0]])
+        {
+            let own = &shared[index];
+            let [candidate, with] = own.candidates;
+            let mask = mask_of(&mut own.spots(candidates));
+            options.push(Choice { candidate, with: Some(with), mask, weight: own.gain });
+        }
+        let count = |choice: &Choice| f64::from(choice.mask.count_ones());
+        let scale = options.iter().map(|choice| choice.weight / count(choice)).fold(0.0, f64::max);
+        for choice in options.iter_mut() {
+            choice.weight = libm::exp(choice.weight - scale * count(choice));
+        }
+        options.sort_unstable_by_key(|choice| (choice.mask.trailing_zeros(), choice.candidate, choice.with));
         self.add_up(spots, scale);
     }
 
@@ -280,7 +358,11 @@ impl Explanation {
             for choice in choices(mask) {
                 let rest = mask & !choice.mask;
                 ways[rest] += here * choice.weight;
-                probability[choice.candidate] += here * choice.weight * (sums[rest] / total);
+                let share = here * choice.weight * (sums[rest] / total);
+                probability[choice.candidate] += share;
+                if let Some(with) = choice.with {
+                    probability[with] += share;
+                }
             }
         }
     }
@@ -304,6 +386,14 @@ impl Explanation {
                 done[spot] = true;
             }
         }
+    }
+}
+
+impl Shared {
+    /// The observations of both, and the one that they share.
+    fn spots<'a>(&self, candidates: &'a Candidates) -> impl Iterator<Item = usize> + use<'a> {
+        let [first, second] = self.candidates.map(|index| candidates.members(index).iter().copied());
+        first.chain(second).chain([self.spot])
     }
 }
 

@@ -4,7 +4,7 @@
 //! [`crate::ranging::DistanceBounds`] and spot sizes alone; the posterior of [`crate::pose`] is cut off at them.
 
 use alloc::vec::Vec;
-use core::f64::consts::TAU;
+use core::f64::consts::{PI, TAU};
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -21,7 +21,8 @@ use crate::camera::Bearing;
 #[cfg(not(feature = "std"))]
 use crate::float::Float as _;
 use crate::pose::{
-    self, Estimator, Hypotheses, Known, Observation, POWER_RANGE, Posterior, SettingsError, Summary, Visible,
+    self, Estimator, Hypotheses, Known, Mode, Observation, POWER_RANGE, Posterior, SettingsError, Summary,
+    Visible, merged_into,
 };
 use crate::ranging::Interval;
 
@@ -29,6 +30,11 @@ use crate::ranging::Interval;
 pub(crate) const LOG_RANGE: f64 = 4.6;
 /// Light of the wrong power does not rule out what geometry is sure of, nats.
 const MOST_POWER_NATS: f64 = 12.0;
+
+/// A marker that is less likely than this part of a spot is not.
+const LEAST_MERGED: f64 = 0.02;
+/// How dense the light of a spot is in which markers of two neighbours are, per unit of its logarithm: either may be the brighter one.
+const MERGED_LIGHT: f64 = 0.4;
 
 /// Over this much of the field the error of a calibration changes by itself.
 const CALIBRATION_LENGTH_RAD: f64 = 0.5;
@@ -48,6 +54,9 @@ pub(super) struct Poser {
     lit: Vec<f64>,
     within: Vec<usize>,
     others: Vec<Bearing>,
+    /// Which observations these are.
+    beside: Vec<usize>,
+    with_light: bool,
 }
 
 impl Poser {
@@ -69,6 +78,8 @@ impl Poser {
             lit: lit(airframe),
             within: Vec::with_capacity(airframe.markers().len()),
             others: Vec::with_capacity(512),
+            beside: Vec::with_capacity(512),
+            with_light: settings.use_brightness,
         })
     }
 
@@ -144,9 +155,11 @@ impl Poser {
         let widest = |&spot: &usize| matcher.widest_rad(&sightings[spot]);
         let reach_rad = group.iter().map(widest).fold(f64::INFINITY, f64::min);
         self.others.clear();
+        self.beside.clear();
         context.near.each_within(middle, reach_rad, |_, index| {
             if !group.contains(&index) {
                 self.others.push(sightings[index].bearing);
+                self.beside.push(index);
             }
         });
     }
@@ -192,6 +205,21 @@ impl Poser {
                 + self.log_share,
         };
         candidates.push(group, modes, told);
+        self.tell_merging(context, modes, candidates);
+    }
+
+    /// Tells which of the observations beside the candidate that was added last a marker of it may be part of.
+    fn tell_merging(&self, context: &Context<'_>, modes: &[Mode], candidates: &mut Candidates) {
+        for (bearing, &spot) in self.others.iter().zip(&self.beside) {
+            let Sighting { resolution_rad, log_light, .. } = context.sightings[spot];
+            let of = |mode: &Mode| merged_into(&self.airframe, &mode.pose, bearing.vector(), resolution_rad);
+            let probability = modes.iter().map(|mode| mode.weight * of(mode)).sum::<f64>();
+            if probability > LEAST_MERGED {
+                let light = if self.with_light && log_light.is_some() { MERGED_LIGHT } else { 1.0 };
+                let log_density = libm::log(light / (PI * resolution_rad * resolution_rad));
+                candidates.merge(spot, probability, log_density);
+            }
+        }
     }
 }
 

@@ -4,6 +4,7 @@ use nalgebra::Vector3;
 
 use super::merging::one_spot;
 use super::problem::{Pose, Problem};
+use crate::airframe::Airframe;
 use crate::camera::Bearing;
 
 /// Light at which a marker is found half of the time when nothing tells what is faintest, 1 being one LED straight ahead.
@@ -19,6 +20,20 @@ fn odds(times: f64) -> f64 {
 /// The probability of these odds, which may be infinite.
 fn probability(odds: f64) -> f64 {
     1.0 - 1.0 / (1.0 + odds)
+}
+
+/// How likely a marker of an airframe at a pose is part of a spot in this direction, which is not its own: that it shines, and that it is so near.
+pub(crate) fn merged_into(airframe: &Airframe, pose: &Pose, spot: &Vector3<f64>, resolution_rad: f64) -> f64 {
+    let camera_m = pose.camera_in_body_m();
+    let each = airframe.markers().iter().enumerate().map(|(marker, own)| {
+        let place_m = pose.camera_from_body * own.position_m + pose.position_m;
+        let gap2 = (place_m.normalize() - spot).norm_squared() / (resolution_rad * resolution_rad);
+        match one_spot(gap2) {
+            0.0 => 0.0,
+            merged => merged * probability(odds(airframe.intensity(marker, &camera_m) / FAINTEST_SHARE)),
+        }
+    });
+    each.fold(0.0, f64::max)
 }
 
 impl Problem<'_> {

@@ -24,7 +24,7 @@ use super::fixtures::Fixtures;
 use super::grouping::{CLEAR_SPOTS, Groups};
 use super::input::Input;
 use super::kinds::{Kind, Kinds};
-use super::memory::{Memory, Told};
+use super::memory::{Memory, Spread, Told};
 use super::near::Near;
 use super::neighbour::Located;
 use super::places::Places;
@@ -298,7 +298,9 @@ impl Inference {
             if !log_powers.is_empty() {
                 log_powers.sort_unstable_by(f64::total_cmp);
                 let log_power = log_powers[log_powers.len() / 2];
-                return Some(Told { log_power, is_clear: fewest == CLEAR_SPOTS });
+                let is_clear = fewest == CLEAR_SPOTS;
+                let spread = Spread::of(log_powers).filter(|_| is_clear);
+                return Some(Told { log_power, is_clear, spread });
             }
         }
         None

@@ -5,10 +5,14 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
+#[cfg(not(feature = "std"))]
+use crate::float::Float as _;
 use crate::pose::LogLight;
 
-/// Spread of the logarithm of light between neighbours: lobes, units, the lens towards its edge.
+/// Spread of the logarithm of light between neighbours, before any are compared: lobes, units, the lens towards its edge.
 pub(super) const LOG_POWER_SIGMA: f64 = 0.35;
+/// That is as sure as what so many neighbours would tell.
+const SUPPOSED: f64 = 4.0;
 /// The power of the LEDs is known from this many frames on.
 const FEWEST: usize = 3;
 
@@ -19,6 +23,30 @@ pub(super) struct Told {
     pub(super) log_power: f64,
     /// Whether a neighbour of three spots tells it: two are as well a nearer neighbour of weaker LEDs.
     pub(super) is_clear: bool,
+    /// How neighbours of one frame differ in it, where there are enough to compare: only these are different vehicles.
+    pub(super) spread: Option<Spread>,
+}
+
+/// How neighbours of one frame differ.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Spread {
+    pub(super) variance: f64,
+    /// How many differences tell it.
+    pub(super) freedom: f64,
+}
+
+impl Spread {
+    /// Fewer neighbours tell nothing that one that is no vehicle could not change.
+    const FEWEST: usize = 4;
+
+    /// Of the logarithms of their light, ascending: half of the width between the quartiles is two thirds of a standard deviation.
+    pub(super) fn of(sorted: &[f64]) -> Option<Self> {
+        let quantile = |share: usize| sorted[(sorted.len() - 1) * share / 4];
+        (sorted.len() >= Self::FEWEST).then(|| {
+            let sigma = (quantile(3) - quantile(1)) / 1.35;
+            Self { variance: sigma * sigma, freedom: (sorted.len() - 1) as f64 }
+        })
+    }
 }
 
 /// The last frames.
@@ -96,9 +124,21 @@ impl Memory {
         }
         self.sorted.sort_unstable_by(f64::total_cmp);
         let quantile = |share: usize| self.sorted[(self.sorted.len() - 1) * share / 4];
-        // Half the width between the quartiles is two thirds of a standard deviation.
         let spread = (quantile(3) - quantile(1)) / 1.35;
-        Some(LogLight { value: quantile(2), sigma: libm::hypot(LOG_POWER_SIGMA, spread) })
+        Some(LogLight { value: quantile(2), sigma: libm::hypot(self.between_neighbours(), spread) })
+    }
+
+    /// Standard deviation of the logarithm of light between neighbours. Frames show the same ones again, so all of them tell no more than one does.
+    fn between_neighbours(&self) -> f64 {
+        let (mut frames, mut freedom, mut squares) = (0.0, 0.0, 0.0);
+        for spread in self.powers.iter().flatten().filter_map(|told| told.spread) {
+            frames += 1.0;
+            freedom += spread.freedom;
+            squares += spread.freedom * spread.variance;
+        }
+        let (freedom, squares) = if frames > 0.0 { (freedom / frames, squares / frames) } else { (0.0, 0.0) };
+        let supposed = SUPPOSED * LOG_POWER_SIGMA * LOG_POWER_SIGMA;
+        ((supposed + squares) / (SUPPOSED + freedom)).sqrt()
     }
 
     /// Remembers a frame and forgets the oldest.
@@ -125,7 +165,7 @@ mod tests {
     use super::*;
 
     fn told(log_power: f64) -> Told {
-        Told { log_power, is_clear: false }
+        Told { log_power, is_clear: false, spread: None }
     }
 
     #[test]
@@ -136,7 +176,7 @@ mod tests {
             memory.remember(
                 &[0.0],
                 1.0,
-                Some(Told { log_power: if is_clear { 10.0 } else { 8.0 }, is_clear }),
+                Some(Told { log_power: if is_clear { 10.0 } else { 8.0 }, is_clear, spread: None }),
             );
         }
         assert_eq!(memory.power(), Some(LogLight { value: 10.0, sigma: LOG_POWER_SIGMA }));
@@ -163,6 +203,23 @@ mod tests {
         };
         assert_eq!(after(0), after(200 - Memory::FRAMES));
         assert_ne!(after(0), after(200 - Memory::FRAMES / 2));
+    }
+
+    #[test]
+    fn power_is_the_surer_the_more_alike_neighbours_of_one_frame_are() {
+        let sigma = |neighbours: usize, apart: f64, frames: usize| {
+            let mut memory = Memory::new(1);
+            let powers: Vec<f64> = (0..neighbours).map(|own| 9.0 + apart * own as f64).collect();
+            for _ in 0..frames {
+                let spread = Spread::of(&powers);
+                memory.remember(&[0.0], 1.0, Some(Told { log_power: 9.0, is_clear: true, spread }));
+            }
+            memory.power().unwrap().sigma
+        };
+        assert_eq!(sigma(3, 0.0, 8), LOG_POWER_SIGMA);
+        assert!(sigma(9, 0.02, 8) < 0.25 && sigma(17, 0.01, 8) < sigma(9, 0.02, 8));
+        assert!((sigma(9, 0.02, 8) - sigma(9, 0.02, 64)).abs() < 1e-12, "the same neighbours again");
+        assert!(sigma(9, 0.25, 8) > 0.5);
     }
 
     #[test]

@@ -404,3 +404,126 @@ fn root(roots: &mut [usize], mut spot: usize) -> usize {
     }
     spot
 }
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::super::candidates::Told;
+    use super::super::neighbour::Distance;
+    use super::*;
+    use crate::camera::Bearing;
+    use crate::pose::Misfit;
+    use crate::ranging::Interval;
+
+    /// Observations of a part that is explained at once.
+    const SPOTS: usize = 7;
+
+    fn candidates(of: &[(Vec<usize>, f64)], merging: &[(usize, usize, f64)]) -> Candidates {
+        let mut candidates = Candidates::with_room(of.len());
+        candidates.clear();
+        for (index, (members, log_density)) in of.iter().enumerate() {
+            let bearing = Bearing::new(nalgebra::Vector3::z()).unwrap();
+            let distance =
+                Distance { estimate: None, bounds: Interval::ANY, perpendicular_m: None, inline_m: None };
+            let misfit = Misfit { chi_square: 0.0, degrees: 0 };
+            let told = Told {
+                kind: index,
+                bearing,
+                distance,
+                position: None,
+                orientation: None,
+                misfit,
+                worst_sigma: 0.0,
+                log_density: *log_density,
+            };
+            candidates.push(members, &[], told);
+            for &(_, spot, probability) in
+                merging.iter().filter(|own| own.0 == index && !members.contains(&own.1))
+            {
+                candidates.merge(spot, probability, MERGED);
+            }
+        }
+        candidates
+    }
+
+    /// The logarithm of the density of a spot in which two markers are.
+    const MERGED: f64 = 1.0;
+
+    /// The weights of all explanations, one by one: of all, of those with each candidate, and of those in which each spot is clutter.
+    struct Weights {
+        all: f64,
+        with: Vec<f64>,
+        clutter: Vec<f64>,
+    }
+
+    /// Goes on with an explanation that has these candidates and pairs of them, by what comes from `next` on.
+    fn explain_one_by_one(
+        choices: &[(Vec<usize>, Vec<usize>, f64)],
+        next: usize,
+        (taken, by, weight): (&mut Vec<usize>, &mut Vec<usize>, f64),
+        weights: &mut Weights,
+    ) {
+        let Some((members, of, own)) = choices.get(next) else {
+            weights.all += weight;
+            by.iter().for_each(|&candidate| weights.with[candidate] += weight);
+            (0..SPOTS).filter(|spot| !taken.contains(spot)).for_each(|spot| weights.clutter[spot] += weight);
+            return;
+        };
+        explain_one_by_one(choices, next + 1, (taken, by, weight), weights);
+        if members.iter().all(|spot| !taken.contains(spot)) {
+            let before = (taken.len(), by.len());
+            taken.extend(members);
+            by.extend(of);
+            explain_one_by_one(choices, next + 1, (taken, by, weight * own), weights);
+            taken.truncate(before.0);
+            by.truncate(before.1);
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn probabilities_are_those_of_all_explanations_one_by_one(
+            of in prop::collection::vec((1_usize..1 << SPOTS, -2.0_f64..6.0), 1..7),
+            merging in prop::collection::vec((0_usize..6, 0_usize..SPOTS, 0.05_f64..1.0), 0..8),
+            density in -6.0_f64..0.0,
+        ) {
+            let members = |mask: usize| (0..SPOTS).filter(|spot| mask >> spot & 1 == 1).collect::<Vec<_>>();
+            let of: Vec<(Vec<usize>, f64)> = of.into_iter().map(|(mask, gain)| {
+                let own = members(mask);
+                let log_density = gain + density * own.len() as f64;
+                (own, log_density)
+            }).collect();
+            let candidates = candidates(&of, &merging);
+            let clutter = [density; SPOTS];
+            let mut choices: Vec<(Vec<usize>, Vec<usize>, f64)> = Vec::new();
+            let gain = |index: usize| of[index].1 - density * of[index].0.len() as f64;
+            for (index, (own, _)) in of.iter().enumerate() {
+                choices.push((own.clone(), vec![index], libm::exp(gain(index))));
+            }
+            for (place, first) in candidates.merging().iter().enumerate() {
+                for second in candidates.merging()[place + 1..].iter().filter(|second| second.spot == first.spot) {
+                    let (a, b) = (first.candidate, second.candidate);
+                    let both = libm::log(first.probability * second.probability) + MERGED - density;
+                    let is_apart = a != b && of[a].0.iter().all(|spot| !of[b].0.contains(spot));
+                    if is_apart && both > 0.0 && gain(a) + gain(b) + both > 0.0 {
+                        let own = [&of[a].0[..], &of[b].0, &[first.spot]].concat();
+                        choices.push((own, vec![a, b], libm::exp(gain(a) + gain(b) + both)));
+                    }
+                }
+            }
+            let mut weights = Weights { all: 0.0, with: vec![0.0; of.len()], clutter: vec![0.0; SPOTS] };
+            explain_one_by_one(&choices, 0, (&mut Vec::new(), &mut Vec::new(), 1.0), &mut weights);
+            let mut explanation = Explanation::with_room(of.len());
+            explanation.explain(&candidates, &clutter, 0.0);
+            for index in 0..of.len() {
+                let expected = weights.with[index] / weights.all;
+                prop_assert!((explanation.probability(index) - expected).abs() < 1e-9, "{index}: {} {expected}", explanation.probability(index));
+            }
+            for spot in 0..SPOTS {
+                prop_assert!((explanation.clutter(spot) - weights.clutter[spot] / weights.all).abs() < 1e-9);
+            }
+            prop_assert!((explanation.log_density(&clutter) - libm::log(weights.all) - density * SPOTS as f64).abs() < 1e-9);
+        }
+    }
+}

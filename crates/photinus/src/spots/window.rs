@@ -184,7 +184,10 @@ impl Window {
         self.charge.resize((side + 2) * stride, 0.0);
         for four in &self.fours {
             let at = (four.row + 1) * stride + four.column + 1;
-            self.charge[at..at + LANES].copy_from_slice(&(model(four) + four.others).to_array());
+            let light = (model(four) + four.others).to_array();
+            // Beside the pixels that count a model may be without bounds.
+            let charge = light.map(|light| if light.is_finite() { light } else { 0.0 });
+            self.charge[at..at + LANES].copy_from_slice(&charge);
         }
         let well_dn = self.full_dn * libm::exp(spill.ln_well) as f32;
         let relative_error = Lanes::splat(spill.relative_error as f32);
@@ -390,6 +393,22 @@ mod tests {
         window.given[40] = f32::INFINITY;
         window.overflow(&spill, |_| Lanes::ZERO);
         assert!(window.given.iter().all(|&given| given == 0.0));
+    }
+
+    #[test]
+    fn light_without_bounds_beside_the_pixels_that_count_spills_nothing() {
+        let four = Four { row: 3, column: 0, ..Four::default() };
+        let spilled = |beside: f32| {
+            let mut window = Window { reach: 3, full_dn: 200.0, fours: vec![four], ..Window::default() };
+            let spill = Spill { share: 0.3, ln_well: 0.0, relative_error: 0.3, numbers: None };
+            let mut light = [0.0; LANES];
+            (light[0], light[LANES - 1]) = (1000.0, beside);
+            window.overflow(&spill, |_| Lanes::new(light));
+            window.fours[0].spilled.to_array()
+        };
+        assert!(spilled(0.0)[1] > 0.0);
+        assert_eq!(spilled(f32::INFINITY), spilled(0.0));
+        assert_eq!(spilled(f32::NAN), spilled(0.0));
     }
 
     proptest! {

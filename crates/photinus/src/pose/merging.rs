@@ -11,8 +11,6 @@
 //! The centre is followed from that of all the light towards this fixed point. Two markers of one light are one spot in their
 //! middle, as far apart as they may be; a faint one far out leaves a bright one where it is.
 //!
-//! One that has no spot of its own may be dead or dark as well: it shines into a window as far as that is likelier, given that it was not told apart.
-//!
 //! Resolution was measured on rendered frames of two markers at gaps of 0 to 8 px: told apart in 0, 10, 42, 60,
 //! 68, 88, 95 % at 1.2, 1.8, 2.2, 2.8, 3.2, 3.8, 4.8 px. Pairs of one light that were one spot had its centre at 0.44 to 0.47 of
 //! their gap, from 1 to 4.5 px.
@@ -45,16 +43,6 @@ pub(super) fn one_spot(gap2: f64) -> f64 {
     let even = |gap2: f64| 1.0 / (1.0 + gap2 * gap2 * gap2);
     let least = even(FAR * FAR);
     (even(gap2) - least) / (1.0 - least)
-}
-
-/// The derivative of [`one_spot`] by the squared gap.
-fn one_spot_slope(gap2: f64) -> f64 {
-    if gap2.is_nan() || gap2 >= FAR * FAR {
-        return 0.0;
-    }
-    let cube = gap2 * gap2 * gap2;
-    let least = 1.0 / (1.0 + FAR.powi(6));
-    -3.0 * gap2 * gap2 / ((1.0 + cube) * (1.0 + cube) * (1.0 - least))
 }
 
 /// Where the light of a spot comes from, as far as its centre tells.
@@ -108,8 +96,6 @@ struct Beside {
     place_m: Vector3<f64>,
     intensity: f64,
     intensity_gradient: Vector3<f64>,
-    /// Variance of its light for that it may not shine, in units of the square of what is expected of it.
-    unsure: f64,
 }
 
 /// A place in the body frame, with its derivative by the camera's place.
@@ -228,29 +214,10 @@ impl Problem<'_> {
         let gaps = self.gaps(spot, seen, &camera_m);
         unseen.each().filter_map(move |other| {
             let Marker { position_m, .. } = &self.airframe.markers()[other];
-            let gap = gaps.to(position_m).filter(|_| other != seen)?;
-            let (shines, slope) = self.shines_unseen(other, gap.squared);
-            let (alone, gradient) = self.airframe.intensity_with_gradient(other, &camera_m);
-            let intensity = alone * shines;
-            (intensity > 0.0).then(|| Beside {
-                place_m: *position_m,
-                intensity,
-                intensity_gradient: gradient * shines + gap.by_camera() * (alone * slope),
-                unsure: (1.0 - shines) / shines,
-            })
+            gaps.to(position_m).filter(|_| other != seen)?;
+            let (intensity, intensity_gradient) = self.airframe.intensity_with_gradient(other, &camera_m);
+            (intensity > 0.0).then_some(Beside { place_m: *position_m, intensity, intensity_gradient })
         })
-    }
-
-    /// How likely a marker shines that has no spot of its own, at a squared gap from one that has, with the derivative by that: it does if the two are one spot.
-    fn shines_unseen(&self, marker: usize, gap2: f64) -> (f64, f64) {
-        let lit = self.known.visible.lit.get(marker).copied().unwrap_or(1.0);
-        let found = lit * (1.0 - self.settings.missed);
-        let merged = found * one_spot(gap2);
-        let all = merged + 1.0 - found;
-        if merged <= 0.0 {
-            return (0.0, 0.0);
-        }
-        (merged / all, found * (1.0 - found) / (all * all) * one_spot_slope(gap2))
     }
 
     /// What a window at a place leaves of the light of a marker.
@@ -303,12 +270,7 @@ impl Problem<'_> {
         let Some(first) = beside.next() else { return shining };
         // A marker that hardly shines is no middle of a spot, but it keeps the others' light from being the whole of it.
         let own_gradient = if own > 1e-3 { own_gradient } else { Vector3::zeros() };
-        let own = Beside {
-            place_m: alone_m,
-            intensity: own.max(1e-3),
-            intensity_gradient: own_gradient,
-            unsure: 0.0,
-        };
+        let own = Beside { place_m: alone_m, intensity: own.max(1e-3), intensity_gradient: own_gradient };
         let mut kept = [None; KEPT];
         let lights = [own, first].into_iter().chain(beside);
         kept.iter_mut().zip(lights).for_each(|(place, light)| *place = Some(light));
@@ -330,10 +292,9 @@ impl Problem<'_> {
             total += weight * one.intensity;
             if place > 0 {
                 // Spots differ in their windows: what is at the edge of one is within another.
-                let unsure = (1.0 - weight) * (1.0 - weight) + unit * unit + one.unsure;
+                let unsure = (1.0 - weight) * (1.0 - weight) + unit * unit;
                 let light = weight * one.intensity;
-                // The nearer the centre is to a light, the less it moves with that one's share.
-                unsure_m2 += unsure * (one.place_m - middle.at_m).norm_squared() * light * light;
+                unsure_m2 += unsure * (one.place_m - alone_m).norm_squared() * light * light;
                 shining.intensity += room * one.intensity;
                 shining.intensity_gradient += one.intensity_gradient * room + gradient * one.intensity;
             }

@@ -164,24 +164,12 @@ proptest! {
         let resolution_rad = 0.02 / gap.max(1e-3);
         let observations = [Observation { resolution_rad, ..observation(Vector3::z(), 1e-3, 1.0) }];
         let whitened = observations.map(|seen| Whitened::of(&seen, 0.0));
-        let markers = [Some(0)];
-        let seen_if = |missed: f64| {
-            let settings = Settings { missed, ..Settings::default() };
-            let problem = Problem {
-                airframe: &airframe, settings: &settings, observations: &observations, whitened: &whitened, markers: &markers,
-                known: &nothing(), merging: true, repeats: 1.0,
-            };
-            problem.shining(0, 0, &camera_m).centre
-        };
-        let settings = Settings { missed: 0.0, ..Settings::default() };
+        let (settings, markers) = (Settings::default(), [Some(0)]);
         let problem = Problem {
             airframe: &airframe, settings: &settings, observations: &observations, whitened: &whitened, markers: &markers,
             known: &nothing(), merging: true, repeats: 1.0,
         };
-        let centre = seen_if(0.0);
-        // Where it may be dead the centre is no farther from the one that is seen: as before where two are hardly ever told apart, alone where they mostly are.
-        let (off_m, merged_m) = (seen_if(0.02).at_m.y - -0.05, centre.at_m.y - -0.05);
-        prop_assert!(off_m <= merged_m + 1e-9 && (gap > 1.0 || off_m > 0.9 * merged_m) && (gap < 1.75 || off_m < 0.01), "{gap}: {off_m}");
+        let centre = problem.shining(0, 0, &camera_m).centre;
         let merged = problem.merged(0, 0, 1, &camera_m);
         let expected = if gap < 1.99 { 0.0 } else { -0.05 };
         prop_assert!((1.99..2.01).contains(&gap) || (centre.at_m.y - expected).abs() < 2e-3, "{} {expected}", centre.at_m.y);
@@ -216,7 +204,7 @@ fn all_markers_of_a_strip_are_in_its_middle_and_shine() {
         let whitened = observations.map(|seen| Whitened::of(&seen, 0.0));
         let problem = Problem {
             airframe: &airframe,
-            settings: &Settings { missed: 0.0, ..Settings::default() },
+            settings: &Settings::default(),
             observations: &observations,
             whitened: &whitened,
             markers: &[Some(0)],

@@ -51,7 +51,7 @@ pub(super) struct Explanation {
 #[derive(Clone, Copy, Debug)]
 struct Choice {
     candidate: usize,
-    /// Another one beside it, with the spot that the two share.
+    /// The other one, where two share a spot.
     with: Option<usize>,
     mask: usize,
     weight: f64,
@@ -248,17 +248,13 @@ impl Explanation {
             let members = candidates.members(index);
             for &spot in members {
                 self.claimed[spot] = true;
-                let [a, b] = [members[0], spot].map(|spot| root(&mut self.roots, spot));
-                self.roots[a.max(b)] = a.min(b);
+                tie(&mut self.roots, members[0], spot);
             }
         }
         for &index in &self.left_shared {
             let own = self.shared[index];
             self.claimed[own.spot] = true;
-            for spot in own.spots(candidates) {
-                let [a, b] = [own.spot, spot].map(|spot| root(&mut self.roots, spot));
-                self.roots[a.max(b)] = a.min(b);
-            }
+            own.spots(candidates).for_each(|spot| tie(&mut self.roots, own.spot, spot));
         }
         for spot in 0..count {
             self.roots[spot] = root(&mut self.roots, spot);
@@ -290,11 +286,8 @@ impl Explanation {
             self.take_the_best(candidates);
             return;
         }
-        let mask_of = |own: &mut dyn Iterator<Item = usize>| -> usize {
-            own.map(|spot| spots.binary_search(&spot).map_or(0, |bit| 1 << bit)).sum()
-        };
         for choice in options.iter_mut() {
-            choice.mask = mask_of(&mut candidates.members(choice.candidate).iter().copied());
+            choice.mask = mask_of(spots, candidates.members(choice.candidate).iter().copied());
             choice.weight = gains[choice.candidate];
         }
         let first = left_shared.partition_point(|&index| roots[shared[index].spot] < roots[spots[0]]);
@@ -303,7 +296,7 @@ impl Explanation {
         {
             let own = &shared[index];
             let [candidate, with] = own.candidates;
-            let mask = mask_of(&mut own.spots(candidates));
+            let mask = mask_of(spots, own.spots(candidates));
             options.push(Choice { candidate, with: Some(with), mask, weight: own.gain });
         }
         let count = |choice: &Choice| f64::from(choice.mask.count_ones());
@@ -395,6 +388,17 @@ impl Shared {
         let [first, second] = self.candidates.map(|index| candidates.members(index).iter().copied());
         first.chain(second).chain([self.spot])
     }
+}
+
+/// Which of the spots of a part, ascending, these are, as bits.
+fn mask_of(spots: &[usize], own: impl Iterator<Item = usize>) -> usize {
+    own.map(|spot| spots.binary_search(&spot).map_or(0, |bit| 1 << bit)).sum()
+}
+
+/// Puts two spots, and all that hangs together with either, together.
+fn tie(roots: &mut [usize], a: usize, b: usize) {
+    let [a, b] = [a, b].map(|spot| root(roots, spot));
+    roots[a.max(b)] = a.min(b);
 }
 
 fn root(roots: &mut [usize], mut spot: usize) -> usize {

@@ -39,14 +39,23 @@ impl Spread {
     /// Fewer neighbours tell nothing that one that is no vehicle could not change.
     const FEWEST: usize = 4;
 
-    /// Of the logarithms of their light, ascending: half of the width between the quartiles is two thirds of a standard deviation.
+    /// Of the logarithms of their light, ascending.
     pub(super) fn of(sorted: &[f64]) -> Option<Self> {
-        let quantile = |share: usize| sorted[(sorted.len() - 1) * share / 4];
         (sorted.len() >= Self::FEWEST).then(|| {
-            let sigma = (quantile(3) - quantile(1)) / 1.35;
+            let sigma = sigma_of(sorted);
             Self { variance: sigma * sigma, freedom: (sorted.len() - 1) as f64 }
         })
     }
+}
+
+/// The value below which so many quarters of these are, ascending.
+fn quartile(sorted: &[f64], quarters: usize) -> f64 {
+    sorted[(sorted.len() - 1) * quarters / 4]
+}
+
+/// Standard deviation of these, ascending, whatever the outermost are: half of the width between the quartiles is two thirds of it.
+fn sigma_of(sorted: &[f64]) -> f64 {
+    (quartile(sorted, 3) - quartile(sorted, 1)) / 1.35
 }
 
 /// The last frames.
@@ -123,9 +132,8 @@ impl Memory {
             return None;
         }
         self.sorted.sort_unstable_by(f64::total_cmp);
-        let quantile = |share: usize| self.sorted[(self.sorted.len() - 1) * share / 4];
-        let spread = (quantile(3) - quantile(1)) / 1.35;
-        Some(LogLight { value: quantile(2), sigma: libm::hypot(self.between_neighbours(), spread) })
+        let sigma = libm::hypot(self.between_neighbours(), sigma_of(&self.sorted));
+        Some(LogLight { value: quartile(&self.sorted, 2), sigma })
     }
 
     /// Standard deviation of the logarithm of light between neighbours. Frames show the same ones again, so all of them tell no more than one does.

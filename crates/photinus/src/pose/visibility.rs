@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 
 use super::merging::one_spot;
 use super::problem::{Pose, Problem};
-use crate::airframe::Airframe;
+use crate::airframe::{Airframe, Marker};
 use crate::camera::Bearing;
 
 /// Light at which a marker is found half of the time when nothing tells what is faintest, 1 being one LED straight ahead.
@@ -22,13 +22,17 @@ fn probability(odds: f64) -> f64 {
     1.0 - 1.0 / (1.0 + odds)
 }
 
+/// Where a marker of an airframe at a pose is seen from the camera.
+fn direction(pose: &Pose, marker: &Marker) -> Vector3<f64> {
+    (pose.camera_from_body * marker.position_m + pose.position_m).normalize()
+}
+
 /// How likely a marker of an airframe at a pose is part of a spot in this direction, which is not its own: that it shines, and that it is so near.
 pub(crate) fn merged_into(airframe: &Airframe, pose: &Pose, spot: &Vector3<f64>, resolution_rad: f64) -> f64 {
     let camera_m = pose.camera_in_body_m();
     let each = airframe.markers().iter().enumerate().map(|(marker, own)| {
-        let place_m = pose.camera_from_body * own.position_m + pose.position_m;
-        let gap2 = (place_m.normalize() - spot).norm_squared() / (resolution_rad * resolution_rad);
-        match one_spot(gap2) {
+        let gap_rad2 = (direction(pose, own) - spot).norm_squared();
+        match one_spot(gap_rad2 / (resolution_rad * resolution_rad)) {
             0.0 => 0.0,
             merged => merged * probability(odds(airframe.intensity(marker, &camera_m) / FAINTEST_SHARE)),
         }
@@ -109,8 +113,7 @@ impl Problem<'_> {
         else {
             return 0.0;
         };
-        let place_m = pose.camera_from_body * self.airframe.markers()[marker].position_m + pose.position_m;
-        let direction = place_m.normalize();
+        let direction = direction(pose, &self.airframe.markers()[marker]);
         let gaps = others.iter().map(|other| (other.vector() - direction).norm_squared());
         one_spot(gaps.fold(f64::INFINITY, f64::min) / (resolution_rad * resolution_rad))
     }

@@ -1,4 +1,4 @@
-//! What frames change: a locator, and what follows vehicles from one frame to the next as the program does.
+//! What frames change: a locator, where the sun stands, and what follows vehicles from one frame to the next, as in the program.
 
 use nalgebra::{Unit, Vector3};
 use photinus::camera::Camera;
@@ -8,7 +8,7 @@ use photinus::lookout::Fleet;
 use photinus::spots::Spot;
 use photinus_io::calibration::MountingFile;
 use photinus_io::results::FrameRecord;
-use photinus_run::Entry;
+use photinus_run::{Daylight, Entry};
 use photinus_run::course::Course;
 use photinus_run::watch::{self, Looking, Watch};
 use pyo3::prelude::*;
@@ -69,12 +69,14 @@ impl Beside {
 pub(crate) struct State {
     pub(crate) locator: Locator,
     watch: Option<Watch>,
+    daylight: Daylight,
 }
 
 impl State {
-    /// Before the first frame.
-    pub(crate) fn new(locator: Locator, watch: Option<Watch>) -> Self {
-        Self { locator, watch }
+    /// Before the first frame of a recording, or of frames alone.
+    pub(crate) fn new(locator: Locator, watch: Option<Watch>, recording: Option<&Dataset>) -> Self {
+        let sky = recording.and_then(|recording| recording.dataset.sky());
+        Self { locator, watch, daylight: Daylight::under(sky) }
     }
 
     /// The record with what was located in its frame, or behind its spots where there is none, and what a user should know.
@@ -91,7 +93,8 @@ impl State {
         let spots: Vec<(Spot, Option<u32>)> =
             record.spots.iter().map(|spot| (Spot::from(spot), spot.signal)).collect();
         let input = frame.map_or_else(|| Input::signalled(&spots), Input::frame);
-        let located = self.locator.locate(input.gravity(gravity.as_ref())).map_err(|error| {
+        let sun = self.daylight.sun(record.time_s, gravity.as_ref());
+        let located = self.locator.locate(input.gravity(gravity.as_ref()).sun(sun)).map_err(|error| {
             ImageError::new_err(format!("{error}; give the calibration of this camera at this resolution"))
         })?;
         let mut entry = Entry::from_spots(record);

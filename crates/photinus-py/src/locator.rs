@@ -23,7 +23,7 @@ use crate::recording::Dataset;
 /// Locates neighbours in frame after frame of one camera, as `photinus locate` does: optics, the power of LEDs and clutter are learnt from
 /// the frames that came before, and neighbours are followed through frames that have times. `airframe` is that of the neighbours, or a list:
 /// one for each kind of them. With `recording` it is that recording's locator: what is not given (mask, mounting, spot curve) is the
-/// recording's, and who blinks what and how the camera turned, too. Making one takes up to a second. May be shared by threads, which then
+/// recording's, and who blinks what, how the camera turned and where the sun stood, too. Making one takes up to a second. May be shared by threads, which then
 /// wait for each other.
 ///
 /// Options: `contrast`, `threshold`, `reflection_ratio` and `mask` as for Detector; `mounting`, a TOML file that says how the camera sits on
@@ -139,7 +139,7 @@ impl Locator {
                     Some(beside.watch(seen_by, &kinds, &settings, mask.as_ref())?)
                 }
             };
-            Ok((Mutex::new(State::new(locator, watch)), remarks))
+            Ok((Mutex::new(State::new(locator, watch, recording)), remarks))
         })?;
         let folder = recording.map_or("frames".into(), |recording| recording.dataset.path(""));
         error::warn(py, &folder, &remarks)?;

@@ -3,6 +3,7 @@
 import inspect
 import json
 import re
+import shutil
 from pathlib import Path
 
 import numpy as np
@@ -72,6 +73,27 @@ def test_who_blinks(program: Program, tmp_path: Path) -> None:
         (likeliest, *_) = track.ids
         assert likeliest.id == track.id and likeliest.probability == track.id_probability
         assert track.position_m.shape == track.velocity_m_s.shape == (3,) and not likeliest.contested
+
+
+def test_the_sun_of_a_recording(program: Program, tmp_path: Path) -> None:
+    """Where a spot may be the sun, a neighbour is less likely: the module is told where it stood by the recording, as the program is."""
+
+    def located(sky: str) -> list[photinus.Record]:
+        folder = tmp_path / ("day" if sky else "night")
+        shutil.copytree(EXAMPLE, folder)
+        with (folder / "dataset.toml").open("a") as toml:
+            toml.write(sky)
+        program("locate", folder, "--out", folder / "r.jsonl", "-q")
+        recording = photinus.Dataset.read(folder)
+        locator = photinus.Locator(recording.camera, recording.airframe, recording)
+        records = [locator.locate(f.image, gravity=f.gravity, time=f.time_s, frame=f.frame) for f in recording]
+        assert [record.to_json() for record in records] == lines(folder / "r.jsonl")
+        return records
+
+    # The sun rises where the camera looks.
+    day = "latitude_deg = 0.0\nlongitude_deg = 0.0\ntime = 2024-03-20T06:08:00Z\nheading_deg = 90.0\n"
+    with_sun, without = located(f"\n[sky]\n{day}"), located("")
+    assert [record.to_json() for record in with_sun] != [record.to_json() for record in without]
 
 
 def test_several_kinds(program: Program, tmp_path: Path, example: photinus.Dataset) -> None:

@@ -5,7 +5,7 @@
 //!   slot   the newest one wins, older ones are counted as dropped      live/
 //! entry    a frame on its way to a record of results                   entry
 //! run      the loop: fill, hand on                                     run, work
-//! view     locate, follow, into the body frame                         view, watch, course, motion
+//! view     locate, follow, into the body frame                         view, watch, course, motion, daylight
 //! fan      every sink its thread and its bounded queue                 sink/
 //! health   what was counted and measured on the way                    health/
 //! config   the file that says all this                                 config/
@@ -14,6 +14,7 @@
 mod clock;
 pub mod config;
 pub mod course;
+mod daylight;
 mod disputes;
 mod entry;
 pub mod exposure;
@@ -32,6 +33,7 @@ pub mod watch;
 mod work;
 
 pub use clock::{Clock, Stage};
+pub use daylight::Daylight;
 pub use entry::Entry;
 pub use host_clock::HostClock;
 pub use odd_frame::Oddity;

@@ -3,7 +3,7 @@
 use nalgebra::{Unit, Vector3};
 use photinus::camera::Camera;
 use photinus::frame::Mask;
-use photinus::locator::{Input, Kind, Locator, LocatorError, Settings, Stage, Sun};
+use photinus::locator::{Input, Kind, Locator, LocatorError, Settings, Stage};
 use photinus::ranging::SpotCurve;
 use photinus::spots::Spot;
 use photinus_io::calibration::MountingFile;
@@ -11,6 +11,7 @@ use photinus_io::image::GreyImage;
 use photinus_io::sky::Sky;
 use photinus_io::{Error, Place, Result};
 
+use crate::daylight::Daylight;
 use crate::watch::Watch;
 use crate::{Clock, Entry, Work};
 
@@ -25,9 +26,7 @@ pub struct View {
     /// The names of the neighbours' airframes, by kind.
     airframes: Vec<String>,
     gravity: Option<Unit<Vector3<f64>>>,
-    sky: Option<Sky>,
-    /// The second that the sun was looked for last, and where it stands.
-    sun: Option<(f64, Option<Unit<Vector3<f64>>>)>,
+    daylight: Daylight,
 }
 
 impl View {
@@ -54,8 +53,7 @@ impl View {
             watch: None,
             airframes,
             gravity: None,
-            sky: None,
-            sun: None,
+            daylight: Daylight::default(),
         })
     }
 
@@ -90,19 +88,7 @@ impl View {
     /// The sky that it looks at, where place and time are known.
     #[must_use]
     pub fn under(self, sky: Option<Sky>) -> Self {
-        Self { sky, ..self }
-    }
-
-    /// Where the sun stands in this frame: the place in the sky is worked out once a second.
-    fn sun(&mut self, entry: &Entry) -> Option<Sun> {
-        let (sky, down, time_s) = (self.sky.as_ref()?, entry.gravity.as_ref()?, entry.record.time_s?);
-        let second = time_s.floor();
-        let sun = match self.sun {
-            Some((known, sun)) if known.total_cmp(&second).is_eq() => sun,
-            _ => sky.direction(second),
-        };
-        self.sun = Some((second, sun));
-        Some(sky.seen(&sun?, down))
+        Self { daylight: Daylight::under(sky), ..self }
     }
 }
 
@@ -110,7 +96,7 @@ impl Work for View {
     fn fill(&mut self, entry: &mut Entry, clock: &mut Clock) -> Result<()> {
         let live = || self.watch.as_ref()?.down(entry);
         entry.gravity = self.gravity.or(entry.gravity).or_else(live);
-        entry.sun = self.sun(entry);
+        entry.sun = self.daylight.sun(entry.record.time_s, entry.gravity.as_ref());
         locate(entry, &mut self.locator, &self.airframes, clock)?;
         if let Some(watch) = &self.watch {
             watch.follow(entry, self.locator.located());

@@ -8,9 +8,9 @@ use photinus::lookout::Fleet;
 use photinus::spots::Spot;
 use photinus_io::calibration::MountingFile;
 use photinus_io::results::FrameRecord;
-use photinus_run::{Daylight, Entry};
 use photinus_run::course::Course;
 use photinus_run::watch::{self, Looking, Watch};
+use photinus_run::{Daylight, Entry};
 use pyo3::prelude::*;
 
 use crate::error::{self, ImageError};

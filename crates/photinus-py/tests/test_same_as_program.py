@@ -76,7 +76,7 @@ def test_who_blinks(program: Program, tmp_path: Path) -> None:
 
 
 def test_the_sun_of_a_recording(program: Program, tmp_path: Path) -> None:
-    """Where a spot may be the sun, a neighbour is less likely: the module is told where it stood by the recording, as the program is."""
+    """A spot that may be the sun is less likely a neighbour: a recording tells the module where it stood, too."""
 
     def located(sky: str) -> list[photinus.Record]:
         folder = tmp_path / ("day" if sky else "night")

@@ -2,9 +2,13 @@
 
 use alloc::vec::Vec;
 
+#[cfg(not(feature = "std"))]
+use crate::float::Float as _;
+
 use super::context::Context;
 use super::neighbour::{Distance, Orientation, Position};
 use crate::camera::Bearing;
+use crate::normal;
 use crate::pose::{Misfit, Mode};
 
 /// Modes that a candidate has at most, or nearly.
@@ -30,6 +34,8 @@ pub(super) struct Candidate {
     /// Logarithm of the density of its observations as this neighbour, if it is there: per sr and per unit of the logarithm of light each, times
     /// 1 sr.
     pub(super) log_density: f64,
+    /// How far its outermost marker is from its origin, m.
+    reach_m: f64,
     first_member: usize,
     members: usize,
     first_mode: usize,
@@ -48,6 +54,7 @@ pub(super) struct Told {
     pub(super) misfit: Misfit,
     pub(super) worst_sigma: f64,
     pub(super) log_density: f64,
+    pub(super) reach_m: f64,
 }
 
 /// A spot that a marker of a candidate may be part of, though it is not one of its observations.
@@ -67,6 +74,8 @@ pub(super) struct Candidates {
     members: Vec<usize>,
     modes: Vec<Mode>,
     merging: Vec<Merging>,
+    /// Two that have no observation in common but would be in one place, the earlier one first.
+    colliding: Vec<[usize; 2]>,
     /// By observation: the last candidate of which it is the first.
     last: Vec<Option<usize>>,
     /// Groups that were weighed and are no candidate, one after the other, and where each ends.
@@ -82,6 +91,7 @@ impl Candidates {
             members: Vec::with_capacity(8 * count),
             modes: Vec::with_capacity(MODES_EACH * count),
             merging: Vec::with_capacity(count),
+            colliding: Vec::with_capacity(count),
             last: Vec::new(),
             in_vain: Vec::with_capacity(4 * count),
             ends_in_vain: Vec::with_capacity(count),
@@ -93,6 +103,7 @@ impl Candidates {
         self.members.clear();
         self.modes.clear();
         self.merging.clear();
+        self.colliding.clear();
         self.last.clear();
         self.in_vain.clear();
         self.ends_in_vain.clear();
@@ -121,6 +132,17 @@ impl Candidates {
     /// Which spots that are not its own a candidate's marker may be part of.
     pub(super) fn merging(&self) -> &[Merging] {
         &self.merging
+    }
+
+    /// Candidates that have no observation in common but are not two vehicles: they would be in one place.
+    pub(super) fn colliding(&self) -> &[[usize; 2]] {
+        &self.colliding
+    }
+
+    /// Whether two are not two vehicles.
+    pub(super) fn collide(&self, a: usize, b: usize) -> bool {
+        // They were noted in the order of the later one.
+        self.colliding.binary_search_by_key(&(a.max(b), a.min(b)), |&[first, second]| (second, first)).is_ok()
     }
 
     /// Notes that a marker of the candidate that was added last may be part of a spot that is not its own.
@@ -173,7 +195,17 @@ impl Candidates {
 
     /// Adds a candidate.
     pub(super) fn push(&mut self, group: &[usize], modes: &[Mode], told: Told) {
-        let Told { kind, bearing, distance, position, orientation, misfit, worst_sigma, log_density } = told;
+        let Told {
+            kind,
+            bearing,
+            distance,
+            position,
+            orientation,
+            misfit,
+            worst_sigma,
+            log_density,
+            reach_m,
+        } = told;
         self.last.resize(self.last.len().max(group[0] + 1), None);
         let before = self.last[group[0]].replace(self.all.len());
         self.all.push(Candidate {
@@ -185,6 +217,7 @@ impl Candidates {
             misfit,
             worst_sigma,
             log_density,
+            reach_m,
             first_member: self.members.len(),
             members: group.len(),
             first_mode: self.modes.len(),
@@ -193,5 +226,83 @@ impl Candidates {
         });
         self.members.extend_from_slice(group);
         self.modes.extend_from_slice(modes);
+        let own = self.all.len() - 1;
+        let Self { all, members, colliding, .. } = self;
+        let is_apart = |other: &Candidate| {
+            let others = &members[other.first_member..][..other.members];
+            group.iter().all(|spot| !others.contains(spot))
+        };
+        let before = all[..own].iter().enumerate();
+        let there = before.filter(|(_, other)| are_in_one_place(&all[own], other) && is_apart(other));
+        colliding.extend(there.map(|(other, _)| [other, own]));
+    }
+}
+
+/// Whether the middle of one candidate is more likely than not among the markers of the other, where no vehicle can be. One spot alone does not tell where its
+/// neighbour is.
+fn are_in_one_place(a: &Candidate, b: &Candidate) -> bool {
+    let (Some(at), Some(other)) = (a.position, b.position) else { return false };
+    let gap_m = other.mean_m - at.mean_m;
+    let least_m = a.reach_m.max(b.reach_m);
+    if gap_m.norm_squared() >= least_m * least_m || a.members < 2 || b.members < 2 {
+        return false;
+    }
+    // Across the line of sight they are where they are seen.
+    let ahead = a.bearing.vector();
+    let along_m = gap_m.dot(ahead);
+    let across_m2 = gap_m.norm_squared() - along_m * along_m;
+    let room_m = (least_m * least_m - across_m2).max(0.0).sqrt();
+    let sigma_m = ahead.dot(&((at.covariance_m2 + other.covariance_m2) * ahead)).sqrt().max(1e-9);
+    let below = |limit_m: f64| normal::below((limit_m - along_m) / sigma_m);
+    below(room_m) - below(-room_m) > 0.5
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{Matrix3, Vector3};
+
+    use super::*;
+    use crate::ranging::Interval;
+
+    const REACH_M: f64 = 0.4;
+
+    /// Of these observations, in this place, its distance known so well.
+    fn push(candidates: &mut Candidates, group: &[usize], at: [f64; 3], sigma_m: f64) {
+        let mean_m = Vector3::from(at);
+        let ahead = mean_m.normalize();
+        let covariance_m2 = Matrix3::identity() * 1e-6 + ahead * ahead.transpose() * (sigma_m * sigma_m);
+        let distance =
+            Distance { estimate: None, bounds: Interval::ANY, perpendicular_m: None, inline_m: None };
+        let told = Told {
+            kind: 0,
+            bearing: Bearing::new(mean_m).unwrap(),
+            distance,
+            position: Some(Position { mean_m, covariance_m2 }),
+            orientation: None,
+            misfit: Misfit { chi_square: 0.0, degrees: 0 },
+            worst_sigma: 0.0,
+            log_density: 0.0,
+            reach_m: REACH_M,
+        };
+        candidates.push(group, &[], told);
+    }
+
+    #[test]
+    fn two_in_one_place_collide_unless_their_distances_are_hardly_known() {
+        let collide = |group: &[usize], at: [f64; 3], sigma_m: f64| {
+            let mut candidates = Candidates::with_room(2);
+            push(&mut candidates, &[0, 1, 2], [1.0, 2.0, 7.0], 0.1);
+            push(&mut candidates, group, at, sigma_m);
+            assert_eq!(candidates.collide(0, 1), candidates.collide(1, 0));
+            candidates.collide(1, 0)
+        };
+        assert!(collide(&[3, 4], [1.1, 2.0, 7.1], 0.1));
+        assert!(!collide(&[2, 4], [1.1, 2.0, 7.1], 0.1), "they cannot both be anyway");
+        assert!(!collide(&[4], [1.1, 2.0, 7.1], 0.1), "one spot");
+        assert!(!collide(&[3, 4], [1.1, 2.0, 7.1], 1.0), "anywhere along the line of sight");
+        for (gap_m, is_there) in [(0.3, true), (0.5, false)] {
+            assert_eq!(collide(&[3, 4], [1.0 + gap_m, 2.0, 7.0], 0.1), is_there, "across, {gap_m} m");
+            assert_eq!(collide(&[3, 4], [1.0, 2.0, 7.0 + gap_m], 0.1), is_there, "along, {gap_m} m");
+        }
     }
 }

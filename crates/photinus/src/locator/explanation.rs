@@ -6,6 +6,8 @@
 //!
 //! A spot in which markers of two neighbours merge is neither's: it lies between them, and would pull either away. Two candidates without it that each have a
 //! marker there explain it together.
+//!
+//! Two vehicles are never in one place: candidates that would be claim that place as if it were one more observation, which only one of them can have.
 
 use alloc::vec::Vec;
 
@@ -37,6 +39,7 @@ pub(super) struct Explanation {
     merging: Vec<Merging>,
     shared: Vec<Shared>,
     left_shared: Vec<usize>,
+    left_colliding: Vec<[usize; 2]>,
     is_left: Vec<bool>,
     options: Vec<Choice>,
     sums: Vec<f64>,
@@ -80,6 +83,7 @@ impl Explanation {
             merging: Vec::with_capacity(count),
             shared: Vec::with_capacity(count),
             left_shared: Vec::with_capacity(count),
+            left_colliding: Vec::with_capacity(count),
             is_left: Vec::with_capacity(count),
             options: Vec::with_capacity(count),
             sums: Vec::with_capacity(1 << MOST_TOGETHER),
@@ -199,7 +203,8 @@ impl Explanation {
                 let both =
                     libm::log(probability * other.probability) + log_density - clutter_log_density[spot];
                 let gain = gains[candidate] + gains[other.candidate] + both;
-                if both > 0.0 && gain > 0.0 && own.iter().all(|member| !others.contains(member)) {
+                let is_apart = own.iter().all(|member| !others.contains(member));
+                if both > 0.0 && gain > 0.0 && is_apart && !candidates.collide(candidate, other.candidate) {
                     shared.push(Shared { candidates: [candidate, other.candidate], spot, gain });
                 }
             }
@@ -236,6 +241,13 @@ impl Explanation {
                 && !done[own.spot]
                 && own.candidates.iter().all(|&candidate| is_left[candidate])
         }));
+        let Self { gains, left_colliding, is_left, .. } = self;
+        left_colliding.clear();
+        // What is no likelier than clutter is hardly one of two.
+        let counts = |candidate: &usize| is_left[*candidate] && gains[*candidate] > 0.0;
+        left_colliding.extend(candidates.colliding().iter().filter(|both| both.iter().all(counts)));
+        let gain = |[a, b]: &[usize; 2]| gains[*a] + gains[*b];
+        left_colliding.sort_unstable_by(|a, b| gain(b).total_cmp(&gain(a)).then(a.cmp(b)));
     }
 
     /// Joins the observations that candidates have in common.
@@ -255,6 +267,10 @@ impl Explanation {
             let own = self.shared[index];
             self.claimed[own.spot] = true;
             own.spots(candidates).for_each(|spot| tie(&mut self.roots, own.spot, spot));
+        }
+        for both in &self.left_colliding {
+            let [first, second] = both.map(|index| candidates.members(index)[0]);
+            tie(&mut self.roots, first, second);
         }
         for spot in 0..count {
             self.roots[spot] = root(&mut self.roots, spot);
@@ -276,7 +292,7 @@ impl Explanation {
         if spots.len() > MOST_TOGETHER && !last {
             return;
         }
-        let Self { options, left, left_shared, shared, gains, roots, .. } = self;
+        let Self { options, left, left_shared, left_colliding, shared, gains, roots, .. } = self;
         let part = |index: usize| roots[candidates.members(index)[0]];
         let first = left.partition_point(|&index| part(index) < roots[spots[0]]);
         let own = left[first..].iter().take_while(|&&index| part(index) == roots[spots[0]]);
@@ -290,27 +306,33 @@ impl Explanation {
             choice.mask = mask_of(spots, candidates.members(choice.candidate).iter().copied());
             choice.weight = gains[choice.candidate];
         }
+        let own = left_colliding.iter().filter(|both| part(both[0]) == roots[spots[0]]);
+        let places = claim_places(own, options, spots.len(), candidates);
         let first = left_shared.partition_point(|&index| roots[shared[index].spot] < roots[spots[0]]);
         for &index in
             left_shared[first..].iter().take_while(|&&index| roots[shared[index].spot] == roots[spots[0]])
         {
             let own = &shared[index];
             let [candidate, with] = own.candidates;
-            let mask = mask_of(spots, own.spots(candidates));
+            let place_of = |candidate: usize| {
+                options.iter().find(|choice| choice.candidate == candidate).map_or(0, |choice| choice.mask)
+            };
+            let mask = mask_of(spots, own.spots(candidates)) | place_of(candidate) | place_of(with);
             options.push(Choice { candidate, with: Some(with), mask, weight: own.gain });
         }
-        let count = |choice: &Choice| f64::from(choice.mask.count_ones());
+        let of_spots = (1 << spots.len()) - 1;
+        let count = |choice: &Choice| f64::from((choice.mask & of_spots).count_ones());
         let scale = options.iter().map(|choice| choice.weight / count(choice)).fold(0.0, f64::max);
         for choice in options.iter_mut() {
             choice.weight = libm::exp(choice.weight - scale * count(choice));
         }
         options.sort_unstable_by_key(|choice| (choice.mask.trailing_zeros(), choice.candidate, choice.with));
-        self.add_up(spots, scale);
+        self.add_up(spots, places, scale);
     }
 
     /// Adds up the weights of all explanations of a part: forwards the weight of what is left, backwards the ways to come there. What is explained next
-    /// is the first observation that is left. Weights are those over clutter, less so many nats for each observation.
-    fn add_up(&mut self, spots: &[usize], scale: f64) {
+    /// is the first observation that is left. Weights are those over clutter, less so many nats for each observation; a place that nobody has costs nothing.
+    fn add_up(&mut self, spots: &[usize], places: usize, scale: f64) {
         let Self { options, sums, ways, probability, clutter, done, log_gain, .. } = self;
         let mut of_first = [0; MOST_TOGETHER + 1];
         for (first, end) in of_first.iter_mut().enumerate() {
@@ -322,14 +344,16 @@ impl Explanation {
                 .iter()
                 .filter(move |choice| choice.mask & !mask == 0)
         };
-        let all = (1usize << spots.len()) - 1;
-        let alone = libm::exp(-scale);
+        let all = (1usize << (spots.len() + places)) - 1;
+        let clutter_alone = libm::exp(-scale);
+        let alone =
+            |mask: usize| if (mask.trailing_zeros() as usize) < spots.len() { clutter_alone } else { 1.0 };
         sums.clear();
         sums.push(1.0);
         for mask in 1..=all {
             let rest = mask & (mask - 1);
             let taken: f64 = choices(mask).map(|choice| choice.weight * sums[mask & !choice.mask]).sum();
-            sums.push(alone * sums[rest] + taken);
+            sums.push(alone(mask) * sums[rest] + taken);
         }
         ways.clear();
         ways.resize(all + 1, 0.0);
@@ -346,8 +370,10 @@ impl Explanation {
                 continue;
             }
             let rest = mask & (mask - 1);
-            ways[rest] += here * alone;
-            clutter[spots[mask.trailing_zeros() as usize]] += here * alone * (sums[rest] / total);
+            ways[rest] += here * alone(mask);
+            if let Some(&spot) = spots.get(mask.trailing_zeros() as usize) {
+                clutter[spot] += here * alone(mask) * (sums[rest] / total);
+            }
             for choice in choices(mask) {
                 let rest = mask & !choice.mask;
                 ways[rest] += here * choice.weight;
@@ -366,9 +392,12 @@ impl Explanation {
         options.sort_unstable_by(|a, b| {
             gains[b.candidate].total_cmp(&gains[a.candidate]).then(a.candidate.cmp(&b.candidate))
         });
-        for Choice { candidate, .. } in options.iter() {
+        for (place, Choice { candidate, .. }) in options.iter().enumerate() {
             let members = candidates.members(*candidate);
-            if members.iter().any(|&spot| done[spot]) {
+            let is_there = |before: &Choice| {
+                probability[before.candidate] > 0.5 && candidates.collide(before.candidate, *candidate)
+            };
+            if members.iter().any(|&spot| done[spot]) || options[..place].iter().any(is_there) {
                 continue;
             }
             let gain = gains[*candidate];
@@ -388,6 +417,45 @@ impl Shared {
         let [first, second] = self.candidates.map(|index| candidates.members(index).iter().copied());
         first.chain(second).chain([self.spot])
     }
+}
+
+/// Gives each place that two candidates of a part would be in a bit after those of its `spots`, as far as there is room, and to all in it that could not be there
+/// together. Returns how many places there are.
+fn claim_places<'a>(
+    colliding: impl Iterator<Item = &'a [usize; 2]>,
+    options: &mut [Choice],
+    spots: usize,
+    candidates: &Candidates,
+) -> usize {
+    let mut places = 0;
+    for &[a, b] in colliding {
+        let find = |candidate: usize| options.iter().position(|choice| choice.candidate == candidate);
+        let (Some(a), Some(b)) = (find(a), find(b)) else { continue };
+        if options[a].mask & options[b].mask != 0 {
+            continue;
+        }
+        let may_enter = |new: usize, place: usize| {
+            let mut within = options.iter().filter(|choice| choice.mask >> place & 1 == 1);
+            within.all(|choice| candidates.collide(choice.candidate, options[new].candidate))
+        };
+        let known = (spots..spots + places).find_map(|place| {
+            let has = |option: usize| options[option].mask >> place & 1 == 1;
+            match (has(a), has(b)) {
+                (true, false) if may_enter(b, place) => Some((b, place)),
+                (false, true) if may_enter(a, place) => Some((a, place)),
+                _ => None,
+            }
+        });
+        if let Some((new, place)) = known {
+            options[new].mask |= 1 << place;
+        } else if spots + places < MOST_TOGETHER {
+            let place = 1 << (spots + places);
+            options[a].mask |= place;
+            options[b].mask |= place;
+            places += 1;
+        }
+    }
+    places
 }
 
 /// Which of the spots of a part, ascending, these are, as bits.
@@ -417,13 +485,15 @@ mod tests {
     use super::super::neighbour::Distance;
     use super::*;
     use crate::camera::Bearing;
+    use crate::locator::neighbour::Position;
     use crate::pose::Misfit;
     use crate::ranging::Interval;
 
     /// Observations of a part that is explained at once.
     const SPOTS: usize = 7;
 
-    fn candidates(of: &[(Vec<usize>, f64)], merging: &[(usize, usize, f64)]) -> Candidates {
+    /// Of these observations and densities, in these places.
+    fn candidates(of: &[(Vec<usize>, f64)], places: &[f64], merging: &[(usize, usize, f64)]) -> Candidates {
         let mut candidates = Candidates::with_room(of.len());
         candidates.clear();
         for (index, (members, log_density)) in of.iter().enumerate() {
@@ -435,11 +505,15 @@ mod tests {
                 kind: index,
                 bearing,
                 distance,
-                position: None,
+                position: places.get(index).map(|&z| Position {
+                    mean_m: nalgebra::Vector3::new(0.0, 0.0, z),
+                    covariance_m2: nalgebra::Matrix3::identity() * 1e-4,
+                }),
                 orientation: None,
                 misfit,
                 worst_sigma: 0.0,
                 log_density: *log_density,
+                reach_m: ROOM_M,
             };
             candidates.push(members, &[], told);
             for &(_, spot, probability) in
@@ -450,6 +524,9 @@ mod tests {
         }
         candidates
     }
+
+    /// Candidates that are nearer to each other are in one place.
+    const ROOM_M: f64 = 1.0;
 
     /// The logarithm of the density of a spot in which two markers are.
     const MERGED: f64 = 1.0;
@@ -464,6 +541,7 @@ mod tests {
     /// Goes on with an explanation that has these candidates and pairs of them, by what comes from `next` on.
     fn explain_one_by_one(
         choices: &[(Vec<usize>, Vec<usize>, f64)],
+        collide: &dyn Fn(usize, usize) -> bool,
         next: usize,
         (taken, by, weight): (&mut Vec<usize>, &mut Vec<usize>, f64),
         weights: &mut Weights,
@@ -474,12 +552,13 @@ mod tests {
             (0..SPOTS).filter(|spot| !taken.contains(spot)).for_each(|spot| weights.clutter[spot] += weight);
             return;
         };
-        explain_one_by_one(choices, next + 1, (taken, by, weight), weights);
-        if members.iter().all(|spot| !taken.contains(spot)) {
+        explain_one_by_one(choices, collide, next + 1, (taken, by, weight), weights);
+        let is_there = of.iter().any(|&own| by.iter().any(|&other| collide(own, other)));
+        if members.iter().all(|spot| !taken.contains(spot)) && !is_there {
             let before = (taken.len(), by.len());
             taken.extend(members);
             by.extend(of);
-            explain_one_by_one(choices, next + 1, (taken, by, weight * own), weights);
+            explain_one_by_one(choices, collide, next + 1, (taken, by, weight * own), weights);
             taken.truncate(before.0);
             by.truncate(before.1);
         }
@@ -489,6 +568,7 @@ mod tests {
         #[test]
         fn probabilities_are_those_of_all_explanations_one_by_one(
             of in prop::collection::vec((1_usize..1 << SPOTS, -2.0_f64..6.0), 1..7),
+            places in prop::collection::vec(0.0_f64..8.0, 6),
             merging in prop::collection::vec((0_usize..6, 0_usize..SPOTS, 0.05_f64..1.0), 0..8),
             density in -6.0_f64..0.0,
         ) {
@@ -498,10 +578,13 @@ mod tests {
                 let log_density = gain + density * own.len() as f64;
                 (own, log_density)
             }).collect();
-            let candidates = candidates(&of, &merging);
+            let candidates = candidates(&of, &places, &merging);
             let clutter = [density; SPOTS];
             let mut choices: Vec<(Vec<usize>, Vec<usize>, f64)> = Vec::new();
             let gain = |index: usize| of[index].1 - density * of[index].0.len() as f64;
+            // What is no likelier than clutter, or one spot, claims no place.
+            let claims = |index: usize| gain(index) > 0.0 && of[index].0.len() > 1;
+            let collide = |a: usize, b: usize| claims(a) && claims(b) && (places[a] - places[b]).abs() < ROOM_M;
             for (index, (own, _)) in of.iter().enumerate() {
                 choices.push((own.clone(), vec![index], libm::exp(gain(index))));
             }
@@ -510,14 +593,14 @@ mod tests {
                     let (a, b) = (first.candidate, second.candidate);
                     let both = libm::log(first.probability * second.probability) + MERGED - density;
                     let is_apart = a != b && of[a].0.iter().all(|spot| !of[b].0.contains(spot));
-                    if is_apart && both > 0.0 && gain(a) + gain(b) + both > 0.0 {
+                    if is_apart && !((places[a] - places[b]).abs() < ROOM_M && of[a].0.len() > 1 && of[b].0.len() > 1) && both > 0.0 && gain(a) + gain(b) + both > 0.0 {
                         let own = [&of[a].0[..], &of[b].0, &[first.spot]].concat();
                         choices.push((own, vec![a, b], libm::exp(gain(a) + gain(b) + both)));
                     }
                 }
             }
             let mut weights = Weights { all: 0.0, with: vec![0.0; of.len()], clutter: vec![0.0; SPOTS] };
-            explain_one_by_one(&choices, 0, (&mut Vec::new(), &mut Vec::new(), 1.0), &mut weights);
+            explain_one_by_one(&choices, &collide, 0, (&mut Vec::new(), &mut Vec::new(), 1.0), &mut weights);
             let mut explanation = Explanation::with_room(of.len());
             explanation.explain(&candidates, &clutter, 0.0);
             for index in 0..of.len() {

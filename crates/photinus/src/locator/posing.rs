@@ -107,7 +107,7 @@ impl Poser {
             self.within = within;
             return;
         }
-        self.describe(context, group, bounds, candidates);
+        self.describe(context, group, (bounds, matcher.reach_m()), candidates);
     }
 
     /// Estimates the posterior of a group and returns its strict bounds; `None` where it cannot be one neighbour.
@@ -169,7 +169,7 @@ impl Poser {
         &self,
         context: &Context<'_>,
         group: &[usize],
-        bounds: Interval,
+        (bounds, reach_m): (Interval, f64),
         candidates: &mut Candidates,
     ) {
         let Posterior { summary, modes, markers, log_evidence, misfit, worst_sigma, log_power } =
@@ -203,6 +203,7 @@ impl Poser {
             log_density: log_evidence - log_range(group.len())
                 + power_agreement(context, group, *log_power)
                 + self.log_share,
+            reach_m,
         };
         candidates.push(group, modes, told);
         self.tell_merging(context, modes, candidates);

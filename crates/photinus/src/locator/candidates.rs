@@ -2,12 +2,13 @@
 
 use alloc::vec::Vec;
 
-#[cfg(not(feature = "std"))]
-use crate::float::Float as _;
+use nalgebra::Vector3;
 
 use super::context::Context;
 use super::neighbour::{Distance, Orientation, Position};
 use crate::camera::Bearing;
+#[cfg(not(feature = "std"))]
+use crate::float::Float as _;
 use crate::normal;
 use crate::pose::{Misfit, Mode};
 
@@ -34,8 +35,6 @@ pub(super) struct Candidate {
     /// Logarithm of the density of its observations as this neighbour, if it is there: per sr and per unit of the logarithm of light each, times
     /// 1 sr.
     pub(super) log_density: f64,
-    /// How far its outermost marker is from its origin, m.
-    reach_m: f64,
     first_member: usize,
     members: usize,
     first_mode: usize,
@@ -54,6 +53,7 @@ pub(super) struct Told {
     pub(super) misfit: Misfit,
     pub(super) worst_sigma: f64,
     pub(super) log_density: f64,
+    /// How far its outermost marker is from its origin, m.
     pub(super) reach_m: f64,
 }
 
@@ -67,6 +67,16 @@ pub(super) struct Merging {
     pub(super) log_density: f64,
 }
 
+/// Where a candidate's vehicle would be.
+#[derive(Clone, Copy, Debug)]
+struct Body {
+    candidate: usize,
+    at_m: Vector3<f64>,
+    /// Along the line of sight, m^2.
+    variance_m2: f64,
+    reach_m: f64,
+}
+
 /// The candidates of a frame.
 #[derive(Debug)]
 pub(super) struct Candidates {
@@ -74,6 +84,8 @@ pub(super) struct Candidates {
     members: Vec<usize>,
     modes: Vec<Mode>,
     merging: Vec<Merging>,
+    /// Those of several observations, where they are.
+    bodies: Vec<Body>,
     /// Two that have no observation in common but would be in one place, the earlier one first.
     colliding: Vec<[usize; 2]>,
     /// By observation: the last candidate of which it is the first.
@@ -91,6 +103,7 @@ impl Candidates {
             members: Vec::with_capacity(8 * count),
             modes: Vec::with_capacity(MODES_EACH * count),
             merging: Vec::with_capacity(count),
+            bodies: Vec::with_capacity(count),
             colliding: Vec::with_capacity(count),
             last: Vec::new(),
             in_vain: Vec::with_capacity(4 * count),
@@ -103,6 +116,7 @@ impl Candidates {
         self.members.clear();
         self.modes.clear();
         self.merging.clear();
+        self.bodies.clear();
         self.colliding.clear();
         self.last.clear();
         self.in_vain.clear();
@@ -217,7 +231,6 @@ impl Candidates {
             misfit,
             worst_sigma,
             log_density,
-            reach_m,
             first_member: self.members.len(),
             members: group.len(),
             first_mode: self.modes.len(),
@@ -226,40 +239,52 @@ impl Candidates {
         });
         self.members.extend_from_slice(group);
         self.modes.extend_from_slice(modes);
-        let own = self.all.len() - 1;
-        let Self { all, members, colliding, .. } = self;
-        let is_apart = |other: &Candidate| {
-            let others = &members[other.first_member..][..other.members];
+        self.note_collisions(group, reach_m);
+    }
+
+    /// Notes which candidates of several observations collide with the one of these that was added last. One spot alone does not tell where its neighbour is.
+    fn note_collisions(&mut self, group: &[usize], reach_m: f64) {
+        let Self { all, members, bodies, colliding, .. } = self;
+        let candidate = all.len() - 1;
+        let Some(Position { mean_m, covariance_m2 }) = all[candidate].position.filter(|_| group.len() > 1)
+        else {
+            return;
+        };
+        let ahead = *all[candidate].bearing.vector();
+        let variance_m2 = ahead.dot(&(covariance_m2 * ahead));
+        let own = Body { candidate, at_m: mean_m, variance_m2, reach_m };
+        let is_apart = |other: usize| {
+            let Candidate { first_member, members: count, .. } = all[other];
+            let others = &members[first_member..][..count];
             group.iter().all(|spot| !others.contains(spot))
         };
-        let before = all[..own].iter().enumerate();
-        let there = before.filter(|(_, other)| are_in_one_place(&all[own], other) && is_apart(other));
-        colliding.extend(there.map(|(other, _)| [other, own]));
+        let there = bodies.iter().filter(|other| own.is_among(other, &ahead) && is_apart(other.candidate));
+        colliding.extend(there.map(|other| [other.candidate, candidate]));
+        bodies.push(own);
     }
 }
 
-/// Whether the middle of one candidate is more likely than not among the markers of the other, where no vehicle can be. One spot alone does not tell where its
-/// neighbour is.
-fn are_in_one_place(a: &Candidate, b: &Candidate) -> bool {
-    let (Some(at), Some(other)) = (a.position, b.position) else { return false };
-    let gap_m = other.mean_m - at.mean_m;
-    let least_m = a.reach_m.max(b.reach_m);
-    if gap_m.norm_squared() >= least_m * least_m || a.members < 2 || b.members < 2 {
-        return false;
+impl Body {
+    /// Whether the middle of either is more likely than not among the markers of the other, where no vehicle can be, seen in this direction.
+    fn is_among(&self, other: &Self, ahead: &Vector3<f64>) -> bool {
+        let gap_m = other.at_m - self.at_m;
+        let reach_m = self.reach_m.max(other.reach_m);
+        let room_m2 = reach_m * reach_m - gap_m.norm_squared();
+        if room_m2 <= 0.0 {
+            return false;
+        }
+        // Across the line of sight they are where they are seen.
+        let along_m = gap_m.dot(ahead);
+        let room_m = (room_m2 + along_m * along_m).sqrt();
+        let sigma_m = (self.variance_m2 + other.variance_m2).sqrt().max(1e-9);
+        let below = |limit_m: f64| normal::below((limit_m - along_m) / sigma_m);
+        below(room_m) - below(-room_m) > 0.5
     }
-    // Across the line of sight they are where they are seen.
-    let ahead = a.bearing.vector();
-    let along_m = gap_m.dot(ahead);
-    let across_m2 = gap_m.norm_squared() - along_m * along_m;
-    let room_m = (least_m * least_m - across_m2).max(0.0).sqrt();
-    let sigma_m = ahead.dot(&((at.covariance_m2 + other.covariance_m2) * ahead)).sqrt().max(1e-9);
-    let below = |limit_m: f64| normal::below((limit_m - along_m) / sigma_m);
-    below(room_m) - below(-room_m) > 0.5
 }
 
 #[cfg(test)]
 mod tests {
-    use nalgebra::{Matrix3, Vector3};
+    use nalgebra::Matrix3;
 
     use super::*;
     use crate::ranging::Interval;

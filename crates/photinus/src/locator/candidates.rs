@@ -4,13 +4,14 @@ use alloc::vec::Vec;
 
 use nalgebra::Vector3;
 
+use super::clutter::LIGHT_RANGE;
 use super::context::Context;
 use super::neighbour::{Distance, Orientation, Position};
 use crate::camera::Bearing;
 #[cfg(not(feature = "std"))]
 use crate::float::Float as _;
 use crate::normal;
-use crate::pose::{Misfit, Mode};
+use crate::pose::{LogLight, Misfit, Mode};
 
 /// Modes that a candidate has at most, or nearly.
 const MODES_EACH: usize = 32;
@@ -19,6 +20,8 @@ const CLEAR_GAIN: f64 = 12.0;
 /// ... whose misfit is no more than this, in sigma of any one observation, and no rarer than that as a whole.
 const CLEAR_SIGMAS: f64 = 5.0;
 const CLEAR_P_VALUE: f64 = 0.01;
+/// The share of spots whose light is not that of their markers, however much these differ: any light then is as likely.
+const ODD_LIGHT: f64 = 0.02;
 
 /// Observations that may be one neighbour, and what it then is.
 #[derive(Clone, Debug)]
@@ -63,8 +66,18 @@ pub(super) struct Merging {
     pub(super) spot: usize,
     pub(super) candidate: usize,
     pub(super) probability: f64,
-    /// Logarithm of the density of the spot if two markers are in it: per sr and per unit of the logarithm of light.
-    pub(super) log_density: f64,
+    /// Logarithm of the density of the spot's place if two markers are in it, per sr.
+    pub(super) place_log_density: f64,
+    /// The spot's light, and what the marker adds to it, where light is used.
+    pub(super) lights: Option<(LogLight, MergingLight)>,
+}
+
+/// The light that a marker adds to a spot.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct MergingLight {
+    pub(super) light: f64,
+    /// Variance of its logarithm.
+    pub(super) variance: f64,
 }
 
 /// Where a candidate's vehicle would be.
@@ -160,9 +173,15 @@ impl Candidates {
     }
 
     /// Notes that a marker of the candidate that was added last may be part of a spot that is not its own.
-    pub(super) fn merge(&mut self, spot: usize, probability: f64, log_density: f64) {
+    pub(super) fn merge(
+        &mut self,
+        spot: usize,
+        probability: f64,
+        place_log_density: f64,
+        lights: Option<(LogLight, MergingLight)>,
+    ) {
         let candidate = self.all.len() - 1;
-        self.merging.push(Merging { spot, candidate, probability, log_density });
+        self.merging.push(Merging { spot, candidate, probability, place_log_density, lights });
     }
 
     /// The candidates of just these observations, ascending: one of each kind at most.
@@ -264,6 +283,26 @@ impl Candidates {
     }
 }
 
+impl Merging {
+    /// Logarithm of how likely the spot is where and as bright as it is, for markers of these two candidates being in it: their lights add up.
+    pub(super) fn log_density_with(&self, other: &Self) -> f64 {
+        let log_light = match (self.lights, other.lights) {
+            (Some((seen, own)), Some((_, others))) => {
+                let both = own.light + others.light;
+                let [own, others] = [own, others].map(|part| {
+                    let share = part.light / both;
+                    share * share * part.variance
+                });
+                let sigma = (seen.sigma * seen.sigma + own + others).sqrt();
+                let off = (seen.value - libm::log(both)) / sigma;
+                libm::log((1.0 - ODD_LIGHT) * normal::density(off, sigma) + ODD_LIGHT / LIGHT_RANGE)
+            }
+            _ => 0.0,
+        };
+        libm::log(self.probability * other.probability) + self.place_log_density + log_light
+    }
+}
+
 impl Body {
     /// Whether the middle of either is more likely than not among the markers of the other, where no vehicle can be, seen in this direction.
     fn is_among(&self, other: &Self, ahead: &Vector3<f64>) -> bool {
@@ -329,5 +368,38 @@ mod tests {
             assert_eq!(collide(&[3, 4], [1.0 + gap_m, 2.0, 7.0], 0.1), is_there, "across, {gap_m} m");
             assert_eq!(collide(&[3, 4], [1.0, 2.0, 7.0 + gap_m], 0.1), is_there, "along, {gap_m} m");
         }
+    }
+
+    /// What a marker of light 2 and one of 6 make of a spot of this light, their variances being these.
+    fn together(seen: f64, variances: [f64; 2]) -> f64 {
+        let merging = |light: f64, variance: f64| Merging {
+            spot: 0,
+            candidate: 0,
+            probability: 0.5,
+            place_log_density: 3.0,
+            lights: Some((LogLight { value: libm::log(seen), sigma: 0.1 }, MergingLight { light, variance })),
+        };
+        merging(2.0, variances[0]).log_density_with(&merging(6.0, variances[1]))
+    }
+
+    #[test]
+    fn lights_of_two_markers_in_a_spot_add_up() {
+        // By hand: a standard deviation of the sum of sqrt(2^2 0.04 + 6^2 0.09) / 8.
+        let sigma = (0.01_f64 + (4.0 * 0.04 + 36.0 * 0.09) / 64.0).sqrt();
+        let density = 0.98 * 0.25 * libm::exp(3.0) / (normal::ROOT_OF_TAU * sigma);
+        assert!((together(8.0, [0.04, 0.09]) - libm::log(density)).abs() < 2e-2);
+        // No other light is likelier, and one that fits neither is as likely as any.
+        for seen in [1.0, 2.0, 4.0, 6.0, 7.0, 9.0, 16.0] {
+            assert!(together(seen, [0.04, 0.09]) < together(8.0, [0.04, 0.09]));
+        }
+        assert!((together(1e3, [0.04, 0.09]) - together(1e6, [0.04, 0.09])).abs() < 1e-9);
+        // The brighter one's doubt counts for more.
+        assert!(together(12.0, [0.04, 0.25]) > together(12.0, [0.25, 0.04]));
+    }
+
+    #[test]
+    fn where_light_is_not_used_any_will_do() {
+        let blind = Merging { spot: 0, candidate: 0, probability: 0.5, place_log_density: 3.0, lights: None };
+        assert!((blind.log_density_with(&blind) - (libm::log(0.25) + 3.0)).abs() < 1e-12);
     }
 }

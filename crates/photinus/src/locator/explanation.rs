@@ -197,11 +197,11 @@ impl Explanation {
         merging.extend_from_slice(candidates.merging());
         merging.sort_unstable_by_key(|own| (own.spot, own.candidate));
         shared.clear();
-        for (place, &Merging { spot, candidate, probability, log_density }) in merging.iter().enumerate() {
+        for (place, one) in merging.iter().enumerate() {
+            let Merging { spot, candidate, .. } = *one;
             for other in merging[place + 1..].iter().take_while(|other| other.spot == spot) {
                 let [own, others] = [candidate, other.candidate].map(|index| candidates.members(index));
-                let both =
-                    libm::log(probability * other.probability) + log_density - clutter_log_density[spot];
+                let both = one.log_density_with(other) - clutter_log_density[spot];
                 let gain = gains[candidate] + gains[other.candidate] + both;
                 let is_apart = own.iter().all(|member| !others.contains(member));
                 if both > 0.0 && gain > 0.0 && is_apart && !candidates.collide(candidate, other.candidate) {
@@ -519,7 +519,7 @@ mod tests {
             for &(_, spot, probability) in
                 merging.iter().filter(|own| own.0 == index && !members.contains(&own.1))
             {
-                candidates.merge(spot, probability, MERGED);
+                candidates.merge(spot, probability, MERGED, None);
             }
         }
         candidates

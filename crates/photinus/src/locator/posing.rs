@@ -10,7 +10,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::Sighting;
 use super::blinking::lit;
-use super::candidates::{Candidates, Told};
+use super::candidates::{Candidates, MergingLight, Told};
 use super::context::Context;
 use super::grouping::CLEAR_SPOTS;
 use super::matching::Matcher;
@@ -21,8 +21,8 @@ use crate::camera::Bearing;
 #[cfg(not(feature = "std"))]
 use crate::float::Float as _;
 use crate::pose::{
-    self, Estimator, Hypotheses, Known, Mode, Observation, POWER_RANGE, Posterior, SettingsError, Summary,
-    Visible, merged_into,
+    self, Estimator, Hypotheses, Known, Mode, Observation, POWER_RANGE, Part, Posterior, SettingsError,
+    Summary, Visible, merged_into,
 };
 use crate::ranging::Interval;
 
@@ -33,8 +33,6 @@ const MOST_POWER_NATS: f64 = 12.0;
 
 /// A marker that is less likely than this part of a spot is not.
 const LEAST_MERGED: f64 = 0.02;
-/// How dense the light of a spot is in which markers of two neighbours are, per unit of its logarithm: either may be the brighter one.
-const MERGED_LIGHT: f64 = 0.4;
 
 /// Over this much of the field the error of a calibration changes by itself.
 const CALIBRATION_LENGTH_RAD: f64 = 0.5;
@@ -51,6 +49,8 @@ pub(super) struct Poser {
     observations: Vec<Observation>,
     pairs: Pairs,
     scale_sigma: f64,
+    unit_sigma: f64,
+    lobe_sigma: f64,
     lit: Vec<f64>,
     within: Vec<usize>,
     others: Vec<Bearing>,
@@ -75,6 +75,8 @@ impl Poser {
             observations: Vec::with_capacity(airframe.markers().len()),
             pairs: Pairs::new(airframe),
             scale_sigma: settings.scale_sigma,
+            unit_sigma: settings.unit_sigma,
+            lobe_sigma: settings.lobe_sigma,
             lit: lit(airframe),
             within: Vec::with_capacity(airframe.markers().len()),
             others: Vec::with_capacity(512),
@@ -206,19 +208,47 @@ impl Poser {
             reach_m,
         };
         candidates.push(group, modes, told);
-        self.tell_merging(context, modes, candidates);
+        self.tell_merging(context, modes, *log_power, candidates);
     }
 
-    /// Tells which of the observations beside the candidate that was added last a marker of it may be part of.
-    fn tell_merging(&self, context: &Context<'_>, modes: &[Mode], candidates: &mut Candidates) {
+    /// Tells which of the observations beside the candidate that was added last a marker of it may be part of, and with how much light.
+    fn tell_merging(
+        &self,
+        context: &Context<'_>,
+        modes: &[Mode],
+        log_power: Option<f64>,
+        candidates: &mut Candidates,
+    ) {
+        let Some(best) = modes.first() else { return };
         for (bearing, &spot) in self.others.iter().zip(&self.beside) {
-            let Sighting { resolution_rad, log_light, .. } = context.sightings[spot];
-            let of = |mode: &Mode| merged_into(&self.airframe, &mode.pose, bearing.vector(), resolution_rad);
-            let probability = modes.iter().map(|mode| mode.weight * of(mode)).sum::<f64>();
+            let resolution_rad = context.sightings[spot].resolution_rad;
+            let [mut probability, mut first, mut second, mut variance] = [0.0; 4];
+            for mode in modes {
+                let part = merged_into(&self.airframe, &mode.pose, bearing.vector(), resolution_rad);
+                let Some(Part { probability: merged, intensity, range2_m2 }) = part else { continue };
+                let share = mode.weight * merged;
+                // The farther away the more powerful are the LEDs whose light is seen.
+                let times = mode.pose.position_m.norm_squared() / best.pose.position_m.norm_squared();
+                let light = times * intensity / range2_m2;
+                let lobe = self.lobe_sigma / intensity.max(1e-3);
+                probability += share;
+                first += share * light;
+                second += share * light * light;
+                variance += share * lobe * lobe;
+            }
             if probability > LEAST_MERGED {
-                let light = if self.with_light && log_light.is_some() { MERGED_LIGHT } else { 1.0 };
-                let log_density = libm::log(light / (PI * resolution_rad * resolution_rad));
-                candidates.merge(spot, probability, log_density);
+                let mean = first / probability;
+                let over_modes = (second / probability / (mean * mean) - 1.0).max(0.0);
+                // Units of LEDs differ, its own and those that tell their power.
+                let units = 2.0 * self.unit_sigma * self.unit_sigma;
+                let adds =
+                    log_power.filter(|_| self.with_light && mean > 0.0).map(|log_power| MergingLight {
+                        light: libm::exp(log_power) * mean,
+                        variance: units + variance / probability + over_modes,
+                    });
+                let lights = context.sightings[spot].log_light.zip(adds);
+                let place_log_density = -libm::log(PI * resolution_rad * resolution_rad);
+                candidates.merge(spot, probability, place_log_density, lights);
             }
         }
     }

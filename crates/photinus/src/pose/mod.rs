@@ -60,4 +60,4 @@ pub(crate) use problem::Normal;
 pub use problem::Pose;
 pub use settings::{Settings, SettingsError};
 pub use symmetry::Symmetry;
-pub(crate) use visibility::merged_into;
+pub(crate) use visibility::{Part, merged_into};

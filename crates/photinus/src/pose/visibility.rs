@@ -27,17 +27,35 @@ fn direction(pose: &Pose, marker: &Marker) -> Vector3<f64> {
     (pose.camera_from_body * marker.position_m + pose.position_m).normalize()
 }
 
-/// How likely a marker of an airframe at a pose is part of a spot in this direction, which is not its own: that it shines, and that it is so near.
-pub(crate) fn merged_into(airframe: &Airframe, pose: &Pose, spot: &Vector3<f64>, resolution_rad: f64) -> f64 {
+/// A marker that may be part of a spot that is not its own.
+pub(crate) struct Part {
+    /// How likely it is: that it shines, and that it is so near.
+    pub(crate) probability: f64,
+    /// Its light, 1 being one LED straight ahead.
+    pub(crate) intensity: f64,
+    /// From the camera, m^2.
+    pub(crate) range2_m2: f64,
+}
+
+/// Which marker of an airframe at a pose is the likeliest to be part of a spot in this direction, which is not its own.
+pub(crate) fn merged_into(
+    airframe: &Airframe,
+    pose: &Pose,
+    spot: &Vector3<f64>,
+    resolution_rad: f64,
+) -> Option<Part> {
     let camera_m = pose.camera_in_body_m();
-    let each = airframe.markers().iter().enumerate().map(|(marker, own)| {
+    let each = airframe.markers().iter().enumerate().filter_map(|(marker, own)| {
         let gap_rad2 = (direction(pose, own) - spot).norm_squared();
-        match one_spot(gap_rad2 / (resolution_rad * resolution_rad)) {
-            0.0 => 0.0,
-            merged => merged * probability(odds(airframe.intensity(marker, &camera_m) / FAINTEST_SHARE)),
+        let merged = one_spot(gap_rad2 / (resolution_rad * resolution_rad));
+        if merged == 0.0 {
+            return None;
         }
+        let intensity = airframe.intensity(marker, &camera_m);
+        let probability = merged * probability(odds(intensity / FAINTEST_SHARE));
+        Some(Part { probability, intensity, range2_m2: (camera_m - own.position_m).norm_squared() })
     });
-    each.fold(0.0, f64::max)
+    each.max_by(|a, b| a.probability.total_cmp(&b.probability))
 }
 
 impl Problem<'_> {

@@ -582,9 +582,11 @@ mod tests {
             let clutter = [density; SPOTS];
             let mut choices: Vec<(Vec<usize>, Vec<usize>, f64)> = Vec::new();
             let gain = |index: usize| of[index].1 - density * of[index].0.len() as f64;
-            // What is no likelier than clutter, or one spot, claims no place.
-            let claims = |index: usize| gain(index) > 0.0 && of[index].0.len() > 1;
-            let collide = |a: usize, b: usize| claims(a) && claims(b) && (places[a] - places[b]).abs() < ROOM_M;
+            let are_in_one_place = |a: usize, b: usize| {
+                [a, b].iter().all(|&index| of[index].0.len() > 1) && (places[a] - places[b]).abs() < ROOM_M
+            };
+            // What is no likelier than clutter claims no place.
+            let collide = |a: usize, b: usize| are_in_one_place(a, b) && gain(a) > 0.0 && gain(b) > 0.0;
             for (index, (own, _)) in of.iter().enumerate() {
                 choices.push((own.clone(), vec![index], libm::exp(gain(index))));
             }
@@ -593,7 +595,7 @@ mod tests {
                     let (a, b) = (first.candidate, second.candidate);
                     let both = libm::log(first.probability * second.probability) + MERGED - density;
                     let is_apart = a != b && of[a].0.iter().all(|spot| !of[b].0.contains(spot));
-                    if is_apart && !((places[a] - places[b]).abs() < ROOM_M && of[a].0.len() > 1 && of[b].0.len() > 1) && both > 0.0 && gain(a) + gain(b) + both > 0.0 {
+                    if is_apart && !are_in_one_place(a, b) && both > 0.0 && gain(a) + gain(b) + both > 0.0 {
                         let own = [&of[a].0[..], &of[b].0, &[first.spot]].concat();
                         choices.push((own, vec![a, b], libm::exp(gain(a) + gain(b) + both)));
                     }

@@ -4,13 +4,14 @@
 //! of their splines, `correction.rs`), held back by what is believed beforehand: that of the whole image is nearly round and
 //! smooth, those of the nodes differ from it as much as the pixels make likely. Where the lens is even they therefore fall back on it.
 
+use nalgebra::{DMatrix, DVector};
 use photinus::optics::{OpticsError, PointSpread, SpreadField};
 
 use super::correction::{Belief, Correction};
 use super::noise::Noise;
 use super::profile;
 use super::spot::Spot;
-use super::table::{COUNT, SIDE, Table, radius_px};
+use super::table::{COUNT, PER_PX, SIDE, Table, radius_px, weights};
 
 /// The table of the whole image differs from a round one by this share, and relative changes bend by this from one sample to the
 /// next but one.
@@ -67,6 +68,11 @@ impl Field {
             (share.max(0.0) as usize).min(self.zones[axis] - 1)
         };
         &self.of_zones[zone(v, 1) * self.zones[0] + zone(u, 0)]
+    }
+
+    /// Whether a spot would have no pixel that reads `full_from`, wherever in a pixel it were.
+    pub(super) fn is_never_full(&self, spot: &Spot<'_>, full_from: u8) -> bool {
+        spot.level + spot.light * summit(self.at(spot.place_px())) < f64::from(full_from)
     }
 
     /// Learns what is the same all over the image from what the fits of spots leave.
@@ -176,25 +182,32 @@ fn summit(table: &Table) -> f64 {
     table.samples.iter().copied().fold(0.0, f64::max)
 }
 
-/// The table's mean at every radius.
+/// The table's profile in every direction: the cubic spline over the radius that fits the samples best.
 fn round(table: &Table) -> Table {
-    const WIDTH_PX: f64 = 0.25;
-    let at = |sample: usize| {
-        let ring = radius_px(sample) / WIDTH_PX;
-        [(ring as usize, 1.0 - ring.fract()), (ring as usize + 1, ring.fract())]
+    const KNOT_PX: f64 = 1.0 / PER_PX as f64;
+    let last = radius_px(0) / KNOT_PX;
+    let knots = last as usize + 4;
+    // An even function of the radius: what lies before the point is what lies behind it.
+    let row = |sample: usize| {
+        let at = radius_px(sample) / KNOT_PX;
+        let (values, _) = weights(at.fract());
+        let first = at as usize;
+        std::array::from_fn::<_, 4, _>(|k| ((first + k).abs_diff(1), values[k]))
     };
-    let rings = (SIDE as f64 / WIDTH_PX) as usize;
-    let (mut sums, mut weights) = (vec![0.0; rings], vec![0.0; rings]);
+    let mut normal = DMatrix::<f64>::zeros(knots, knots);
+    let mut right = DVector::<f64>::zeros(knots);
     for (sample, share) in table.samples.iter().enumerate() {
-        for (ring, near) in at(sample) {
-            sums[ring] += near * share;
-            weights[ring] += near;
+        for (knot, weight) in row(sample) {
+            right[knot] += weight * share;
+            for (other, beside) in row(sample) {
+                normal[(knot, other)] += weight * beside;
+            }
         }
     }
-    let mean = |sample: usize| -> f64 {
-        at(sample).iter().map(|&(ring, near)| near * sums[ring] / f64::max(weights[ring], 1e-9)).sum()
-    };
-    Table::new((0..COUNT).map(mean).collect())
+    (0..knots).for_each(|knot| normal[(knot, knot)] += 1e-6);
+    let Some(profile) = normal.cholesky().map(|factor| factor.solve(&right)) else { return table.clone() };
+    let value = |sample: usize| row(sample).iter().map(|&(knot, weight)| weight * profile[knot]).sum();
+    Table::new((0..COUNT).map(value).collect())
 }
 
 /// How large changes of each coefficient may be, if all of it may change.
@@ -211,4 +224,29 @@ fn scale(round: &Table) -> Vec<f64> {
         fade * (beside.into_iter().fold(0.0, f64::max) + faintest)
     };
     (0..COUNT).map(of).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use photinus::optics::Gaussian;
+
+    use super::*;
+
+    /// What a round table is believed to be is itself: were its profile sharper or flatter, tables would become so round by round.
+    #[test]
+    fn the_profile_of_a_round_table_is_that_table() {
+        for core_px in [0.25, 0.4, 1.0] {
+            let parts = [Gaussian { share: 0.6, sigma_px: core_px }, Gaussian { share: 0.4, sigma_px: 2.2 }];
+            let table = Table::gaussians(&parts);
+            // a pixel is a square: a table of a sharp lens is round but for that
+            let tolerance = if core_px < 0.5 { 0.05 } else { 3e-3 };
+            let (round, summit) = (round(&table), summit(&table));
+            for (sample, (found, share)) in round.samples.iter().zip(&table.samples).enumerate() {
+                assert!(
+                    (found - share).abs() < tolerance * summit,
+                    "{found} not {share} at {sample}, {core_px} px"
+                );
+            }
+        }
+    }
 }

@@ -110,7 +110,7 @@ pub fn learn(collection: &Collection) -> Result<Learned, LearnError> {
     let mut field = Field::new(start.table(), size_px, nodes);
     for round in 0..ROUNDS_WHOLE + ROUNDS_BY_NODE {
         place(&mut spots, &field, &noise, if round == 0 { 6 } else { 1 });
-        phases::even_out(&mut spots);
+        phases::even_out(&mut spots, |spot| field.is_never_full(spot, full_from));
         if round < ROUNDS_WHOLE {
             field.learn_whole(&spots, &noise);
         } else {

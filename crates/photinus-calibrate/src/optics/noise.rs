@@ -10,6 +10,14 @@ use super::window::Patch;
 /// Variance of rounding, grey levels^2.
 pub(super) const ROUNDING: f64 = 1.0 / 12.0;
 
+/// A pixel this many sigmas above 0 is not cut off there.
+const SELDOM_CUT: f64 = 4.0;
+/// Noise below this is rounding's alone, grey levels.
+const LEAST_SIGMA: f64 = 0.2;
+/// A pixel that is nearly always cut off tells something, and varies, by no less than this.
+const LEAST_SLOPE: f64 = 1e-2;
+const LEAST_VARIANCE: f64 = 0.1;
+
 /// What a pixel makes of light: variance = darkness + shot * light + (shape * light)^2, and how its response bends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Noise {
@@ -33,6 +41,46 @@ impl Noise {
     /// The light that a level above darkness stands for, and how it grows with that.
     pub(super) fn straightened(&self, above_dn: f64) -> (f64, f64) {
         Response { bend_per_dn: Measured { value: self.bend, sigma: 0.0 } }.straightened(above_dn)
+    }
+}
+
+/// What a pixel reads that is sometimes cut off at 0.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct CutOff {
+    pub(super) mean: f64,
+    /// How the mean grows with the level.
+    pub(super) slope: f64,
+    pub(super) variance: f64,
+}
+
+impl Noise {
+    /// What a pixel of this level reads, rounded and cut off at 0; `None` where it is hardly ever cut off.
+    pub(super) fn cut_off(&self, level: f64, variance: f64) -> Option<CutOff> {
+        let sigma = (variance - ROUNDING).max(LEAST_SIGMA * LEAST_SIGMA).sqrt();
+        if level > SELDOM_CUT * sigma + 0.5 {
+            return None;
+        }
+        let level = level.max(-SELDOM_CUT * sigma);
+        // A level of -j and less is read by so many: each is counted j times for the mean, j^2 times for the square.
+        let (mut mean, mut slope, mut square) = (level, 1.0, level * level + sigma * sigma + ROUNDING);
+        let step = (0.5 * sigma).floor().max(1.0);
+        let mut below = 0.5 * step;
+        loop {
+            let t = -(below + level) / sigma;
+            if t < -SELDOM_CUT {
+                break;
+            }
+            let share = 0.5 * libm::erfc(-t * std::f64::consts::FRAC_1_SQRT_2);
+            mean += step * share;
+            slope -= step * libm::exp(-0.5 * t * t) / (sigma * (std::f64::consts::TAU).sqrt());
+            square -= 2.0 * step * below * share;
+            below += step;
+        }
+        Some(CutOff {
+            mean,
+            slope: slope.max(LEAST_SLOPE),
+            variance: (square - mean * mean).max(LEAST_VARIANCE * variance),
+        })
     }
 }
 
@@ -194,6 +242,42 @@ mod tests {
             assert!((found.value / sigma - 1.0).abs() < 0.03, "{found:?} not {sigma} at {level}");
             assert!(found.sigma < 0.05 * sigma, "{found:?}");
         }
+    }
+
+    /// Against pixels drawn, rounded and cut off one by one.
+    #[test]
+    fn what_is_read_near_0_is_what_pixels_read_on_average() {
+        let mut random = Pcg64::new(3, 7);
+        for sigma in [0.5, 1.0, 3.0] {
+            for level in [-1.5 * sigma, -0.3, 0.0, 0.4, 1.0, 2.5 * sigma] {
+                let noise = Noise { dark: sigma * sigma + ROUNDING, shot: 0.0, shape: 0.0, bend: 0.0 };
+                let mut mean_near = |level: f64| {
+                    let draws = 200_000;
+                    let (mut sum, mut squares) = (0.0, 0.0);
+                    for _ in 0..draws {
+                        let normal: f64 = StandardNormal.sample(&mut random);
+                        let read = (level + sigma * normal).round().max(0.0);
+                        (sum, squares) = (sum + read, squares + read * read);
+                    }
+                    let mean = sum / f64::from(draws);
+                    (mean, squares / f64::from(draws) - mean * mean)
+                };
+                let read = noise.cut_off(level, noise.dark).unwrap();
+                let (mean, variance) = mean_near(level);
+                assert!((read.mean - mean).abs() < 0.015 * sigma, "{read:?} not {mean}, {level} +- {sigma}");
+                let least = variance.max(LEAST_VARIANCE * noise.dark);
+                assert!(
+                    (read.variance / least - 1.0).abs() < 0.08,
+                    "{read:?} not {variance}, {level} +- {sigma}"
+                );
+                let step = 0.25 * sigma;
+                let slope = (mean_near(level + step).0 - mean_near(level - step).0) / (2.0 * step);
+                assert!((read.slope - slope).abs() < 0.06, "{read:?} not {slope}, {level} +- {sigma}");
+            }
+        }
+        let noise = Noise { dark: 1.0, shot: 0.0, shape: 0.0, bend: 0.0 };
+        assert!(noise.cut_off(6.0, 1.0).is_none(), "nothing is cut off there");
+        assert!(noise.cut_off(-1e9, 1.0).unwrap().mean < 1e-3, "and all of it here");
     }
 
     #[test]

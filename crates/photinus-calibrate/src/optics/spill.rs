@@ -71,36 +71,30 @@ pub(super) fn learn(spots: &[Spot<'_>], field: &Field, noise: &Noise, pile: &Pil
     for well in WELLS {
         for share in SHARES {
             let tried = Tried { share, well };
-            let cost: f64 = model.costs(&mut fulls, tried).iter().sum();
+            let cost = sum(&model.costs(&mut fulls, tried));
             if cost < best.0 {
                 best = (cost, tried);
             }
         }
     }
-    let Tried { mut share, mut well } = best.1;
-    let sum = |fulls: &[Full<'_, '_>], tried: Tried| -> f64 {
-        model.costs(&mut fulls.to_vec(), tried).iter().sum()
-    };
+    let mut found = best.1;
     for _ in 0..2 {
-        model.costs(&mut fulls, Tried { share, well });
-        share = least(
-            |share| sum(&fulls, Tried { share, well }),
-            (share - 0.35).max(0.0),
-            (share + 0.35).min(1.0),
+        model.costs(&mut fulls, found);
+        // A larger spill from a larger well is much like a smaller one from a smaller: each share is tried with the well that goes with it.
+        let share = least(
+            |share| sum(&model.with_best_well(&fulls, Tried { share, ..found }).0),
+            (found.share - 0.35).max(0.0),
+            (found.share + 0.35).min(1.0),
             7,
         );
-        if well > 1.0 {
-            let log = libm::log(well);
-            let at = |log: f64| Tried { share, well: libm::exp(log) };
-            well = libm::exp(least(|log| sum(&fulls, at(log)), (log - 0.5).max(0.0), log + 0.5, 6));
-        }
+        found = model.with_best_well(&fulls, Tried { share, ..found }).1;
     }
-    model.costs(&mut fulls, Tried { share, well });
-    if !model.is_told(&fulls, Tried { share, well }) {
-        (share, well) = (NO_SPILL.share, NO_SPILL.well);
+    model.costs(&mut fulls, found);
+    if !model.is_told(&fulls, found) {
+        found = NO_SPILL;
         model.costs(&mut fulls, NO_SPILL);
     }
-    let [share, well] = model.jackknife(&fulls, Tried { share, well });
+    let [share, well] = model.jackknife(&fulls, found);
     let spills = share.value > 2.0 * share.sigma;
     let capacity_dn = pile.level_dn * well.value;
     let is_larger = spills && well.value > 1.05;
@@ -133,6 +127,18 @@ impl Model<'_> {
     /// How badly each spot is explained.
     fn costs(&self, fulls: &mut [Full<'_, '_>], tried: Tried) -> Vec<f64> {
         fulls.iter_mut().map(|full| self.fit(full, tried, 4)).collect()
+    }
+
+    /// How badly each spot is explained with a share and the well that goes with it best, tried near the one it has.
+    fn with_best_well(&self, fulls: &[Full<'_, '_>], tried: Tried) -> (Vec<f64>, Tried) {
+        let costs = |tried: Tried| self.costs(&mut fulls.to_vec(), tried);
+        if tried.well <= 1.0 {
+            return (costs(tried), tried);
+        }
+        let log = libm::log(tried.well);
+        let at = |log: f64| Tried { well: libm::exp(log), ..tried };
+        let log = least(|log| sum(&costs(at(log))), (log - 0.3).max(0.0), log + 0.3, 5);
+        (costs(at(log)), at(log))
     }
 
     /// Levenberg's steps for place, logarithm of light, and level; the cost where they end.
@@ -213,10 +219,10 @@ impl Model<'_> {
         let of = |tried: Tried| self.costs(&mut fulls.to_vec(), tried);
         let middle = of(found);
         let parabola = |low: &[f64], high: &[f64], step: f64, part: usize| {
-            let sum = |costs: &[f64]| -> f64 {
+            let rest = |costs: &[f64]| -> f64 {
                 costs.iter().enumerate().filter(|(k, _)| k % PARTS != part).map(|(_, cost)| cost).sum()
             };
-            let [low, middle, high] = [sum(low), sum(&middle), sum(high)];
+            let [low, middle, high] = [rest(low), rest(&middle), rest(high)];
             let bend = low + high - 2.0 * middle;
             if bend > 0.0 { (0.5 * step * (low - high) / bend).clamp(-2.0 * step, 2.0 * step) } else { 0.0 }
         };
@@ -231,18 +237,26 @@ impl Model<'_> {
         };
         const STEP: f64 = 0.06;
         let share = found.share.clamp(STEP, 1.0 - STEP);
-        let at = |off: f64| of(Tried { share: (found.share + off).clamp(0.0, 1.0), ..found });
+        let at = |off: f64| {
+            let share = (found.share + off).clamp(0.0, 1.0);
+            self.with_best_well(fulls, Tried { share, ..found }).0
+        };
         let spill = if (share - found.share).abs() > 0.5 * STEP {
             // at an end of what can be: as sure as the slope there allows
             let inward = if found.share < 0.5 { at(STEP) } else { at(-STEP) };
-            let rise: f64 = inward.iter().sum::<f64>() - middle.iter().sum::<f64>();
-            let scale = middle.iter().sum::<f64>() / (middle.len() * (SIDE * SIDE - 4)) as f64;
+            let rise: f64 = sum(&inward) - sum(&middle);
+            let scale = sum(&middle) / (middle.len() * (SIDE * SIDE - 4)) as f64;
             let sigma = STEP * (scale.max(1.0) / rise.max(1e-3)).sqrt();
             Measured { value: found.share, sigma: sigma.min(0.5) }
         } else {
             measured(found.share, at(-STEP), at(STEP), STEP)
         };
-        let times = |factor: f64| of(Tried { well: (found.well * factor).max(1.0), ..found });
+        let times = |factor: f64| {
+            let well = (found.well * factor).max(1.0);
+            let cost = |share: f64| sum(&of(Tried { share, well }));
+            let share = least(cost, (found.share - 0.3).max(0.0), (found.share + 0.3).min(1.0), 5);
+            of(Tried { share, well })
+        };
         let well = if found.well > 1.05 {
             measured(found.well, times(0.95), times(1.05), 0.05 * found.well)
         } else {
@@ -281,6 +295,10 @@ fn overflow(charge: &mut [f64], well: f64, share: f64) {
             }
         }
     }
+}
+
+fn sum(costs: &[f64]) -> f64 {
+    costs.iter().sum()
 }
 
 fn square(left: &[f64]) -> f64 {

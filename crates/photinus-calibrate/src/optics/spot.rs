@@ -40,6 +40,8 @@ pub(super) struct Pixel {
     pub(super) jacobian: SVector<f64, 4>,
 }
 
+/// A spot with full pixels is used where the others tell its light to this share of it.
+const LIGHT_TOLD: f64 = 0.1;
 /// A pixel farther off than this many sigmas counts as so far off.
 const CLIP: f64 = 4.0;
 
@@ -81,6 +83,7 @@ impl<'a> Spot<'a> {
         steps: usize,
         shares: &mut Shares,
     ) {
+        let mut light_sigma = f64::INFINITY;
         for _ in 0..steps {
             let mut normal = SMatrix::<f64, 4, 4>::zeros();
             let mut right = SVector::<f64, 4>::zeros();
@@ -95,6 +98,7 @@ impl<'a> Spot<'a> {
                 return;
             };
             let step = factor.solve(&right);
+            light_sigma = factor.inverse()[(2, 2)].max(0.0).sqrt();
             self.u = (self.u + step[0].clamp(-0.4, 0.4)).clamp(-FARTHEST_PX, FARTHEST_PX);
             self.v = (self.v + step[1].clamp(-0.4, 0.4)).clamp(-FARTHEST_PX, FARTHEST_PX);
             self.light = (self.light + step[2]).max(0.1 * self.light.abs().max(1.0));
@@ -107,7 +111,8 @@ impl<'a> Spot<'a> {
         });
         self.misfit = squares / f64::max(count - 4.0, 1.0);
         let is_inside = self.u.abs().max(self.v.abs()) < 0.95 * FARTHEST_PX;
-        self.is_used = is_inside && self.misfit.is_finite() && self.light.is_finite();
+        let is_told = self.is_linear() || light_sigma < LIGHT_TOLD * self.light;
+        self.is_used = is_inside && is_told && self.misfit.is_finite() && self.light.is_finite();
     }
 
     /// Hands over every pixel within reach that tells its light.
@@ -127,18 +132,23 @@ impl<'a> Spot<'a> {
             }
             let share = shares.at(column, row);
             let light = self.light * share.value;
-            let expected = self.level + light;
-            if value == 0 && expected < 0.5 {
-                continue; // darkness below the clip
-            }
-            let (seen, slope) = noise.straightened(f64::from(value) - self.level);
-            let steeper = noise.dark * (slope * slope - 1.0);
+            let (left, variance, slope) = match noise.cut_off(self.level + light, noise.variance(light)) {
+                Some(read) => (
+                    (f64::from(value) - read.mean) / read.slope,
+                    read.variance / (read.slope * read.slope),
+                    1.0,
+                ),
+                None => {
+                    let (seen, slope) = noise.straightened(f64::from(value) - self.level);
+                    (seen - light, noise.variance(light) + noise.dark * (slope * slope - 1.0), slope)
+                }
+            };
             take(&Pixel {
                 column,
                 row,
                 light,
-                left: seen - light,
-                weight: 1.0 / (noise.variance(light) + steeper),
+                left,
+                weight: 1.0 / variance,
                 jacobian: SVector::from([
                     self.light * share.by_u,
                     self.light * share.by_v,

@@ -20,6 +20,8 @@ use crate::calibrated::{calibrated, to_centroids};
 use crate::light::{Fallen, Lights, fallen};
 use crate::priors::{Build, Drawing, known_gravity, world_from_camera};
 
+/// Distances of the vehicles whose LEDs tell the optics.
+const OPTICS_RANGES_M: [f64; 2] = [2.0, 20.0];
 /// The first of the frames that optics are learned from.
 const OTHER_FRAMES: u64 = 1 << 32;
 /// Frames that share the places of hot pixels and lamps, and the side to which gravity is wrong, unless a row says otherwise.
@@ -167,14 +169,16 @@ impl<'a> Studio<'a> {
         Self { row, renderer: Renderer::new(view, 1) }
     }
 
-    /// The optics that so many frames tell, none of which is located.
-    fn learned(&mut self, frames: u64) -> Option<Optics> {
+    /// The optics that so many frames tell, none of which is located: of LEDs that stand alone, far enough away that not all are full.
+    fn learned(&self, frames: u64) -> Option<Optics> {
         if frames == 0 {
             return None;
         }
+        let shown = Row { airframe: airframe(6), ranges_m: OPTICS_RANGES_M, ..self.row.clone() };
+        let mut studio = Studio::new(&shown);
         let mut collection = Collection::of(&self.row.eye.camera);
         for number in OTHER_FRAMES..OTHER_FRAMES + frames {
-            let (shot, _) = self.shoot(number);
+            let (shot, _) = studio.shoot(number);
             assert!(collection.add(&shot.frame.image.view(), None), "frames of one size");
         }
         match learn(&collection) {

@@ -194,6 +194,7 @@ fn solve(
             shot: shot.unwrap_or(found[1].max(1e-5)),
             shape: found[2].max(0.0).sqrt(),
             bend: before.bend,
+            is_dark_seen: before.is_dark_seen,
         };
     }
     noise

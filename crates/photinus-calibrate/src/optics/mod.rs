@@ -108,9 +108,10 @@ pub fn learn(collection: &Collection) -> Result<Learned, LearnError> {
     let start = start::core_and_halo(&spots, &noise);
     let nodes = nodes(spots.len(), size_px);
     let mut field = Field::new(start.table(), size_px, nodes);
+    let has_full = spots.iter().any(|spot| !spot.is_linear());
     for round in 0..ROUNDS_WHOLE + ROUNDS_BY_NODE {
         place(&mut spots, &field, &noise, if round == 0 { 6 } else { 1 });
-        phases::even_out(&mut spots, |spot| field.is_never_full(spot, full_from));
+        phases::even_out(&mut spots, |spot| has_full || field.is_never_full(spot, full_from));
         if round < ROUNDS_WHOLE {
             field.learn_whole(&spots, &noise);
         } else {
@@ -205,7 +206,13 @@ fn bend(spots: &[Spot<'_>], field: &Field, noise: &Noise) -> f64 {
 
 fn first_noise(darkness: &Darkness) -> Noise {
     let read = darkness.noise_dn.map_or(READ_NOISE_BELIEVED.value, |noise| noise.value);
-    Noise { dark: read * read + ROUNDING, shot: light::SHOT_BELIEVED.value, shape: 0.02, bend: 0.0 }
+    Noise {
+        dark: read * read + ROUNDING,
+        shot: light::SHOT_BELIEVED.value,
+        shape: 0.02,
+        bend: 0.0,
+        is_dark_seen: darkness.noise_dn.is_some(),
+    }
 }
 
 /// Nodes along columns and rows that this many spots allow.

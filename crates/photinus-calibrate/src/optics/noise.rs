@@ -29,6 +29,8 @@ pub(super) struct Noise {
     pub(super) shape: f64,
     /// Bend of the response, per grey level; 0 where levels grow in proportion to light.
     pub(super) bend: f64,
+    /// Whether darkness varies by its noise; where it is all 0, how far below the cut it lies is not known, and 0 tells nothing.
+    pub(super) is_dark_seen: bool,
 }
 
 impl Noise {
@@ -54,10 +56,10 @@ pub(super) struct CutOff {
 }
 
 impl Noise {
-    /// What a pixel of this level reads, rounded and cut off at 0; `None` where it is hardly ever cut off.
+    /// What a pixel of this level reads, rounded and cut off at 0; `None` where it is hardly ever cut off, or nothing is known of darkness.
     pub(super) fn cut_off(&self, level: f64, variance: f64) -> Option<CutOff> {
         let sigma = (variance - ROUNDING).max(LEAST_SIGMA * LEAST_SIGMA).sqrt();
-        if level > SELDOM_CUT * sigma + 0.5 {
+        if !self.is_dark_seen || level > SELDOM_CUT * sigma + 0.5 {
             return None;
         }
         let level = level.max(-SELDOM_CUT * sigma);
@@ -250,7 +252,13 @@ mod tests {
         let mut random = Pcg64::new(3, 7);
         for sigma in [0.5, 1.0, 3.0] {
             for level in [-1.5 * sigma, -0.3, 0.0, 0.4, 1.0, 2.5 * sigma] {
-                let noise = Noise { dark: sigma * sigma + ROUNDING, shot: 0.0, shape: 0.0, bend: 0.0 };
+                let noise = Noise {
+                    dark: sigma * sigma + ROUNDING,
+                    shot: 0.0,
+                    shape: 0.0,
+                    bend: 0.0,
+                    is_dark_seen: true,
+                };
                 let mut mean_near = |level: f64| {
                     let draws = 200_000;
                     let (mut sum, mut squares) = (0.0, 0.0);
@@ -275,7 +283,7 @@ mod tests {
                 assert!((read.slope - slope).abs() < 0.06, "{read:?} not {slope}, {level} +- {sigma}");
             }
         }
-        let noise = Noise { dark: 1.0, shot: 0.0, shape: 0.0, bend: 0.0 };
+        let noise = Noise { dark: 1.0, shot: 0.0, shape: 0.0, bend: 0.0, is_dark_seen: true };
         assert!(noise.cut_off(6.0, 1.0).is_none(), "nothing is cut off there");
         assert!(noise.cut_off(-1e9, 1.0).unwrap().mean < 1e-3, "and all of it here");
     }

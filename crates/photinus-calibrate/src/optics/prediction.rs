@@ -5,7 +5,7 @@ use photinus::optics::{Optics, SpreadField};
 use super::choice::choose;
 use super::collect::Collection;
 use super::field::Field;
-use super::noise::{Noise, ROUNDING};
+use super::noise::{Noise, ROUNDING, darkness};
 use super::spot::Spot;
 use super::table::{Shares, Table};
 use super::{PLACE_REACH, place};
@@ -32,6 +32,7 @@ pub fn predict(optics: &Optics, collection: &Collection) -> Option<Prediction> {
         shot: sensor.shot.value,
         shape: optics.spread.shape_error(),
         bend: sensor.bent().map_or(0.0, |response| response.bend_per_dn.value),
+        is_dark_seen: darkness(&collection.patches.kept).noise_dn.is_some(),
     };
     let full_from = sensor.full_from_dn();
     let mut spots: Vec<Spot<'_>> =

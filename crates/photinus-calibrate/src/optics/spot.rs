@@ -40,6 +40,8 @@ pub(super) struct Pixel {
     pub(super) jacobian: SVector<f64, 4>,
 }
 
+/// Darkness that is cut off but for this share of its readings tells nothing.
+const LEAST_TOLD: f64 = 0.1;
 /// A spot with full pixels is used where the others tell its light to this share of it.
 const LIGHT_TOLD: f64 = 0.1;
 /// A pixel farther off than this many sigmas counts as so far off.
@@ -132,7 +134,10 @@ impl<'a> Spot<'a> {
             }
             let share = shares.at(column, row);
             let light = self.light * share.value;
-            let (left, variance, slope) = match noise.cut_off(self.level + light, noise.variance(light)) {
+            let expected = self.level + light;
+            let (left, variance, slope) = match noise.cut_off(expected, noise.variance(light)) {
+                Some(read) if value == 0 && read.slope < LEAST_TOLD => continue,
+                None if value == 0 && expected < 0.5 => continue,
                 Some(read) => (
                     (f64::from(value) - read.mean) / read.slope,
                     read.variance / (read.slope * read.slope),

@@ -25,6 +25,8 @@ const MOST_APART: f64 = 1.0;
 const LEARNED_PX: f64 = 8.0;
 /// Zones from one node to the next.
 const ZONES_PER_NODE: usize = 2;
+/// Samples of less than this share of the summit are noise more than light.
+const FAINT: f64 = 0.01;
 /// A sample counts as being of at least this share of the summit.
 const FAINTEST: f64 = 2e-4;
 
@@ -162,6 +164,20 @@ impl Field {
             }
         }
         self.of_zones = tables;
+    }
+
+    /// How far the mean of two fields is off, as a share of the light in a pixel, by how they differ: each is of spots that the other knows
+    /// nothing of.
+    pub(super) fn scatter([one, other]: &[Self; 2]) -> f64 {
+        let (mut squares, mut light, faintest) = (0.0, 0.0, FAINT * summit(&one.whole));
+        for (one, other) in one.whole.samples.iter().zip(&other.whole.samples) {
+            let mean = 0.5 * (one + other);
+            if mean > faintest {
+                squares += (one - other) * (one - other) / mean;
+                light += mean;
+            }
+        }
+        0.5 * (squares / light).sqrt()
     }
 
     /// What the method takes.

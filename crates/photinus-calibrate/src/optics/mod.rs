@@ -134,13 +134,13 @@ pub fn learn(collection: &Collection) -> Result<Learned, LearnError> {
     } else {
         &clear
     };
+    let halves = [0, 1].map(|half| {
+        let start = Field::new(start.table(), size_px, nodes);
+        field_of_half(told, start, &noise, half)
+    });
     let residuals = if told.len() < FEWEST_HALVED {
         light::residuals(told, &field, &noise)
     } else {
-        let halves = [0, 1].map(|half| {
-            let start = Field::new(start.table(), size_px, nodes);
-            field_of_half(told, start, &noise, half)
-        });
         light::free_residuals(told, &field, halves.each_ref(), &noise)
     };
     let light = light::explain(&residuals, darkness.noise_dn, &noise);
@@ -156,7 +156,9 @@ pub fn learn(collection: &Collection) -> Result<Learned, LearnError> {
         let clear = clear_of_full(&spots, &field, &light.noise, full_from);
         vignetting::learn(&clear, &field, &light.noise, camera)
     });
-    let spread = field.spread(light.noise.shape.min(1.0))?;
+    // Where spots are few, what they leave of the table that follows them says too little of how far that is off.
+    let shape_error = light.noise.shape.max(Field::scatter(&halves)).min(1.0);
+    let spread = field.spread(shape_error)?;
     let hot_pixels = standing.as_ref().map(|standing| hot_pixels(standing, &spread)).transpose()?;
     let (sensor, mut unseen) = sensor(&darkness, &light, pile.as_ref(), spill);
     let missing = [

@@ -30,35 +30,6 @@ fn predicted(folder: &str, ending: &str) -> Option<Result<Prediction, LearnError
         predict(&learned.optics, &tried_on).expect("spots")
     });
     eprintln!("{folder}: {learned:?}");
-    let (b, a) = (half(folder, ending, 0)?, half(folder, ending, 1)?);
-    match learn(&a) {
-        Ok(l) => {
-            eprintln!(
-                "SWAP {folder}: {} spots shape {:.3} shot {:?} read {:?} {:?} own {:?}",
-                l.spots,
-                l.optics.spread.shape_error(),
-                l.optics.sensor.shot,
-                l.optics.sensor.read_noise_dn,
-                predict(&l.optics, &b),
-                predict(&l.optics, &a)
-            );
-        }
-        Err(e) => eprintln!("SWAP {folder} {e}"),
-    }
-    match learn(&b) {
-        Ok(l) => {
-            eprintln!(
-                "FWD {folder}: {} spots shape {:.3} shot {:?} read {:?} {:?} own {:?}",
-                l.spots,
-                l.optics.spread.shape_error(),
-                l.optics.sensor.shot,
-                l.optics.sensor.read_noise_dn,
-                predict(&l.optics, &a),
-                predict(&l.optics, &b)
-            );
-        }
-        Err(e) => eprintln!("FWD {folder} {e}"),
-    }
     Some(learned)
 }
 

@@ -27,6 +27,8 @@ const LEARNED_PX: f64 = 8.0;
 const ZONES_PER_NODE: usize = 2;
 /// Samples of less than this share of the summit are noise more than light.
 const FAINT: f64 = 0.01;
+/// Samples of no more than this share of it are the wings.
+const WINGS: f64 = 0.3;
 /// A sample counts as being of at least this share of the summit.
 const FAINTEST: f64 = 2e-4;
 
@@ -167,30 +169,35 @@ impl Field {
     }
 
     /// How far the mean of two fields is off, as a share of the light in a pixel, by how they differ: each is of spots that the other knows
-    /// nothing of.
-    pub(super) fn scatter([one, other]: &[Self; 2]) -> f64 {
-        let (mut squares, mut light, faintest) = (0.0, 0.0, FAINT * summit(&one.whole));
+    /// nothing of. Of all light, and of its wings, each sample of which counts alike.
+    pub(super) fn scatter([one, other]: &[Self; 2]) -> [f64; 2] {
+        let summit = summit(&one.whole);
+        let [mut all, mut wings] = [(0.0, 0.0); 2];
         for (one, other) in one.whole.samples.iter().zip(&other.whole.samples) {
             let mean = 0.5 * (one + other);
-            if mean > faintest {
-                squares += (one - other) * (one - other) / mean;
-                light += mean;
+            let square = (one - other) * (one - other) / (mean * mean);
+            if mean > FAINT * summit {
+                all = (all.0 + mean * square, all.1 + mean);
+            }
+            if mean > FAINT * summit && mean < WINGS * summit {
+                wings = (wings.0 + square, wings.1 + 1.0);
             }
         }
-        0.5 * (squares / light).sqrt()
+        [all, wings].map(|(squares, count)| 0.5 * (squares / f64::max(count, f64::MIN_POSITIVE)).sqrt())
     }
 
     /// What the method takes.
-    pub(super) fn spread(&self, shape_error: f64) -> Result<SpreadField, OpticsError> {
+    pub(super) fn spread(&self, [shape_error, wings_error]: [f64; 2]) -> Result<SpreadField, OpticsError> {
         let is_even = self.belief.apart <= 2.0 * LEAST_APART;
         let tables = if is_even { std::slice::from_ref(&self.whole) } else { &self.of_zones };
         let spread = |table: &Table| PointSpread::new(table.samples.clone());
         if let [only] = tables {
-            return SpreadField::even(spread(only)?, shape_error);
+            return SpreadField::even(spread(only)?, shape_error)?.with_wings_error(wings_error);
         }
         let [width_px, height_px] = self.size_px;
         let zones = tables.iter().map(spread).collect::<Result<_, _>>()?;
-        SpreadField::new(zones, self.zones[0], width_px, height_px, shape_error)
+        SpreadField::new(zones, self.zones[0], width_px, height_px, shape_error)?
+            .with_wings_error(wings_error)
     }
 }
 

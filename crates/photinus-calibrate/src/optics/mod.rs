@@ -157,8 +157,9 @@ pub fn learn(collection: &Collection) -> Result<Learned, LearnError> {
         vignetting::learn(&clear, &field, &light.noise, camera)
     });
     // Where spots are few, what they leave of the table that follows them says too little of how far that is off.
-    let shape_error = light.noise.shape.max(Field::scatter(&halves)).min(1.0);
-    let spread = field.spread(shape_error)?;
+    let [shape_error, wings_error] =
+        Field::scatter(&halves).map(|scatter| light.noise.shape.max(scatter).min(1.0));
+    let spread = field.spread([shape_error, wings_error.max(shape_error)])?;
     let hot_pixels = standing.as_ref().map(|standing| hot_pixels(standing, &spread)).transpose()?;
     let (sensor, mut unseen) = sensor(&darkness, &light, pile.as_ref(), spill);
     let missing = [

@@ -1,6 +1,7 @@
 //! Measured light against the light that fell -> squared error over the claim, by what a spot looks like.
 //!
-//! A frame tells light up to a factor that all of its spots share; the factor of a row is the median of all its spots.
+//! A frame tells light up to a factor that all of its spots share; the factor of a row is the median of all its spots, each
+//! counted by one over its claimed sigma.
 
 use nalgebra::{Isometry3, Point3, Translation3};
 use photinus::camera::Bearing;
@@ -72,9 +73,7 @@ impl Lights {
 
     /// Mean squared error over the claimed variance of a class, 1 where claims are right.
     pub(crate) fn of(&self, class: SpotClass) -> Option<f64> {
-        let mut offs: Vec<f64> = self.0.iter().map(|(_, off, _)| *off).collect();
-        offs.sort_unstable_by(f64::total_cmp);
-        let factor = offs.get(offs.len() / 2)?;
+        let factor = self.factor()?;
         let squares: Vec<f64> = self
             .0
             .iter()
@@ -82,5 +81,17 @@ impl Lights {
             .map(|(_, off, sigma)| ((off - factor) / sigma) * ((off - factor) / sigma))
             .collect();
         (!squares.is_empty()).then(|| squares.iter().sum::<f64>() / squares.len() as f64)
+    }
+
+    /// The factor that all spots share, its logarithm.
+    fn factor(&self) -> Option<f64> {
+        let mut offs: Vec<(f64, f64)> = self.0.iter().map(|(_, off, sigma)| (*off, 1.0 / sigma)).collect();
+        offs.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+        let half = 0.5 * offs.iter().map(|(_, weight)| weight).sum::<f64>();
+        let mut sum = 0.0;
+        offs.into_iter().find_map(|(off, weight)| {
+            sum += weight;
+            (sum >= half).then_some(off)
+        })
     }
 }

@@ -14,6 +14,7 @@ pub struct SpreadField {
     zones: Vec<PointSpread>,
     per_zone: [f64; 2],
     shape_error: f64,
+    wings_error: f64,
 }
 
 impl SpreadField {
@@ -44,7 +45,17 @@ impl SpreadField {
         let is_legal = (0.0..=1.0).contains(&shape_error);
         check("the error of the point spread", shape_error, is_legal, "a share, 0 to 1")?;
         let per_zone = [columns as f64 / width_px, rows as f64 / height_px];
-        Ok(Self { columns, rows, zones, per_zone, shape_error })
+        Ok(Self { columns, rows, zones, per_zone, shape_error, wings_error: shape_error })
+    }
+
+    /// The same, wrong by `wings_error` of the light in a pixel beside the summit: fewer spots tell what is there.
+    ///
+    /// # Errors
+    /// [`OpticsError`] for an error that is not 0 to 1.
+    pub fn with_wings_error(self, wings_error: f64) -> Result<Self, OpticsError> {
+        let is_legal = (0.0..=1.0).contains(&wings_error);
+        check("the error of the point spread's wings", wings_error, is_legal, "a share, 0 to 1")?;
+        Ok(Self { wings_error, ..self })
     }
 
     /// The spread at a place.
@@ -69,5 +80,10 @@ impl SpreadField {
     /// How wrong the spread is: standard deviation of a pixel's light over that light.
     pub fn shape_error(&self) -> f64 {
         self.shape_error
+    }
+
+    /// How wrong it is beside its summit, where all of a saturated spot that can be seen lies.
+    pub fn wings_error(&self) -> f64 {
+        self.wings_error
     }
 }

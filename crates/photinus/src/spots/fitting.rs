@@ -333,6 +333,17 @@ impl Fitter {
         PixelNoise { dark: noise.dark.max(around.variance), ..noise }
     }
 
+    /// Noise of the pixels of the window: where its brightest are full, the others are of the wings.
+    pub(super) fn window_noise(&self, around: Surroundings) -> PixelNoise {
+        let noise = self.pixel_noise(around);
+        match &self.optics {
+            Some(optics) if self.window.full_px > 0 => {
+                PixelNoise { shape: optics.spread.wings_error() as f32, ..noise }
+            }
+            _ => noise,
+        }
+    }
+
     /// Odds that a single bright pixel, in a column and row, is a hot one.
     pub(super) fn hot_pixel_odds(&self, (u, v): (u32, u32), pixel: Lone) -> f64 {
         let place = Pixel::new(f64::from(u), f64::from(v));
@@ -362,7 +373,7 @@ impl Fitter {
     }
 
     fn model(&mut self, part: &Part, around: Surroundings, is_sharp: bool) -> Option<Model> {
-        let noise = self.pixel_noise(around);
+        let noise = self.window_noise(around);
         let guess = self.guess(part);
         if is_sharp {
             let spread = spread(self.optics.as_deref(), &self.belief, part.guess);
@@ -439,7 +450,7 @@ impl Fitter {
         let noisier = (chi2 + PIXELS_OF_ALL) / (freedom + PIXELS_OF_ALL);
         let noisier = if misfit > 2.0 { misfit } else { noisier };
         // How much of its light falls where it is seen is as unsure as the shape is, more so where only its wings are.
-        let shape = f64::from(noise.shape);
+        let shape = if self.optics.is_some() { self.shape_error() } else { f64::from(noise.shape) };
         // What it leaves itself is of pixels all around, seen whole; that its place is less sure the misfit says.
         let strange2 = (WHOLE * WHOLE) * fitted.strange_share2();
         let is_full = self.window.full_px > 0;

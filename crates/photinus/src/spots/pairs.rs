@@ -64,7 +64,7 @@ impl Fitter {
         let around = surroundings_at(frame, both[0], middle, window_px, &self.window.cut_off);
         self.read(frame, middle, window_px, &around, full_from);
         self.add_others(one, Some(other), window_px, near);
-        let noise = self.pixel_noise(around);
+        let noise = self.window_noise(around);
         let places = both.map(|part| self.window.local(part.guess));
         // Points of one point spread shine as their summits are high, or, where these are cut off, as far as they reach.
         let is_full = both.iter().any(|part| part.outline.peak >= full_from);

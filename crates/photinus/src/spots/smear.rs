@@ -180,7 +180,7 @@ impl Fitter {
             asked += 1;
             let outline = Motion::along(part, direction);
             let (_, around) = self.open(frame, part, f64::INFINITY, full_from);
-            let (noise, guess) = (self.pixel_noise(around), self.guess(part));
+            let (noise, guess) = (self.window_noise(around), self.guess(part));
             let Some((still, streak, moved_px)) = self.still_or_streak(part, guess, noise, outline) else {
                 continue;
             };
@@ -232,7 +232,7 @@ impl Fitter {
         let Some(moved) = Motion::of_outline(part) else { return false };
         let full_from = self.lowest_full(part.noise_dn);
         let (_, around) = self.open(frame, part, f64::INFINITY, full_from);
-        let (noise, guess) = (self.pixel_noise(around), self.guess(part));
+        let (noise, guess) = (self.window_noise(around), self.guess(part));
         // Where the way bends, what a pixel has of the light is wrong by about as much as that moves a centre, in pixels.
         let bend_px = bend_px(moved.moved_px) as f32;
         let noise = PixelNoise { shape: (noise.shape * noise.shape + bend_px * bend_px).sqrt(), ..noise };

@@ -53,6 +53,7 @@ struct VignettingTable {
 struct PointSpreadTable {
     shape_error: Finite,
     shape_error_sigma: Option<Finite>,
+    wings_error: Option<Finite>,
     columns: usize,
     /// Row by row. Written by hand, so that rows are lines.
     #[serde(skip_serializing)]
@@ -84,6 +85,7 @@ impl OpticsTable {
             point_spread: PointSpreadTable {
                 shape_error: Finite(optics.spread.shape_error()),
                 shape_error_sigma: finite(summary.and_then(|summary| summary.shape_error_sigma)),
+                wings_error: Some(Finite(optics.spread.wings_error())),
                 columns: optics.spread.columns(),
                 zones: Vec::new(),
             },
@@ -192,6 +194,8 @@ impl PointSpreadTable {
                 SpreadField::new(zones, self.columns, width as f64, height as f64, error)
             }
         };
+        let wings_error = self.wings_error.map_or(error, |error| error.0);
+        let field = field.and_then(|field| field.with_wings_error(wings_error));
         field.map_err(|error| wrong(path, KEY, &error))
     }
 }

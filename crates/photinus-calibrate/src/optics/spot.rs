@@ -211,3 +211,40 @@ fn index(column: isize, row: isize) -> usize {
     let at = |offset: isize| (super::window::REACH as isize + offset) as usize;
     at(row) * super::window::SIDE + at(column)
 }
+
+#[cfg(test)]
+mod tests {
+    use photinus::optics::Gaussian;
+
+    use super::super::window::{SIDE, Seen};
+    use super::*;
+
+    /// A bright spot on level 6 as a table has it, cut off at 255.
+    fn window(table: &Table, light: f64) -> Window {
+        let mut shares = Shares::default();
+        table.window(0.2, -0.1, super::super::window::REACH, &mut shares);
+        let read =
+            |share: &super::super::table::Share| (6.0 + light * share.value).round().clamp(0.0, 255.0) as u8;
+        let pixels: Box<[u8]> = shares.of_pixels.iter().map(read).collect();
+        assert_eq!(pixels.len(), SIDE * SIDE);
+        let reach = super::super::window::REACH;
+        Window { column: 100, row: 100, reach, seen: Seen::default(), pixels }
+    }
+
+    #[test]
+    fn a_full_spot_is_used_where_the_pixels_around_it_tell_its_light() {
+        let noise = Noise { dark: 0.45, shot: 0.03, shape: 0.02, bend: 0.0, is_dark_seen: true };
+        let core = |share: f64| Gaussian { share, sigma_px: 0.3 };
+        let halo = Gaussian { share: 0.5, sigma_px: 2.3 };
+        for (table, is_told) in
+            [(Table::gaussians(&[core(1.0)]), false), (Table::gaussians(&[core(0.5), halo]), true)]
+        {
+            let window = window(&table, 2000.0);
+            let mut spot = Spot::new(&window, 255);
+            assert!(!spot.is_linear());
+            spot.fit(&table, &noise, 8, 8, &mut Shares::default());
+            assert_eq!(spot.is_used, is_told, "{spot:?}");
+            assert!(!is_told || (spot.light / 2000.0 - 1.0).abs() < 0.05, "{}", spot.light);
+        }
+    }
+}

@@ -5,6 +5,7 @@ use crate::rendered_leds::{Eye, difference};
 use photinus::camera::Pixel;
 use photinus::optics::Measured;
 use photinus_calibrate::optics::{Collection, LearnError, Learned, Unseen, learn};
+use photinus_sim::preset::{BLUEFOX_FIT, bluefox};
 use photinus_sim::sensor::{ColumnSmear, Response};
 
 const SIZE: (usize, usize) = (320, 240);
@@ -35,6 +36,22 @@ fn a_sharp_lens_that_overflows_is_learned_from_its_frames() {
     for unseen in [Unseen::Darkness, Unseen::ReadNoise, Unseen::Saturation, Unseen::Spill] {
         assert!(!learned.unseen.contains(&unseen), "{unseen:?}");
     }
+}
+
+/// A lens sharper than a pixel with a wide halo, before darkness that is cut off at 0: the paper's camera. Pixels that read 0 or 1 are brighter
+/// on average than they are, so that the halo seems too faint, the middle too bright, and bright spots flatter than faint ones.
+#[test]
+fn darkness_that_is_cut_off_bends_neither_the_point_spread_nor_the_response() {
+    let eye = Eye { preset: bluefox(&BLUEFOX_FIT), ..eye("gaussian-0.6") };
+    let learned = learned(&eye, 100, 4);
+    let middle = [160.0, 120.0];
+    let (found, truth) = (learned.optics.spread.at(Pixel::new(middle[0], middle[1])), eye.truth(middle));
+    let (rms, width) = difference(found, &truth, 3.0);
+    assert!(rms < 0.01 && width.abs() < 0.05, "{rms} {width}");
+    let [found, truth] = [found, &truth].map(|spread| spread.share(0.0, 0.0));
+    assert!((found / truth - 1.0).abs() < 0.05, "{found} of the light in the middle, not {truth}");
+    let bent_dn = learned.optics.sensor.bent().map_or(0.0, |response| 200.0 * response.bend_per_dn.value);
+    assert!(bent_dn.abs() < 0.03, "{:?}", learned.optics.sensor.response);
 }
 
 #[test]

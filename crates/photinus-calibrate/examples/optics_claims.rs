@@ -11,8 +11,10 @@ mod rendered_leds;
 
 use std::collections::BTreeMap;
 
+use photinus::camera::Pixel;
 use photinus::optics::Measured;
 use photinus_calibrate::optics::{Learned, learn};
+use photinus_sim::preset::{BLUEFOX_FIT, bluefox};
 use photinus_sim::sensor::{ColumnSmear, Overflow, Pattern, Response};
 use rendered_leds::Eye;
 
@@ -63,7 +65,9 @@ fn eyes() -> Vec<(&'static str, Eye)> {
     spilling.preset.sensor.full_well_e = 240.0 * spilling.preset.sensor.electrons_per_dn;
     spilling.preset.sensor.overflow = Overflow { spill: 0.5 };
     let turned = Eye::named("vignette").small_and_wide();
+    let dark_at_0 = Eye { preset: bluefox(&BLUEFOX_FIT), brightest_dn: 6000.0, ..eye("gaussian-0.6") };
     vec![
+        ("dark_at_0", dark_at_0),
         ("plain", eye("gaussian-1.0")),
         ("sharp", eye("gaussian-0.4")),
         ("smeared", smeared),
@@ -83,6 +87,14 @@ fn take(claims: &mut Claims, eye: &Eye, learned: &Learned) {
         let entry = claims.entry(number).or_insert((truth, Vec::new()));
         entry.1.extend(found);
     };
+    let middle = [0.5 * SIZE.0 as f64, 0.5 * SIZE.1 as f64];
+    let spread = &learned.optics.spread;
+    let in_middle = spread.at(Pixel::new(middle[0], middle[1])).share(0.0, 0.0);
+    let in_middle = Measured { value: in_middle, sigma: spread.shape_error() * in_middle };
+    claim("light in the middle pixel", eye.truth(middle).share(0.0, 0.0), Some(in_middle));
+    if found.full_well_dn.is_some() || true_sensor.full_well_e > 256.0 * per_dn {
+        claim("full well", true_sensor.full_well_e / per_dn, found.full_well_dn);
+    }
     claim("read noise", read, Some(found.read_noise_dn));
     claim("shot noise", 1.0 / per_dn, Some(found.shot));
     let full = (true_sensor.full_well_e / per_dn + true_sensor.dark_offset_dn).min(255.0);

@@ -137,7 +137,7 @@ impl Model<'_> {
         }
         let log = libm::log(tried.well);
         let at = |log: f64| Tried { well: libm::exp(log), ..tried };
-        let log = least(|log| sum(&costs(at(log))), (log - 0.3).max(0.0), log + 0.3, 5);
+        let log = least(|log| sum(&costs(at(log))), (log - 0.2).max(0.0), log + 0.2, 7);
         (costs(at(log)), at(log))
     }
 
@@ -254,7 +254,7 @@ impl Model<'_> {
         let times = |factor: f64| {
             let well = (found.well * factor).max(1.0);
             let cost = |share: f64| sum(&of(Tried { share, well }));
-            let share = least(cost, (found.share - 0.3).max(0.0), (found.share + 0.3).min(1.0), 5);
+            let share = least(cost, (found.share - 0.2).max(0.0), (found.share + 0.2).min(1.0), 7);
             of(Tried { share, well })
         };
         let well = if found.well > 1.05 {

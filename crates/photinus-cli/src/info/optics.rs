@@ -9,7 +9,9 @@ use crate::calibrate::Width;
 pub(super) fn report(optics: &Optics, summary: Option<&OpticsSummary>, report: &mut Report) {
     let sensor = &optics.sensor;
     let error = 100.0 * optics.spread.shape_error();
-    report.fact("point spread", format!("{}, known to {error:.2} % of a pixel's light", widths(optics)));
+    let wings = 100.0 * optics.spread.wings_error();
+    let known = format!("known to {error:.2} % of a pixel's light, {wings:.1} % beside its summit");
+    report.fact("point spread", format!("{}, {known}", widths(optics)));
     let plain = |measured: Measured| format!("{:.4} ± {:.4}", measured.value, measured.sigma);
     let levels = |measured: Measured| format!("{:.2} ± {:.2} grey levels", measured.value, measured.sigma);
     report.fact("read noise", levels(sensor.read_noise_dn));

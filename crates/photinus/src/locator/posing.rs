@@ -222,35 +222,58 @@ impl Poser {
         let Some(best) = modes.first() else { return };
         for (bearing, &spot) in self.others.iter().zip(&self.beside) {
             let resolution_rad = context.sightings[spot].resolution_rad;
-            let [mut probability, mut first, mut second, mut variance] = [0.0; 4];
+            let mut part_light = PartLight::default();
             for mode in modes {
                 let part = merged_into(&self.airframe, &mode.pose, bearing.vector(), resolution_rad);
-                let Some(Part { probability: merged, intensity, range2_m2 }) = part else { continue };
-                let share = mode.weight * merged;
+                let Some(Part { probability, intensity, range2_m2 }) = part else { continue };
                 // The farther away the more powerful are the LEDs whose light is seen.
                 let times = mode.pose.position_m.norm_squared() / best.pose.position_m.norm_squared();
-                let light = times * intensity / range2_m2;
                 let lobe = self.lobe_sigma / intensity.max(1e-3);
-                probability += share;
-                first += share * light;
-                second += share * light * light;
-                variance += share * lobe * lobe;
+                part_light.add(mode.weight * probability, times * intensity / range2_m2, lobe);
             }
+            let probability = part_light.probability;
             if probability > LEAST_MERGED {
-                let mean = first / probability;
-                let over_modes = (second / probability / (mean * mean) - 1.0).max(0.0);
-                // Units of LEDs differ, its own and those that tell their power.
-                let units = 2.0 * self.unit_sigma * self.unit_sigma;
-                let adds =
-                    log_power.filter(|_| self.with_light && mean > 0.0).map(|log_power| MergingLight {
-                        light: libm::exp(log_power) * mean,
-                        variance: units + variance / probability + over_modes,
-                    });
+                let adds = log_power
+                    .filter(|_| self.with_light)
+                    .and_then(|log_power| part_light.told(log_power, self.unit_sigma));
                 let lights = context.sightings[spot].log_light.zip(adds);
                 let place_log_density = -libm::log(PI * resolution_rad * resolution_rad);
                 candidates.merge(spot, probability, place_log_density, lights);
             }
         }
+    }
+}
+
+/// Light that a candidate adds to a spot, over its modes.
+#[derive(Clone, Copy, Debug, Default)]
+struct PartLight {
+    /// How likely it adds any.
+    probability: f64,
+    /// Sums over the modes that do, each by its share: light of LEDs of power 1, its square, and the variance of its lobe.
+    first: f64,
+    second: f64,
+    lobes: f64,
+}
+
+impl PartLight {
+    /// A mode of this share adds light that its lobe knows to a relative sigma.
+    fn add(&mut self, share: f64, light: f64, lobe_sigma: f64) {
+        self.probability += share;
+        self.first += share * light;
+        self.second += share * light * light;
+        self.lobes += share * lobe_sigma * lobe_sigma;
+    }
+
+    /// What is added by LEDs of this power; `None` where no light is.
+    fn told(&self, log_power: f64, unit_sigma: f64) -> Option<MergingLight> {
+        let mean = self.first / self.probability;
+        let over_modes = (self.second / self.probability / (mean * mean) - 1.0).max(0.0);
+        // Units of LEDs differ, its own and those that tell their power.
+        let units = 2.0 * unit_sigma * unit_sigma;
+        (mean > 0.0).then(|| MergingLight {
+            light: libm::exp(log_power) * mean,
+            variance: units + self.lobes / self.probability + over_modes,
+        })
     }
 }
 
@@ -309,5 +332,26 @@ fn observe(sighting: &Sighting, clutter_log_density: f64) -> Observation {
         resolution_rad: sighting.resolution_rad,
         signal: sighting.signal,
         clutter_log_density,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Three of four times light 1, else light 3: 1.5 on average, with a variance of a third of its square.
+    #[test]
+    fn light_that_is_added_varies_over_modes_lobes_and_units() {
+        let mut part = PartLight::default();
+        part.add(0.3, 1.0, 0.2);
+        part.add(0.1, 3.0, 0.1);
+        assert!((part.probability - 0.4).abs() < 1e-12);
+        let told = part.told(libm::log(2.0), 0.1).unwrap();
+        assert!((told.light - 3.0).abs() < 1e-12, "{told:?}");
+        let expected = 2.0 * 0.01 + (0.75 * 0.04 + 0.25 * 0.01) + (3.0 / 2.25 - 1.0);
+        assert!((told.variance - expected).abs() < 1e-12, "{told:?} not {expected}");
+        let mut dark = PartLight::default();
+        dark.add(0.3, 0.0, 0.2);
+        assert!(dark.told(0.0, 0.1).is_none(), "an LED that shines away adds nothing");
     }
 }

@@ -104,7 +104,7 @@ impl Row {
         let told = wrong(0).airframe(&self.airframe).expect("an airframe");
         let camera = calibrated(&self.eye.camera, &self.eye.preset.lens);
         let camera = wrong(0).camera(&camera).expect("a camera");
-        let camera = match studio.learned(self.optics_frames) {
+        let camera = match self.learned() {
             Some(optics) => camera.with_optics(optics),
             None => camera,
         };
@@ -138,6 +138,25 @@ impl Row {
             lights,
         }
     }
+
+    /// The optics that frames of the camera tell, none of which is located: of LEDs that stand alone, far enough away that not all are full.
+    fn learned(&self) -> Option<Optics> {
+        let frames = self.optics_frames;
+        if frames == 0 {
+            return None;
+        }
+        let shown = Row { airframe: airframe(6), ranges_m: OPTICS_RANGES_M, ..self.clone() };
+        let mut studio = Studio::new(&shown);
+        let mut collection = Collection::of(&self.eye.camera);
+        for number in OTHER_FRAMES..OTHER_FRAMES + frames {
+            let (shot, _) = studio.shoot(number);
+            assert!(collection.add(&shot.frame.image.view(), None), "frames of one size");
+        }
+        match learn(&collection) {
+            Ok(learned) => Some(learned.optics),
+            Err(error) => panic!("{}: {error}", self.name),
+        }
+    }
 }
 
 fn record_of(frame: &Frame) -> FrameRecord {
@@ -167,24 +186,6 @@ impl<'a> Studio<'a> {
         let view =
             CameraView { camera: camera.clone(), lens: preset.lens.clone(), sensor: preset.sensor.clone() };
         Self { row, renderer: Renderer::new(view, 1) }
-    }
-
-    /// The optics that so many frames tell, none of which is located: of LEDs that stand alone, far enough away that not all are full.
-    fn learned(&self, frames: u64) -> Option<Optics> {
-        if frames == 0 {
-            return None;
-        }
-        let shown = Row { airframe: airframe(6), ranges_m: OPTICS_RANGES_M, ..self.row.clone() };
-        let mut studio = Studio::new(&shown);
-        let mut collection = Collection::of(&self.row.eye.camera);
-        for number in OTHER_FRAMES..OTHER_FRAMES + frames {
-            let (shot, _) = studio.shoot(number);
-            assert!(collection.add(&shot.frame.image.view(), None), "frames of one size");
-        }
-        match learn(&collection) {
-            Ok(learned) => Some(learned.optics),
-            Err(error) => panic!("{}: {error}", self.row.name),
-        }
     }
 
     /// A frame with vehicles drawn for its number, and the light that fell.

@@ -247,6 +247,7 @@ mod tests {
                     [only] => SpreadField::even(only.clone(), error).unwrap(),
                     _ => SpreadField::new(zones, columns, 752.0, 480.0, error).unwrap(),
                 };
+                let spread = spread.with_wings_error(noise.value).unwrap();
                 let angles = [0.0, (17.0 + noise.value).to_radians(), 80.0_f64.to_radians()];
                 let vignetting =
                     is_dim.then(|| Vignetting::new(&angles, &[1.0, 0.9, 0.4], &[0.0, 0.01, 0.1]).unwrap());

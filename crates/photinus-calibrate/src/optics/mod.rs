@@ -27,6 +27,7 @@ mod correction;
 mod dark_frame;
 mod evidence;
 mod field;
+mod ground;
 mod hot;
 mod learned;
 mod light;
@@ -95,7 +96,7 @@ pub fn learn(collection: &Collection) -> Result<Learned, LearnError> {
     let standing = dark_frame.as_ref().map(|dark| hot::candidates(dark, collection.mask.as_ref()));
     let full_from = pile.map_or(255, |pile| pile.least_dn());
     let darkness = noise::darkness(&collection.patches.kept);
-    let mut spots: Vec<Spot<'_>> = windows.iter().map(|window| Spot::new(window, full_from)).collect();
+    let mut spots = spot::of(windows, full_from);
     leave_out(&mut spots, standing.as_deref().unwrap_or_default());
     let all = spots.clone();
     let full: Vec<Spot<'_>> = spots.iter().filter(|spot| !spot.is_linear()).cloned().collect();
@@ -287,10 +288,10 @@ fn sensor(
     if pile.is_none() {
         unseen.push(Unseen::Saturation);
     }
-    let spill = spill.unwrap_or_else(|| {
+    let spill = spill.unwrap_or(Spill { share: SPILL_BELIEVED, well_dn: None, is_seen: false });
+    if !spill.is_seen {
         unseen.push(Unseen::Spill);
-        Spill { share: SPILL_BELIEVED, well_dn: None }
-    });
+    }
     let sensor = Sensor {
         dark_dn: darkness.level_dn,
         read_noise_dn,

@@ -6,7 +6,7 @@ use super::choice::choose;
 use super::collect::Collection;
 use super::field::Field;
 use super::noise::{Noise, ROUNDING, darkness};
-use super::spot::Spot;
+use super::spot::{self, Spot};
 use super::table::{Shares, Table};
 use super::{PLACE_REACH, place};
 
@@ -35,8 +35,7 @@ pub fn predict(optics: &Optics, collection: &Collection) -> Option<Prediction> {
         is_dark_seen: darkness(&collection.patches.kept).noise_dn.is_some(),
     };
     let full_from = sensor.full_from_dn();
-    let mut spots: Vec<Spot<'_>> =
-        collection.windows.kept.iter().map(|window| Spot::new(window, full_from)).collect();
+    let mut spots = spot::of(&collection.windows.kept, full_from);
     choose(&mut spots);
     spots.retain(Spot::is_linear);
     place(&mut spots, &field, &noise, 8);

@@ -2,11 +2,13 @@
 //!
 //! Every spot with full pixels is explained by its light, spread by the point spread, overflowing: place, light and level are
 //! fitted for a spill and a well that all spots share, and these are where all together are explained best. How much a fit is
-//! worse without a tenth of the spots tells how sure they are; a spill that only few spots gain by is none.
+//! worse without a tenth of the spots tells how sure they are; a spill that only few spots gain by is none. Where nothing is seen to
+//! spill, nothing is known of larger charges than those that would have been seen to.
 
 use nalgebra::{Matrix4, Vector4};
 use photinus::optics::Measured;
 
+use super::SPILL_BELIEVED;
 use super::field::Field;
 use super::noise::{Noise, least};
 use super::saturation::Pile;
@@ -18,6 +20,8 @@ use super::table::{FARTHEST_PX, Shares};
 pub(super) struct Spill {
     pub(super) share: Measured,
     pub(super) well_dn: Option<Measured>,
+    /// Whether any charge was seen to spill: otherwise the share is what is believed, of what is above the largest charge that was seen not to.
+    pub(super) is_seen: bool,
 }
 
 /// Spots used at most, and at least.
@@ -34,6 +38,10 @@ const SHARES: [f64; 4] = [0.0, 0.33, 0.67, 1.0];
 const PARTS: usize = 10;
 /// What spots gain by a spill, summed, is more than this many sigmas of that.
 const TOLD_SIGMAS: f64 = 3.0;
+/// Where nothing is seen to spill: wells tried, each so many times the one before, and what spots cost by an overflow that would have been seen.
+const WELL_STEP: f64 = 1.15;
+const MOST_STEPS: i32 = 30;
+const SEEN_COST: f64 = 4.0;
 /// One spot counts at most this much against a spill: it may be two LEDs.
 const MOST_COST: f64 = 60.0;
 
@@ -90,16 +98,20 @@ pub(super) fn learn(spots: &[Spot<'_>], field: &Field, noise: &Noise, pile: &Pil
         found = model.with_best_well(&fulls, Tried { share, ..found }).1;
     }
     model.costs(&mut fulls, found);
-    if !model.is_told(&fulls, found) {
-        found = NO_SPILL;
-        model.costs(&mut fulls, NO_SPILL);
+    if model.is_told(&fulls, found) {
+        let [share, well] = model.jackknife(&fulls, found);
+        if share.value > 2.0 * share.sigma {
+            let well = (well.value > 1.05).then_some(well);
+            let well_dn = well.map(|well| Measured {
+                value: pile.level_dn * well.value,
+                sigma: pile.level_dn * well.sigma,
+            });
+            return Some(Spill { share, well_dn, is_seen: true });
+        }
     }
-    let [share, well] = model.jackknife(&fulls, found);
-    let spills = share.value > 2.0 * share.sigma;
-    let capacity_dn = pile.level_dn * well.value;
-    let is_larger = spills && well.value > 1.05;
-    let well_dn = is_larger.then_some(Measured { value: capacity_dn, sigma: pile.level_dn * well.sigma });
-    Some(Spill { share, well_dn })
+    let well = model.largest_seen_well(&mut fulls)?;
+    let well = Measured { value: pile.level_dn * well, sigma: pile.level_dn * well * (WELL_STEP - 1.0) };
+    Some(Spill { share: SPILL_BELIEVED, well_dn: Some(well), is_seen: false })
 }
 
 struct Model<'a> {
@@ -190,8 +202,9 @@ impl Model<'_> {
         charge
             .iter()
             .zip(window)
-            .map(|(&charge, (.., value))| {
+            .map(|(&charge, (column, row, value))| {
                 let value = f64::from(value);
+                let level = level + full.spot.ground.above_middle(column, row);
                 let is_full = value >= f64::from(self.pile.least_dn());
                 if is_full && charge >= reads {
                     return 0.0;
@@ -212,6 +225,18 @@ impl Model<'_> {
         let (sum, squares) =
             gains.fold((0.0, 0.0), |(sum, squares), gain| (sum + gain, squares + gain * gain));
         sum > TOLD_SIGMAS * f64::sqrt(squares)
+    }
+
+    /// The largest well whose overflow would have been seen; `None` where it is no larger than what a full pixel reads.
+    fn largest_seen_well(&self, fulls: &mut [Full<'_, '_>]) -> Option<f64> {
+        let without = sum(&self.costs(fulls, NO_SPILL));
+        let scale = (without / (fulls.len() * (SIDE * SIDE - 4)) as f64).max(1.0);
+        let wells = (0..MOST_STEPS).map(|step| WELL_STEP.powi(step));
+        let is_seen = |well: &f64| {
+            let tried = Tried { share: SPILL_BELIEVED.sigma, well: *well };
+            sum(&self.costs(&mut fulls.to_vec(), tried)) - without > SEEN_COST * scale
+        };
+        wells.take_while(is_seen).last().filter(|well| *well > 1.0)
     }
 
     /// The place of the least cost by a parabola, and its scatter when tenths of the spots are left out.

@@ -2,6 +2,7 @@
 
 use nalgebra::{SMatrix, SVector};
 
+use super::ground::{self, Ground};
 use super::noise::Noise;
 use super::table::{FARTHEST_PX, Shares, Table};
 use super::window::Window;
@@ -17,8 +18,10 @@ pub(super) struct Spot<'a> {
     pub(super) v: f64,
     /// Light, grey levels.
     pub(super) light: f64,
-    /// Level that it stands on, grey levels.
+    /// Level that it stands on at the middle of the window, grey levels.
     pub(super) level: f64,
+    /// How it rises and bends from there.
+    pub(super) ground: Ground,
     /// Weighted squares of what is left, per degree of freedom.
     pub(super) misfit: f64,
     /// Whether it is one of the spots that the table explains.
@@ -47,23 +50,31 @@ const LIGHT_TOLD: f64 = 0.1;
 /// A pixel farther off than this many sigmas counts as so far off.
 const CLIP: f64 = 4.0;
 
+/// The spots of windows; pixels from grey level `full_from` on are full.
+pub(super) fn of(windows: &[Window], full_from: u8) -> Vec<Spot<'_>> {
+    let spot = |(window, ground)| Spot::new(window, ground, full_from);
+    windows.iter().zip(ground::under(windows)).map(spot).collect()
+}
+
 impl<'a> Spot<'a> {
-    /// A spot from its window; pixels from grey level `full_from` on are full.
-    pub(super) fn new(window: &'a Window, full_from: u8) -> Self {
+    fn new(window: &'a Window, ground: Ground, full_from: u8) -> Self {
         let level = f64::from(window.border());
+        let above = |(column, row, value): (isize, isize, u8)| {
+            f64::from(value) - level - ground.above_middle(column, row)
+        };
         let (mut light, mut u, mut v) = (0.0, 0.0, 0.0);
         for (column, row, value) in window.within(4) {
-            let above = f64::from(value) - level;
+            let above = above((column, row, value));
             light += above;
             if column.abs().max(row.abs()) <= 1 {
                 u += above.max(0.0) * column as f64;
                 v += above.max(0.0) * row as f64;
             }
         }
-        let middle: f64 = window.within(1).map(|(.., value)| (f64::from(value) - level).max(0.0)).sum();
+        let middle: f64 = window.within(1).map(|pixel| above(pixel).max(0.0)).sum();
         let full = (window.peak() >= full_from).then(|| full_or_beside(window, full_from));
         let (u, v) = (u / middle.max(1.0), v / middle.max(1.0));
-        Self { window, full, u, v, light: light.max(middle), level, misfit: 0.0, is_used: true }
+        Self { window, full, u, v, light: light.max(middle), level, ground, misfit: 0.0, is_used: true }
     }
 
     /// Whether no pixel of it is full.
@@ -134,7 +145,8 @@ impl<'a> Spot<'a> {
             }
             let share = shares.at(column, row);
             let light = self.light * share.value;
-            let expected = self.level + light;
+            let level = self.level + self.ground.above_middle(column, row);
+            let expected = level + light;
             let (left, variance, slope) = match noise.cut_off(expected, noise.variance(light)) {
                 Some(read) if value == 0 && read.slope < LEAST_TOLD => continue,
                 None if value == 0 && expected < 0.5 => continue,
@@ -144,7 +156,7 @@ impl<'a> Spot<'a> {
                     1.0,
                 ),
                 None => {
-                    let (seen, slope) = noise.straightened(f64::from(value) - self.level);
+                    let (seen, slope) = noise.straightened(f64::from(value) - level);
                     (seen - light, noise.variance(light) + noise.dark * (slope * slope - 1.0), slope)
                 }
             };
@@ -239,8 +251,8 @@ mod tests {
         for (table, is_told) in
             [(Table::gaussians(&[core(1.0)]), false), (Table::gaussians(&[core(0.5), halo]), true)]
         {
-            let window = window(&table, 2000.0);
-            let mut spot = Spot::new(&window, 255);
+            let windows = [window(&table, 2000.0)];
+            let mut spot = of(&windows, 255).remove(0);
             assert!(!spot.is_linear());
             spot.fit(&table, &noise, 8, 8, &mut Shares::default());
             assert_eq!(spot.is_used, is_told, "{spot:?}");

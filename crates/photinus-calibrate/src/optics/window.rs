@@ -46,16 +46,16 @@ impl Window {
     }
 
     /// The outermost pixels that no other spot lights.
-    fn outermost(&self) -> impl Iterator<Item = u8> + '_ {
+    pub(super) fn outermost(&self) -> impl Iterator<Item = (isize, isize, u8)> + '_ {
         let edge = self.reach as isize;
         let is_edge = move |(column, row, _): &(isize, isize, u8)| column.abs().max(row.abs()) == edge;
-        self.within(self.reach).filter(is_edge).map(|(.., value)| value)
+        self.within(self.reach).filter(is_edge)
     }
 
     /// How much the outermost pixels vary, grey levels^2: where the surroundings are uneven, by more than darkness does.
     pub(super) fn unevenness(&self) -> f64 {
         let (mut count, mut sum, mut squares) = (0.0, 0.0, 0.0);
-        for value in self.outermost().map(f64::from) {
+        for value in self.outermost().map(|(.., value)| f64::from(value)) {
             (count, sum, squares) = (count + 1.0, sum + value, squares + value * value);
         }
         squares / count - (sum / count) * (sum / count)
@@ -63,7 +63,7 @@ impl Window {
 
     /// Their median.
     pub(super) fn border(&self) -> u8 {
-        let mut values: Vec<u8> = self.outermost().collect();
+        let mut values: Vec<u8> = self.outermost().map(|(.., value)| value).collect();
         let middle = values.len() / 2;
         *values.select_nth_unstable(middle).1
     }

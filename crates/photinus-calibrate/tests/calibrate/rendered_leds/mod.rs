@@ -23,6 +23,8 @@ pub(crate) struct Eye {
     pub(crate) brightest_dn: f64,
     /// Pixels that gather charge without light: column, row, grey levels.
     pub(crate) hot: Vec<(usize, usize, f64)>,
+    /// Light of the sky in a pixel by column and row, grey levels.
+    pub(crate) sky_dn: fn(f64, f64) -> f64,
 }
 
 /// An LED in a frame: column and row, and its light against that of the faintest.
@@ -34,7 +36,13 @@ const FAINTEST_DN: f64 = 15.0;
 impl Eye {
     /// A camera of the list.
     pub(crate) fn of(world: World) -> Self {
-        Self { camera: world.camera, preset: world.preset, brightest_dn: 600.0, hot: Vec::new() }
+        Self {
+            camera: world.camera,
+            preset: world.preset,
+            brightest_dn: 600.0,
+            hot: Vec::new(),
+            sky_dn: |_, _| 0.0,
+        }
     }
 
     /// A camera of the list by its name.
@@ -73,11 +81,22 @@ impl Eye {
 
     /// What a recording of so many frames shows, with so many LEDs in each, at places and of lights drawn anew.
     pub(crate) fn recorded(&self, frames: u64, leds: usize, seed: u64) -> Collection {
-        let (width, height) = self.size();
+        self.recorded_between([0.0, self.size().1 as f64], frames, leds, seed)
+    }
+
+    /// The same of LEDs that are between two rows.
+    pub(crate) fn recorded_between(
+        &self,
+        [top_px, bottom_px]: [f64; 2],
+        frames: u64,
+        leds: usize,
+        seed: u64,
+    ) -> Collection {
+        let (width, _) = self.size();
         let mut uniform = uniform(seed, 0x1ed5);
         self.rendered(frames, seed, |_| {
             let mut draw = || {
-                let (u_px, v_px) = (uniform() * width as f64, uniform() * height as f64);
+                let (u_px, v_px) = (uniform() * width as f64, top_px + uniform() * (bottom_px - top_px));
                 (u_px, v_px, libm::pow(self.brightest_dn / FAINTEST_DN, uniform()))
             };
             (0..leds).map(|_| draw()).collect()
@@ -113,7 +132,8 @@ impl Eye {
         let sensor = &self.preset.sensor;
         let mut readout = Readout::of_unit(sensor, (width, height), 1);
         let (mut charge, mut background) = (Charge::new(width, height), Background::new(width, height));
-        background.fill(|_, _| 0.0);
+        let electrons = |u: usize, v: usize| (self.sky_dn)(u as f64, v as f64) * sensor.electrons_per_dn;
+        background.fill(|u, v| electrons(u, v) as f32);
         let mut collection = Collection::of(&self.camera);
         let mut pixels = vec![0; width * height];
         let summit = self.truth([0.5 * width as f64, 0.5 * height as f64]).share(0.0, 0.0);

@@ -65,8 +65,12 @@ impl fmt::Display for Told<'_> {
             writeln!(f, "                    with a spread of {spread_dn:.2} grey levels")?;
         }
         line(f, "spill of excess", sensor.spill, "of it, the rest is drained", seen(Unseen::Spill))?;
-        if let Some(well) = sensor.full_well_dn {
-            line(f, "full well", well, "grey levels", "")?;
+        match sensor.full_well_dn {
+            Some(well) if learned.unseen.contains(&Unseen::Spill) => {
+                writeln!(f, "                    below {:.0} grey levels nothing spills", well.value)?;
+            }
+            Some(well) => line(f, "full well", well, "grey levels", "")?,
+            None => {}
         }
         if let Some(smear) = sensor.column_smear {
             writeln!(f, "  column smear      {:.1e} ± {:.1e} of a column's light", smear.value, smear.sigma)?;

@@ -30,7 +30,7 @@ pub use score::classes::{ClassScore, SpotClass};
 pub use score::distance::{DistanceScore, PaperScore};
 pub use score::followed::FollowedScore;
 pub use score::gospa::GospaScore;
-pub use score::neighbours::{LIKELY, NeighbourScore, Neighbours, SURE};
+pub use score::neighbours::{APART_PX, LIKELY, NeighbourScore, Neighbours, SURE};
 pub use score::position::{CHI_SQUARE_3_50, CHI_SQUARE_3_95, Consistency, PositionScore};
 pub use score::probability::{Decile, Kept, ProbabilityScore, expected_calibration_error};
 pub use score::range::{Bin, ByRange, RangeBins};

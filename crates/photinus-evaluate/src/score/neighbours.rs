@@ -1,5 +1,6 @@
 //! Neighbours against those of truth: how many were found, missed, made up, taken together, taken apart.
 
+use photinus_io::dataset::{TruthLed, TruthNeighbour};
 use photinus_io::results::NeighbourRecord;
 use serde::Serialize;
 
@@ -25,6 +26,9 @@ pub const SURE: f64 = 0.2;
 /// A reported neighbour that is likelier than this, or tells no probability, is likely.
 pub const LIKELY: f64 = 0.5;
 
+/// Markers of two neighbours that are this far apart are two spots, px: twice what it takes to tell most pairs apart.
+pub const APART_PX: f64 = 5.0;
+
 /// How many neighbours were found. Counts are over frames: the same one in ten frames counts ten times.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct NeighbourScore {
@@ -34,6 +38,10 @@ pub struct NeighbourScore {
     pub found: usize,
     /// Those that were not.
     pub missed: usize,
+    /// Those of truth with an LED in the image, none of which is nearer than [`APART_PX`] to one of another neighbour.
+    pub apart: usize,
+    /// Those of them that were found.
+    pub apart_found: usize,
     /// Found with no LED in the image: neither right nor wrong.
     pub unseen: usize,
     /// Reported where none is.
@@ -43,14 +51,16 @@ pub struct NeighbourScore {
     pub sure_false: usize,
     /// found / visible.
     pub recall: Option<f64>,
+    /// apart_found / apart.
+    pub apart_recall: Option<f64>,
     /// found / (found + false).
     pub precision: Option<f64>,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Count {
-    Found,
-    Missed,
+    Found { is_apart: bool },
+    Missed { is_apart: bool },
     Unseen,
     False,
     SureFalse,
@@ -74,9 +84,10 @@ fn counts(frame: &ComparedFrame<'_>, has_leds: bool) -> Vec<(Option<f64>, Count)
     for (truth, there) in frame.truth.neighbours.iter().enumerate() {
         let is_found = frame.neighbours.iter().any(|pair| pair.0 == truth);
         let is_visible = frame.visible(has_leds).any(|visible| visible == truth);
+        let is_apart = is_apart(&frame.truth.neighbours, truth);
         let count = match (is_visible, is_found) {
-            (true, true) => Count::Found,
-            (true, false) => Count::Missed,
+            (true, true) => Count::Found { is_apart },
+            (true, false) => Count::Missed { is_apart },
             (false, true) => Count::Unseen,
             (false, false) => continue,
         };
@@ -89,6 +100,17 @@ fn counts(frame: &ComparedFrame<'_>, has_leds: bool) -> Vec<(Option<f64>, Count)
         }
     }
     counts
+}
+
+/// Whether a neighbour has LEDs in the image, and none of them is near one of another.
+fn is_apart(neighbours: &[TruthNeighbour], index: usize) -> bool {
+    let others = neighbours.iter().enumerate().filter(|(other, _)| *other != index);
+    let others: Vec<&TruthLed> = others.flat_map(|(_, other)| &other.leds).collect();
+    let is_near = |one: &TruthLed, other: &TruthLed| {
+        libm::hypot(one.u_px - other.u_px, one.v_px - other.v_px) < APART_PX
+    };
+    let own = &neighbours[index].leds;
+    !own.is_empty() && own.iter().all(|led| others.iter().all(|other| !is_near(led, other)))
 }
 
 fn is_sure(reported: &NeighbourRecord) -> bool {
@@ -122,17 +144,22 @@ fn split(frame: &ComparedFrame<'_>) -> usize {
 impl NeighbourScore {
     fn new(counts: &[&(Option<f64>, Count)]) -> Self {
         let count = |of: Count| counts.iter().filter(|(_, count)| *count == of).count();
-        let (found, missed, sure_false) =
-            (count(Count::Found), count(Count::Missed), count(Count::SureFalse));
+        let found_of = |is_apart| count(Count::Found { is_apart });
+        let missed_of = |is_apart| count(Count::Missed { is_apart });
+        let (found, missed) = (found_of(true) + found_of(false), missed_of(true) + missed_of(false));
+        let sure_false = count(Count::SureFalse);
         let false_neighbours = count(Count::False) + sure_false;
         Self {
             visible: found + missed,
             found,
             missed,
+            apart: found_of(true) + missed_of(true),
+            apart_found: found_of(true),
             unseen: count(Count::Unseen),
             false_neighbours,
             sure_false,
             recall: share(found, found + missed),
+            apart_recall: share(found_of(true), found_of(true) + missed_of(true)),
             precision: share(found, found + false_neighbours),
         }
     }
@@ -188,11 +215,26 @@ mod tests {
     }
 
     #[test]
+    fn those_are_apart_whose_leds_are_near_nobody_elses() {
+        let [near, far] = [APART_PX - 0.1, APART_PX + 0.1];
+        let own = [[10.0, 10.0], [12.0, 10.0]];
+        for (other, apart) in [([12.0 + near, 10.0], 0), ([12.0, 10.0 + far], 2)] {
+            let truth = [truth(0, vec![shining(1, LEFT, &own), shining(2, RIGHT, &[other])])];
+            let results = [record(0, vec![], vec![found_at(LEFT)])];
+            let scores = evaluate(&truth, &results, &Settings::default()).unwrap().scores;
+            let all = scores.neighbours.by_range.overall;
+            assert_eq!((all.visible, all.found, all.apart, all.apart_found), (2, 1, apart, apart / 2));
+            assert_eq!(all.apart_recall, (apart > 0).then_some(0.5));
+        }
+    }
+
+    #[test]
     fn without_leds_every_neighbour_counts_as_visible() {
         let truth = [truth(0, vec![there(1, LEFT), there(2, RIGHT)])];
         let results = [record(0, vec![], vec![found_at(LEFT)])];
         let scores = evaluate(&truth, &results, &Settings::default()).unwrap().scores;
         assert_eq!(scores.neighbours.by_range.overall.recall, Some(0.5));
+        assert_eq!(scores.neighbours.by_range.overall.apart_recall, None, "nobody says where LEDs are");
         assert!(scores.spots.is_none());
     }
 

@@ -4,6 +4,8 @@ use nalgebra::{Unit, Vector3};
 
 use super::Sighting;
 use super::near::Near;
+use super::places::Place;
+use super::whereabouts::{PerFrame, Whereabouts};
 use crate::camera::Watched;
 use crate::pose::LogLight;
 
@@ -25,9 +27,28 @@ pub(super) struct Context<'a> {
     pub(super) clutter: &'a [f64],
     /// Logarithm of how many neighbours there are per sr.
     pub(super) log_neighbours: f64,
+    /// Where they were, as far as frames before told.
+    pub(super) known: Option<KnownWhereabouts<'a>>,
+}
+
+/// Where neighbours were.
+#[derive(Clone, Copy)]
+pub(super) struct KnownWhereabouts<'a> {
+    pub(super) whereabouts: &'a Whereabouts,
+    pub(super) per_frame: PerFrame<'a>,
+    /// Of each observation.
+    pub(super) places: &'a [Place],
 }
 
 impl Context<'_> {
+    /// The logarithm of how much likelier a neighbour is at an observation and at a distance than anywhere.
+    pub(super) fn log_likelier(&self, observation: usize, distance_m: f64) -> f64 {
+        self.known.map_or(0.0, |KnownWhereabouts { whereabouts, per_frame, places }| {
+            let Place { cell, rad2_per_px2, .. } = places[observation];
+            whereabouts.log_likelier(&per_frame, (cell, rad2_per_px2), distance_m)
+        })
+    }
+
     /// How much likelier observations are one neighbour than clutter, as a logarithm, where that has this logarithm of the density.
     pub(super) fn gain(&self, group: &[usize], log_density: f64) -> f64 {
         log_density + self.log_neighbours - group.iter().map(|&spot| self.clutter[spot]).sum::<f64>()

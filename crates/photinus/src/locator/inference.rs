@@ -18,7 +18,7 @@ use super::alternatives::{Alternatives, Question};
 use super::candidates::Candidates;
 use super::clutter::{Clutter, Counts, Surroundings};
 use super::companions::Companions;
-use super::context::Context;
+use super::context::{Context, KnownWhereabouts};
 use super::explanation::Explanation;
 use super::fixtures::Fixtures;
 use super::grouping::{CLEAR_SPOTS, Groups};
@@ -30,6 +30,7 @@ use super::neighbour::Located;
 use super::places::Places;
 use super::settings::Settings;
 use super::telling::Telling;
+use super::whereabouts::Whereabouts;
 use super::{LocatorError, Stage};
 use crate::camera::{Camera, Watched};
 use crate::pose::LogLight;
@@ -66,6 +67,8 @@ pub(super) struct Inference {
     kinds: Kinds,
     groups: Groups,
     memory: Memory,
+    /// Where the neighbours of this frame are.
+    whereabouts: Whereabouts,
     size: [usize; 2],
     with_light: bool,
     /// Clutter of what there is no work for.
@@ -96,16 +99,19 @@ impl Inference {
         let most = (settings.budget.min(Settings::DEFAULT_BUDGET) / LOOKS_PER_WEIGHING) as usize;
         let with_light = settings.pose.use_brightness;
         let clutter = Clutter::new(size, with_light);
+        let besides = Counts::of(size);
+        let whereabouts = Whereabouts::new(*besides.cells());
         Ok(Self {
             min_probability: settings.min_probability,
             budget: settings.budget,
             near: Near::default(),
             kinds: Kinds::new(kinds, settings)?,
             groups: Groups::default(),
-            memory: Memory::new(clutter.counts().len()),
+            memory: Memory::new(clutter.counts().len(), whereabouts.counts().len()),
+            whereabouts,
             size,
             with_light,
-            besides: Counts::of(size),
+            besides,
             companions: Companions::new(),
             fixtures: Fixtures::new(with_light),
             places: Places::default(),
@@ -150,6 +156,7 @@ impl Inference {
             faintest_light: located.faintest_light,
             clutter: &[],
             log_neighbours: 0.0,
+            known: None,
         };
         self.kinds.begin();
         let of_frame = self.groups.sort_out(&context, &mut self.kinds);
@@ -172,7 +179,9 @@ impl Inference {
         }
         self.fixtures.remember(sightings, |spot| self.explanation.clutter(spot));
         let power = self.power(&context);
-        self.memory.remember(self.clutter.counts(), self.explanation.neighbours(), power);
+        self.find_whereabouts();
+        let neighbours = (self.explanation.neighbours(), self.whereabouts.counts());
+        self.memory.remember(self.clutter.counts(), neighbours, power);
         located.is_complete = work.left > 0 && besides.is_empty();
         self.telling.tell(
             &self.candidates,
@@ -215,8 +224,9 @@ impl Inference {
     /// Weighs the groups that may be neighbours by a first look, the likeliest first, and then their rivals.
     fn weigh_groups(&mut self, context: &Context<'_>, work: &mut Work) {
         let Self { groups, memory, first_clutter, candidates, promising, kinds, budget, .. } = self;
+        let known = known(&self.whereabouts, memory, &self.places);
         let log_neighbours = log_neighbours(groups.neighbours(), memory);
-        let context = Context { clutter: first_clutter.log_density(), log_neighbours, ..*context };
+        let context = Context { clutter: first_clutter.log_density(), log_neighbours, known, ..*context };
         candidates.clear();
         promising.clear();
         let poor_gain = if self.min_probability > UNLIKELY { UNPROMISING } else { f64::NEG_INFINITY };
@@ -264,7 +274,8 @@ impl Inference {
             _ => (&self.clutter, self.explanation.neighbours()),
         };
         let log_neighbours = log_neighbours(neighbours, &self.memory);
-        let context = Context { clutter: clutter.log_density(), log_neighbours, ..*context };
+        let known = known(&self.whereabouts, &self.memory, &self.places);
+        let context = Context { clutter: clutter.log_density(), log_neighbours, known, ..*context };
         let Self { alternatives, doubtful, groups, kinds, candidates, explanation, .. } = self;
         explanation.hold(candidates);
         for &spot in doubtful.iter() {
@@ -304,6 +315,19 @@ impl Inference {
             }
         }
         None
+    }
+
+    /// Counts where the neighbours are.
+    fn find_whereabouts(&mut self) {
+        let Self { whereabouts, candidates, explanation, places, .. } = self;
+        whereabouts.clear();
+        for index in 0..candidates.len() {
+            let distance = candidates.get(index).distance.estimate;
+            if let (Some(distance), [first, ..]) = (distance, candidates.members(index)) {
+                let cell = places.each()[*first].cell;
+                whereabouts.add(cell, distance.distance_m, explanation.probability(index));
+            }
+        }
     }
 
     /// Explains the frame by its candidates, with clutter and neighbours as dense as the explanation itself has them.
@@ -354,6 +378,19 @@ impl Work {
         self.look(LOOKS_PER_WEIGHING);
         enough
     }
+}
+
+/// What frames before told of where neighbours are.
+fn known<'a>(
+    whereabouts: &'a Whereabouts,
+    memory: &'a Memory,
+    places: &'a Places,
+) -> Option<KnownWhereabouts<'a>> {
+    (memory.frames() > 0).then(|| KnownWhereabouts {
+        whereabouts,
+        per_frame: memory.whereabouts(),
+        places: places.each(),
+    })
 }
 
 /// Logarithm of how many neighbours there are per sr, where a frame has this many: as many as that tells without one of them, with those that are

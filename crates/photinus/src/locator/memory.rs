@@ -5,6 +5,7 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
+use super::whereabouts::PerFrame;
 #[cfg(not(feature = "std"))]
 use crate::float::Float as _;
 use crate::pose::LogLight;
@@ -58,16 +59,40 @@ fn sigma_of(sorted: &[f64]) -> f64 {
     (quartile(sorted, 3) - quartile(sorted, 1)) / 1.35
 }
 
+/// What each of the last frames counted by cell.
+#[derive(Debug, Default)]
+struct Counted {
+    cells: usize,
+    /// By frame and cell, and the sums by cell.
+    frames: Vec<f64>,
+    sums: Vec<f64>,
+}
+
+impl Counted {
+    fn new(cells: usize) -> Self {
+        Self { cells, frames: vec![0.0; cells * Memory::FRAMES], sums: vec![0.0; cells] }
+    }
+
+    /// Sums are made anew in one order, so that they are the same whenever the memory began.
+    fn sum(&mut self, places: impl Iterator<Item = usize>) {
+        self.sums.fill(0.0);
+        for place in places {
+            for (sum, count) in self.sums.iter_mut().zip(&self.frames[place * self.cells..]) {
+                *sum += count;
+            }
+        }
+    }
+}
+
 /// The last frames.
 #[derive(Debug, Default)]
 pub(super) struct Memory {
-    /// Counts of clutter of a frame: in the cells of its image, and of its light.
-    cells: usize,
     frames: usize,
     next: usize,
-    /// Clutter by frame and cell, and its sums by cell.
-    clutter: Vec<f64>,
-    sums: Vec<f64>,
+    /// Clutter in the cells of the image, and of its light.
+    clutter: Counted,
+    /// Neighbours in the cells of the image, and by distance.
+    whereabouts: Counted,
     powers: Vec<Option<Told>>,
     neighbours: Vec<f64>,
     sorted: Vec<f64>,
@@ -77,14 +102,13 @@ impl Memory {
     /// This many frames are remembered.
     pub(super) const FRAMES: usize = 64;
 
-    /// Nothing yet, of images with this many cells.
-    pub(super) fn new(cells: usize) -> Self {
+    /// Nothing yet, of images with this many cells of clutter, and of neighbours.
+    pub(super) fn new(clutter: usize, whereabouts: usize) -> Self {
         Self {
-            cells,
             frames: 0,
             next: 0,
-            clutter: vec![0.0; cells * Self::FRAMES],
-            sums: vec![0.0; cells],
+            clutter: Counted::new(clutter),
+            whereabouts: Counted::new(whereabouts),
             powers: vec![None; Self::FRAMES],
             neighbours: vec![0.0; Self::FRAMES],
             sorted: Vec::with_capacity(Self::FRAMES),
@@ -95,7 +119,8 @@ impl Memory {
     pub(super) fn forget(&mut self) {
         self.frames = 0;
         self.next = 0;
-        self.sums.fill(0.0);
+        self.clutter.sums.fill(0.0);
+        self.whereabouts.sums.fill(0.0);
         self.powers.fill(None);
     }
 
@@ -106,7 +131,12 @@ impl Memory {
 
     /// The clutter that they had in each cell, together.
     pub(super) fn clutter_by_cell(&self) -> &[f64] {
-        &self.sums
+        &self.clutter.sums
+    }
+
+    /// The neighbours that they had in each cell and at each distance, together.
+    pub(super) fn whereabouts(&self) -> PerFrame<'_> {
+        PerFrame { sums: &self.whereabouts.sums, frames: self.frames }
     }
 
     /// How many neighbours they had, together.
@@ -150,21 +180,23 @@ impl Memory {
     }
 
     /// Remembers a frame and forgets the oldest.
-    pub(super) fn remember(&mut self, clutter: &[f64], neighbours: f64, power: Option<Told>) {
-        let own = &mut self.clutter[self.next * self.cells..][..self.cells];
-        own.copy_from_slice(clutter);
+    pub(super) fn remember(
+        &mut self,
+        clutter: &[f64],
+        (neighbours, whereabouts): (f64, &[f64]),
+        power: Option<Told>,
+    ) {
+        for (counted, counts) in [(&mut self.clutter, clutter), (&mut self.whereabouts, whereabouts)] {
+            counted.frames[self.next * counted.cells..][..counted.cells].copy_from_slice(counts);
+        }
         self.powers[self.next] = power;
         self.neighbours[self.next] = neighbours;
         self.next = (self.next + 1) % Self::FRAMES;
         self.frames = (self.frames + 1).min(Self::FRAMES);
-        // Sums are made anew in one order, so that they are the same whenever the memory began.
-        self.sums.fill(0.0);
-        for age in 0..self.frames {
-            let frame = self.aged(age) * self.cells;
-            for (sum, clutter) in self.sums.iter_mut().zip(&self.clutter[frame..]) {
-                *sum += clutter;
-            }
-        }
+        let (next, frames) = (self.next, self.frames);
+        let places = (0..frames).map(move |age| (next + Self::FRAMES - 1 - age) % Self::FRAMES);
+        self.clutter.sum(places.clone());
+        self.whereabouts.sum(places);
     }
 }
 
@@ -178,12 +210,12 @@ mod tests {
 
     #[test]
     fn what_three_spots_tell_goes_before_what_two_do() {
-        let mut memory = Memory::new(1);
+        let mut memory = Memory::new(1, 1);
         for number in 0..Memory::FRAMES {
             let is_clear = number % 16 == 0;
             memory.remember(
                 &[0.0],
-                1.0,
+                (1.0, &[1.0]),
                 Some(Told { log_power: if is_clear { 10.0 } else { 8.0 }, is_clear, spread: None }),
             );
         }
@@ -197,15 +229,17 @@ mod tests {
             (clutter, (!number.is_multiple_of(3)).then_some(told(9.0 + 0.01 * (number % 11) as f64)))
         };
         let after = |first: usize| {
-            let mut memory = Memory::new(2);
+            let mut memory = Memory::new(2, 1);
             for number in first..200 {
                 let (clutter, power) = frame(number);
-                memory.remember(&clutter, number as f64 % 3.0, power);
+                let neighbours = number as f64 % 3.0;
+                memory.remember(&clutter, (neighbours, &[0.9 * neighbours]), power);
             }
             (
                 memory.frames(),
                 [0, 1].map(|cell: usize| memory.clutter_by_cell()[cell].to_bits()),
                 memory.neighbours(),
+                memory.whereabouts().sums[0].to_bits(),
                 memory.power(),
             )
         };
@@ -216,11 +250,11 @@ mod tests {
     #[test]
     fn power_is_the_surer_the_more_alike_neighbours_of_one_frame_are() {
         let sigma = |neighbours: usize, apart: f64, frames: usize| {
-            let mut memory = Memory::new(1);
+            let mut memory = Memory::new(1, 1);
             let powers: Vec<f64> = (0..neighbours).map(|own| 9.0 + apart * own as f64).collect();
             for _ in 0..frames {
                 let spread = Spread::of(&powers);
-                memory.remember(&[0.0], 1.0, Some(Told { log_power: 9.0, is_clear: true, spread }));
+                memory.remember(&[0.0], (1.0, &[1.0]), Some(Told { log_power: 9.0, is_clear: true, spread }));
             }
             memory.power().unwrap().sigma
         };
@@ -232,10 +266,10 @@ mod tests {
 
     #[test]
     fn power_that_changes_is_known_as_badly_as_it_changes() {
-        let mut memory = Memory::new(1);
+        let mut memory = Memory::new(1, 1);
         assert_eq!(memory.power(), None);
         for number in 0..Memory::FRAMES {
-            memory.remember(&[0.0], 1.0, Some(told(if number % 2 == 0 { 8.0 } else { 10.0 })));
+            memory.remember(&[0.0], (1.0, &[1.0]), Some(told(if number % 2 == 0 { 8.0 } else { 10.0 })));
         }
         let LogLight { value, sigma } = memory.power().unwrap();
         assert!((8.0..=10.0).contains(&value) && sigma > 1.0, "{value} {sigma}");

@@ -39,6 +39,7 @@ mod sighting;
 mod sun;
 mod telling;
 mod views;
+mod whereabouts;
 
 use crate::airframe::Airframe;
 use crate::camera::{Camera, Watched};

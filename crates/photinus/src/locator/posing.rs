@@ -204,6 +204,7 @@ impl Poser {
             worst_sigma: *worst_sigma,
             log_density: log_evidence - log_range(group.len())
                 + power_agreement(context, group, *log_power)
+                + context.log_likelier(group[0], distance.distance_m)
                 + self.log_share,
             reach_m,
         };

@@ -78,6 +78,7 @@ fn compare(
         faintest_light: 0.01 * FAINTEST,
         clutter: &clutter,
         log_neighbours: 0.0,
+        known: None,
     };
     kinds.begin();
     let mut groups = Groups::default();

@@ -59,6 +59,7 @@ fn check(
             faintest_light: FAINTEST,
             clutter: &density,
             log_neighbours: 0.0,
+            known: None,
         };
         kinds.begin();
         for mask in (1usize..1 << sightings.len()).filter(|mask| mask.count_ones() > 1) {

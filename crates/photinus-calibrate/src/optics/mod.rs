@@ -7,6 +7,7 @@
 //! saturation   where the brightest pixels pile up
 //! noise        level and noise of darkness
 //! start        the round core and halo that explain the spots best
+//! ground       how the level under each spot rises and bends
 //! spot, field  places and light of spots by the table, the table by what they leave, in turn (phases: kept even)
 //! light        noise against light, and how wrong the table is
 //! response     whether bright spots are flatter than faint ones

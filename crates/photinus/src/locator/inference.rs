@@ -9,7 +9,7 @@
 //! neighbours    the likeliest that share nothing                    telling
 //! ```
 //!
-//! How dense clutter is and how many neighbours there are is told by the frame itself, with what [`Memory`] has of those before. Little clutter
+//! How dense clutter is and how many neighbours there are is told by the frame itself, with what [`Memory`] has of those before; where they are, by those alone. Little clutter
 //! and much both bear themselves out (what is near clutter is clutter): both are tried, and what makes the frame likelier is right.
 
 use alloc::vec::Vec;
@@ -224,7 +224,7 @@ impl Inference {
     /// Weighs the groups that may be neighbours by a first look, the likeliest first, and then their rivals.
     fn weigh_groups(&mut self, context: &Context<'_>, work: &mut Work) {
         let Self { groups, memory, first_clutter, candidates, promising, kinds, budget, .. } = self;
-        let known = known(&self.whereabouts, memory, &self.places);
+        let known = Some(known(&self.whereabouts, memory, &self.places));
         let log_neighbours = log_neighbours(groups.neighbours(), memory);
         let context = Context { clutter: first_clutter.log_density(), log_neighbours, known, ..*context };
         candidates.clear();
@@ -274,7 +274,7 @@ impl Inference {
             _ => (&self.clutter, self.explanation.neighbours()),
         };
         let log_neighbours = log_neighbours(neighbours, &self.memory);
-        let known = known(&self.whereabouts, &self.memory, &self.places);
+        let known = Some(known(&self.whereabouts, &self.memory, &self.places));
         let context = Context { clutter: clutter.log_density(), log_neighbours, known, ..*context };
         let Self { alternatives, doubtful, groups, kinds, candidates, explanation, .. } = self;
         explanation.hold(candidates);
@@ -381,16 +381,8 @@ impl Work {
 }
 
 /// What frames before told of where neighbours are.
-fn known<'a>(
-    whereabouts: &'a Whereabouts,
-    memory: &'a Memory,
-    places: &'a Places,
-) -> Option<KnownWhereabouts<'a>> {
-    (memory.frames() > 0).then(|| KnownWhereabouts {
-        whereabouts,
-        per_frame: memory.whereabouts(),
-        places: places.each(),
-    })
+fn known<'a>(whereabouts: &'a Whereabouts, memory: &'a Memory, places: &'a Places) -> KnownWhereabouts<'a> {
+    KnownWhereabouts { whereabouts, per_frame: memory.whereabouts(), places: places.each() }
 }
 
 /// Logarithm of how many neighbours there are per sr, where a frame has this many: as many as that tells without one of them, with those that are

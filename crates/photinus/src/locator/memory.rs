@@ -1,6 +1,6 @@
-//! What the frames before told: how bright the LEDs are, where clutter is, and how many neighbours there are.
+//! What the frames before told: how bright the LEDs are, where clutter is, and how many neighbours there are, and where.
 //!
-//! In: of each frame its clutter, how many neighbours it has and the power of their LEDs. Out: the same over the last [`Memory::FRAMES`] frames.
+//! In: of each frame its clutter, how many neighbours it has, where, and the power of their LEDs. Out: the same over the last [`Memory::FRAMES`] frames.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -146,7 +146,12 @@ impl Memory {
 
     /// The place of the frame this many frames ago.
     fn aged(&self, age: usize) -> usize {
-        (self.next + Self::FRAMES - 1 - age) % Self::FRAMES
+        Self::before(self.next, age)
+    }
+
+    /// The place of the frame this many before the last one before `next`.
+    fn before(next: usize, age: usize) -> usize {
+        (next + Self::FRAMES - 1 - age) % Self::FRAMES
     }
 
     /// The light of an LED straight ahead at 1 m, where enough frames told it.
@@ -193,8 +198,8 @@ impl Memory {
         self.neighbours[self.next] = neighbours;
         self.next = (self.next + 1) % Self::FRAMES;
         self.frames = (self.frames + 1).min(Self::FRAMES);
-        let (next, frames) = (self.next, self.frames);
-        let places = (0..frames).map(move |age| (next + Self::FRAMES - 1 - age) % Self::FRAMES);
+        let next = self.next;
+        let places = (0..self.frames).map(move |age| Self::before(next, age));
         self.clutter.sum(places.clone());
         self.whereabouts.sum(places);
     }

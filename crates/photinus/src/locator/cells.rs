@@ -4,6 +4,7 @@ use alloc::vec::Vec;
 use core::ops::Range;
 
 use super::Sighting;
+use crate::camera::Pixel;
 #[cfg(not(feature = "std"))]
 use crate::float::Float as _;
 
@@ -31,10 +32,15 @@ impl Cells {
         self.side_px * self.side_px
     }
 
-    /// Column and row of the cell that an observation is in; of the nearest if it is outside the image.
+    /// Column and row of the cell that an observation is in.
     pub(super) fn of_observation(&self, sighting: &Sighting) -> [usize; 2] {
+        self.at(sighting.spot.centre)
+    }
+
+    /// Column and row of the cell that a place is in; of the nearest if it is outside the image.
+    pub(super) fn at(&self, place: Pixel) -> [usize; 2] {
         let at = |px: f64, cells: usize| ((px / self.side_px).max(0.0) as usize).min(cells - 1);
-        [at(sighting.spot.centre.u, self.columns), at(sighting.spot.centre.v, self.rows)]
+        [at(place.u, self.columns), at(place.v, self.rows)]
     }
 
     pub(super) fn index(&self, [column, row]: [usize; 2]) -> usize {

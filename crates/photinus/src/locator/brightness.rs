@@ -30,8 +30,10 @@ const NEGLIGIBLE_LOG: f64 = -12.0;
 const NARROWED: f64 = 0.25;
 const NARROWED_PX: f64 = 4.2;
 
-/// Light of a spot that is found half of the time over the step that makes a pixel bright, px (rendered frames).
-const FAINTEST_PX: f64 = 2.5;
+/// Light of a spot that is found half of the time over the step that makes a pixel bright, px, and how much the logarithm of it differs from spot to spot: before a
+/// lens about as sharp as a pixel.
+const FAINTEST_PX: f64 = 2.85;
+const FAINTEST_SIGMA: f64 = 0.33;
 
 /// The unit of light, the same for all frames: grey levels at the exposure of the first whose exposure is known.
 #[derive(Debug, Default)]
@@ -46,10 +48,10 @@ impl Unit {
     }
 }
 
-/// Light at which a detector with these settings finds a marker half of the time, grey levels of its frame.
-pub(super) fn faintest_light(settings: &spots::Settings) -> f64 {
+/// Light at which any detector with these settings finds a marker half of the time, grey levels of its frame.
+pub(super) fn any_detection_limit(settings: &spots::Settings) -> LogLight {
     let (Brightness::Threshold(step) | Brightness::Contrast(step)) = settings.brightness;
-    FAINTEST_PX * f64::from(step)
+    LogLight { value: libm::log(FAINTEST_PX * f64::from(step)), sigma: FAINTEST_SIGMA }
 }
 
 /// Tells the light of all sightings in an image of `size` (width, height) px, as bright as they were on the axis where the

@@ -157,7 +157,7 @@ impl Inference {
             gravity: input.gravity,
             watched,
             power: None,
-            faintest_light: located.faintest_light,
+            detection_limit: located.detection_limit,
             clutter: &[],
             log_neighbours: 0.0,
             known: None,

@@ -44,6 +44,7 @@ mod whereabouts;
 use crate::airframe::Airframe;
 use crate::camera::{Camera, Watched};
 use crate::frame::{FrameView, Mask};
+use crate::pose::LogLight;
 use crate::ranging::SpotCurve;
 use crate::spots::{Detector, Reason, Rejected, Spot};
 use cells::ByCell;
@@ -94,7 +95,8 @@ pub struct Locator {
     detector: Detector,
     inference: Inference,
     by_cell: ByCell,
-    faintest_light: f64,
+    /// Of other detectors' spots.
+    any_detection_limit: LogLight,
     unit: brightness::Unit,
     located: Located,
 }
@@ -138,7 +140,7 @@ impl Locator {
             detector,
             inference,
             by_cell: ByCell::default(),
-            faintest_light: brightness::faintest_light(&settings.spots),
+            any_detection_limit: brightness::any_detection_limit(&settings.spots),
             unit: brightness::Unit::default(),
             located: Located { is_complete: true, ..Located::default() },
         })
@@ -178,20 +180,27 @@ impl Locator {
     /// # Errors
     /// [`LocateError::Size`] when the frame is not of the camera's size; spots have none.
     pub fn locate(&mut self, mut input: Input<'_>) -> Result<&Located, LocateError> {
-        match input.seen {
-            Seen::Frame(frame) => self.detect(frame, &mut input)?,
-            Seen::Spots(spots) => self.sight(spots.iter().map(|spot| (spot, None)), &mut input),
+        let limit = match input.seen {
+            Seen::Frame(frame) => {
+                self.detect(frame, &mut input)?;
+                self.detector.detection_limit()
+            }
+            Seen::Spots(spots) => {
+                self.sight(spots.iter().map(|spot| (spot, None)), &mut input);
+                self.any_detection_limit
+            }
             Seen::Signalled(spots) => {
                 self.sight(spots.iter().map(|(spot, signal)| (spot, *signal)), &mut input);
+                self.any_detection_limit
             }
-        }
+        };
         let size = [self.camera.width(), self.camera.height()];
         let vignetting = self.camera.optics().and_then(|optics| optics.vignetting.as_ref());
         let most = self.inference.most();
         brightness::tell(&mut self.located.sightings, vignetting, most, size, &mut self.by_cell);
         let log_longer = self.unit.log_longer(input.exposure_s);
         brightness::shorten(&mut self.located.sightings, log_longer);
-        self.located.faintest_light = self.faintest_light / libm::exp(log_longer);
+        self.located.detection_limit = Some(LogLight { value: limit.value - log_longer, ..limit });
         input.tell(Stage::Bearings);
         let watched = Watched::new(&self.camera, self.mask.as_ref());
         self.inference.explain(&mut self.located, watched, &mut input);

@@ -6,7 +6,7 @@ use nalgebra::{Matrix3, Rotation3, Vector3};
 
 use super::Sighting;
 use crate::camera::Bearing;
-use crate::pose::{Misfit, Mode};
+use crate::pose::{LogLight, Misfit, Mode};
 use crate::ranging::{Estimate, Interval};
 use crate::spots::Rejected;
 
@@ -91,6 +91,7 @@ pub struct Located {
     pub neighbours: Vec<Neighbour>,
     /// Whether the frame was explained within the budget; if not, neighbours may be missing.
     pub is_complete: bool,
-    /// Light at which a marker is found half of the time, in the unit of the sightings' light; 0 where unknown.
-    pub faintest_light: f64,
+    /// Light at which a marker is found half of the time, in the unit of the sightings' light, and how much that differs from marker to marker; `None` before a
+    /// frame.
+    pub detection_limit: Option<LogLight>,
 }

@@ -139,7 +139,7 @@ impl Poser {
         // A group that sets the prior of the LED power does not get it as its prior.
         let power = if group.len() < CLEAR_SPOTS { context.power } else { None };
         let visible = Visible {
-            faintest_light: context.faintest_light,
+            detection_limit: context.detection_limit,
             watched: Some(context.watched),
             others: &self.others,
             lit: &self.lit,
@@ -225,7 +225,12 @@ impl Poser {
             let resolution_rad = context.sightings[spot].resolution_rad;
             let mut part_light = PartLight::default();
             for mode in modes {
-                let part = merged_into(&self.airframe, &mode.pose, bearing.vector(), resolution_rad);
+                let part = merged_into(
+                    &self.airframe,
+                    &mode.pose,
+                    (bearing.vector(), resolution_rad),
+                    self.unit_sigma,
+                );
                 let Some(Part { probability, intensity, range2_m2 }) = part else { continue };
                 // The farther away the more powerful are the LEDs whose light is seen.
                 let times = mode.pose.position_m.norm_squared() / best.pose.position_m.norm_squared();

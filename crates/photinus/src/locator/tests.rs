@@ -10,7 +10,7 @@ use super::*;
 use crate::airframe::Ring;
 use crate::camera::Bearing;
 use crate::camera::{Ideal, IdealLaw, Model, Pixel};
-use crate::pose;
+use crate::pose::{self, LogLight};
 use crate::spots::Extent;
 
 mod alternatives;
@@ -23,6 +23,10 @@ const SIGMA_PX: f64 = 0.1;
 /// Light of an LED straight ahead at 1 m, and the least that the detector finds with its default threshold, grey levels.
 const POWER: f64 = 100_000.0;
 const FAINTEST: f64 = 75.0;
+
+fn limit(light: f64) -> Option<LogLight> {
+    Some(LogLight { value: libm::log(light), sigma: 0.33 })
+}
 
 fn camera() -> Camera {
     let lens = Ideal::new(IdealLaw::Equidistant, [1.0 / 3.7673e-3; 2], Pixel::new(375.5, 239.5)).unwrap();
@@ -291,20 +295,26 @@ fn light_is_told_as_at_the_exposure_of_the_first_frame() {
     let mut told = |exposure_s: Option<f64>, brightness: f64| {
         let spots = places.map(|place| Spot { flux: 500.0 * brightness, ..spot(place, 1.0, 3.0) });
         let located = locator.locate(Input::spots(&spots).exposure(exposure_s)).expect("spots have no size");
-        (located.sightings[0].log_light.unwrap().value, located.faintest_light)
+        (located.sightings[0].log_light.unwrap().value, located.detection_limit.unwrap().value)
     };
     let (first, faintest) = told(Some(1e-3), 1.0);
     let (longer, lower) = told(Some(4e-3), 4.0);
-    assert!((longer - first).abs() < 1e-12 && (lower - faintest / 4.0).abs() < 1e-12, "{longer} {first}");
+    assert!(
+        (longer - first).abs() < 1e-12 && (lower - (faintest - libm::log(4.0))).abs() < 1e-12,
+        "{longer} {first}"
+    );
     for unknown in [None, Some(0.0), Some(-1.0), Some(f64::NAN), Some(f64::INFINITY)] {
         assert_eq!(told(unknown, 1.0), (first, faintest), "{unknown:?}");
     }
     let (shorter, higher) = told(Some(5e-4), 0.5);
-    assert!((shorter - first).abs() < 1e-12 && (higher - 2.0 * faintest).abs() < 1e-12, "{shorter} {first}");
+    assert!(
+        (shorter - first).abs() < 1e-12 && (higher - (faintest + libm::log(2.0))).abs() < 1e-12,
+        "{shorter} {first}"
+    );
     locator.forget();
     let spots = places.map(|place| spot(place, 1.0, 3.0));
     let located = locator.locate(Input::spots(&spots).exposure(5e-4)).expect("spots have no size");
-    assert_eq!(located.faintest_light.to_bits(), faintest.to_bits(), "it is the first again");
+    assert_eq!(located.detection_limit.unwrap().value.to_bits(), faintest.to_bits(), "it is the first again");
 }
 
 #[test]

@@ -160,7 +160,7 @@ impl Calling {
             }
         };
         let visible = Visible {
-            faintest_light: before.faintest_light,
+            detection_limit: before.detection_limit,
             watched: Some(before.watched),
             others: &[],
             lit: &self.lit,

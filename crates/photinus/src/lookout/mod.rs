@@ -150,8 +150,8 @@ struct Before<'a> {
     /// Where anybody looks.
     watched: Watched<'a>,
     tracked: &'a Tracked,
-    /// Light at which a marker is found half of the time.
-    faintest_light: f64,
+    /// Light at which a marker is found half of the time, and how much that differs from marker to marker.
+    detection_limit: Option<LogLight>,
     /// The light of an LED of intensity 1 at 1 m, where several tracks tell it.
     power: Option<LogLight>,
 }
@@ -223,8 +223,8 @@ impl Lookout {
         if let Some(blinking) = &mut self.blinking {
             let power = self.tracker.power(camera);
             let watched = self.tracker.rig().watched(camera);
-            let faintest_light = located.faintest_light;
-            let before = Before { watched, tracked: &self.tracked, faintest_light, power };
+            let detection_limit = located.detection_limit;
+            let before = Before { watched, tracked: &self.tracked, detection_limit, power };
             if self.tracker.is_of_another_clock(camera, time_s) {
                 blinking.followers.iter_mut().for_each(Follower::restart);
             }
@@ -295,7 +295,7 @@ impl Blinking {
             time_s: glance.time_s,
             exposure_s: glance.exposure_s,
             sightings: &glance.located.sightings,
-            faintest_light: glance.located.faintest_light,
+            faintest_light: glance.located.detection_limit.map_or(0.0, |limit| libm::exp(limit.value)),
             turn: glance.turned.map(following::Turn::from),
             watched,
         };

@@ -33,8 +33,9 @@ pub struct LogDistance {
 /// Which markers a detector finds.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Visible<'a> {
-    /// Light at which a marker is found half of the time, in the units of the observations; 0 where unknown.
-    pub faintest_light: f64,
+    /// Light at which a marker is found half of the time, in the units of the observations, and how much that differs from marker to marker; `None` where
+    /// unknown.
+    pub detection_limit: Option<LogLight>,
     /// Where the camera looks; everywhere where that is `None`.
     pub watched: Option<Watched<'a>>,
     /// Spots that are not this neighbour's, near it: a marker beside one of them may be merged with it.

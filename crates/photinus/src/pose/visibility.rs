@@ -3,18 +3,60 @@
 use nalgebra::Vector3;
 
 use super::merging::one_spot;
+use super::observation::LogLight;
 use super::problem::{Pose, Problem};
 use crate::airframe::{Airframe, Marker};
 use crate::camera::Bearing;
+#[cfg(not(feature = "std"))]
+use crate::float::Float as _;
 
 /// Light at which a marker is found half of the time when nothing tells what is faintest, 1 being one LED straight ahead.
 const FAINTEST_SHARE: f64 = 0.15;
 
-/// The odds of finding a marker whose light is this many times that at which they are even. On rendered frames 39, 71, 86, 96
-/// and 99 % are found at 0.9, 1.1, 1.3, 1.6 and 1.9 times.
-fn odds(times: f64) -> f64 {
-    let cube = times * times * times;
-    cube * cube * times
+/// How much the light at which a marker is found differs from marker to marker when nothing tells it, as a logarithm: as before a lens as sharp as a pixel.
+const UNKNOWN_SIGMA: f64 = 0.33;
+/// A logistic distribution is nearest to a normal one whose sigma is so many times its scale (J. Aldrich, F. Nelson, Linear Probability, Logit, and Probit
+/// Models, 1984: 1.6 to 1.8).
+const SIGMAS_PER_SCALE: f64 = 1.7;
+
+/// However alike the LEDs are said to be, which of two is brighter is no surer than with this spread.
+const LEAST_UNIT_SIGMA: f64 = 0.05;
+
+/// How the odds of being found rise with light: with a power of it that is a whole number of halves.
+#[derive(Clone, Copy, Debug)]
+struct Rise {
+    halves: u32,
+}
+
+impl Rise {
+    /// Where the light at which a marker is found has this spread, as a logarithm.
+    fn of(sigma: f64) -> Self {
+        Self { halves: (2.0 * SIGMAS_PER_SCALE / sigma).round().clamp(1.0, 64.0) as u32 }
+    }
+
+    /// Of markers that a detector finds from so much light on, and whose power is that of the airframe's file but for a spread.
+    fn of_markers(limit: Option<LogLight>, unit_sigma: f64) -> Self {
+        Self::of(libm::hypot(limit.map_or(UNKNOWN_SIGMA, |limit| limit.sigma), unit_sigma))
+    }
+
+    /// Of two markers' light over each other's.
+    fn of_two(unit_sigma: f64) -> Self {
+        Self::of(core::f64::consts::SQRT_2 * unit_sigma.max(LEAST_UNIT_SIGMA))
+    }
+
+    /// The odds of a marker whose light is this many times that at which they are even.
+    fn odds(self, times: f64) -> f64 {
+        let mut odds = if self.halves % 2 == 1 { times.sqrt() } else { 1.0 };
+        let (mut square, mut left) = (times, self.halves / 2);
+        while left > 0 {
+            if left % 2 == 1 {
+                odds *= square;
+            }
+            square *= square;
+            left /= 2;
+        }
+        odds
+    }
 }
 
 /// The probability of these odds, which may be infinite.
@@ -41,10 +83,11 @@ pub(crate) struct Part {
 pub(crate) fn merged_into(
     airframe: &Airframe,
     pose: &Pose,
-    spot: &Vector3<f64>,
-    resolution_rad: f64,
+    (spot, resolution_rad): (&Vector3<f64>, f64),
+    unit_sigma: f64,
 ) -> Option<Part> {
     let camera_m = pose.camera_in_body_m();
+    let rise = Rise::of_markers(None, unit_sigma);
     let each = airframe.markers().iter().enumerate().filter_map(|(marker, own)| {
         let gap_rad2 = (direction(pose, own) - spot).norm_squared();
         let merged = one_spot(gap_rad2 / (resolution_rad * resolution_rad));
@@ -52,7 +95,7 @@ pub(crate) fn merged_into(
             return None;
         }
         let intensity = airframe.intensity(marker, &camera_m);
-        let probability = merged * probability(odds(intensity / FAINTEST_SHARE));
+        let probability = merged * probability(rise.odds(intensity / FAINTEST_SHARE));
         Some(Part { probability, intensity, range2_m2: (camera_m - own.position_m).norm_squared() })
     });
     each.max_by(|a, b| a.probability.total_cmp(&b.probability))
@@ -73,19 +116,20 @@ impl Problem<'_> {
         mut tell: impl FnMut(usize, Option<f64>),
     ) -> f64 {
         let camera_m = pose.camera_in_body_m();
-        let faintest_light = self.known.visible.faintest_light;
-        let half = match log_power {
-            // The intensity at which a marker at the origin's distance gives the faintest light.
-            Some(power) if faintest_light > 0.0 => (faintest_light * camera_m.norm_squared()
-                / libm::exp(power))
-            .clamp(self.settings.lobe_sigma.max(1e-4), 1.0),
-            _ => FAINTEST_SHARE,
+        let limit = self.known.visible.detection_limit;
+        let rise = Rise::of_markers(limit, self.settings.unit_sigma);
+        let rise_of_two = Rise::of_two(self.settings.unit_sigma);
+        let half = match log_power.zip(limit) {
+            // The intensity at which a marker at the origin's distance gives as much light.
+            Some((power, limit)) => (libm::exp(limit.value - power) * camera_m.norm_squared())
+                .clamp(self.settings.lobe_sigma.max(1e-4), 1.0),
+            None => FAINTEST_SHARE,
         };
         let intensity = |marker: usize| self.airframe.intensity(marker, &camera_m);
         let mut nats = |marker: usize| {
             let shines = intensity(marker).max(1e-4);
             let lit = self.known.visible.lit.get(marker).copied().unwrap_or(1.0);
-            let found = lit * (1.0 - self.settings.missed) * probability(odds(shines / half));
+            let found = lit * (1.0 - self.settings.missed) * probability(rise.odds(shines / half));
             if self.is_used(marker) {
                 tell(marker, None);
                 // How rarely a marker that is too faint is found all the same was never measured: it is taken to be no rarer than that a bright one is missed.
@@ -97,7 +141,7 @@ impl Problem<'_> {
             // Of two markers that merge the spot is said to be the brighter one.
             let into = |(spot, seen): (usize, usize)| match self.merged(spot, seen, marker, &camera_m) {
                 0.0 => 0.0,
-                merged => merged * probability(odds(intensity(seen).max(1e-3) / shines)),
+                merged => merged * probability(rise_of_two.odds(intensity(seen).max(1e-3) / shines)),
             };
             let merged = if self.merging { self.used().map(into).fold(0.0, f64::max) } else { 0.0 };
             let unseen = 1.0 - found * (1.0 - merged) * (1.0 - self.merged_with_others(pose, marker));

@@ -109,6 +109,16 @@ impl Background {
         }
     }
 
+    /// How far above the mean of dark pixels a pixel is bright at a place, and their noise, grey levels; of a frame that was measured.
+    pub(super) fn step_above_dark(&self, [u, v]: [usize; 2]) -> (f64, f64) {
+        if self.level.is_empty() {
+            return (1.0, 0.0);
+        }
+        let level = self.level(u, v);
+        let [dark_dn, noise_dn] = self.dark(level);
+        ((f64::from(level) + f64::from(self.step) - dark_dn).max(1.0), noise_dn)
+    }
+
     /// Tiles from the start of a row of them to the start of the next.
     fn pitch(&self) -> usize {
         self.tiles.blocks * TILE_PX

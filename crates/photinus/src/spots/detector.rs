@@ -16,6 +16,7 @@ use super::splitting::{Ground, Splitter};
 use super::{Detections, Extent, Rejected};
 use crate::frame::{FrameError, FrameView, Mask};
 use crate::optics::Optics;
+use crate::pose::LogLight;
 
 /// Finds spots in frames. Keeps its room from frame to frame, so that a warm detector allocates nothing.
 #[derive(Debug)]
@@ -34,6 +35,8 @@ pub struct Detector {
     /// Odds for clutter of each spot, but for those of a reflection.
     looks: Vec<Look>,
     detections: Detections,
+    /// The middle of the last frame, px.
+    middle: [usize; 2],
 }
 
 impl Detector {
@@ -64,6 +67,7 @@ impl Detector {
             meter: Meter::new(&settings, optics),
             looks: Vec::new(),
             detections: Detections::default(),
+            middle: [0; 2],
         })
     }
 
@@ -80,6 +84,7 @@ impl Detector {
         if let Some(mask) = mask {
             mask.check_size(frame.width(), frame.height())?;
         }
+        self.middle = [frame.width() / 2, frame.height() / 2];
         self.background.measure(frame, self.settings.brightness);
         self.components.group(self.runs.find(frame, &self.background));
         self.outline_parts(frame, mask);
@@ -91,6 +96,12 @@ impl Detector {
             (top, left, bottom, right, rejected.area_px)
         });
         Ok(&self.detections)
+    }
+
+    /// Light at which a point is found half of the time in the frame that was handed last, grey levels, and how much that differs from point to point; in the
+    /// middle of the image.
+    pub fn detection_limit(&self) -> LogLight {
+        self.meter.detection_limit(self.background.step_above_dark(self.middle), self.middle)
     }
 
     /// Whether frames still tell something of the camera: its point spread, noise and full level are learnt from the first frames that

@@ -11,6 +11,7 @@ use nalgebra::Matrix2;
 
 use super::centroid::PixelVariance;
 use super::cut_off::CutOff;
+use super::detection_limit::detection_limit;
 use super::fit::{self, Fitted, PixelNoise, PointSource};
 use super::full_level::FullLevel;
 use super::hot_pixel::{self, Lone, LonePixels};
@@ -27,6 +28,7 @@ use crate::camera::Pixel;
 use crate::float::Float as _;
 use crate::frame::FrameView;
 use crate::optics::{Measured, Optics, PointSpread, Sensor};
+use crate::pose::LogLight;
 
 /// Error of measured charge that spills into a pixel, over that.
 const SPILL_ERROR: f64 = 0.1;
@@ -360,6 +362,14 @@ impl Fitter {
             }
             None => self.lone_pixels.odds((u, v)),
         }
+    }
+
+    /// Light at which a point is found half of the time at a place where a pixel is bright so far above dark ones of this noise.
+    pub(super) fn detection_limit(&self, step_and_noise_dn: (f64, f64), place: Pixel) -> LogLight {
+        let seen = if self.optics.is_some() { 1.0 } else { self.belief.seen_share() };
+        let is_known = self.is_sure() && self.unknown_shape() == 0.0;
+        let spread = spread(self.optics.as_deref(), &self.belief, place);
+        detection_limit((spread, seen), is_known, step_and_noise_dn)
     }
 
     /// What becomes of charge above a full well.

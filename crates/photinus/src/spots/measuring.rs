@@ -29,6 +29,7 @@ use crate::camera::Pixel;
 use crate::float::Float as _;
 use crate::frame::FrameView;
 use crate::optics::{Measured, Optics};
+use crate::pose::LogLight;
 
 /// Standard deviation of a place known to lie somewhere in one pixel, px.
 const WITHIN_A_PIXEL: f64 = UNIFORM;
@@ -69,6 +70,11 @@ impl Meter {
     /// Whether frames still tell something of the camera.
     pub(super) fn learns(&self) -> bool {
         self.fitter.learns()
+    }
+
+    /// Light at which a point is found half of the time at a place where a pixel is bright so far above dark ones of this noise.
+    pub(super) fn detection_limit(&self, step_and_noise_dn: (f64, f64), [u, v]: [usize; 2]) -> LogLight {
+        self.fitter.detection_limit(step_and_noise_dn, Pixel::new(u as f64, v as f64))
     }
 
     /// Whether light moved in the frame: then markers are long, too.

@@ -20,6 +20,7 @@
 //!                -> spots
 //! hot_pixel      single pixels that are narrower than a point's light can be
 //! odds           how likely each spot is a marker's light
+//! detection_limit  how much light a point needs to be found
 //! ```
 //!
 //! Every pixel at or above its threshold belongs to exactly one part, and every part is either a [`Spot`] or a
@@ -29,6 +30,7 @@
 mod background;
 mod centroid;
 mod cut_off;
+mod detection_limit;
 mod detector;
 mod fit;
 mod fitting;

@@ -8,7 +8,7 @@ use super::error::TrackError;
 use super::motion::{Faster, Turn};
 use crate::camera::{Bearing, Mounting, Rig};
 use crate::locator::{Located, Neighbour, Sighting};
-use crate::pose::{Mode, Observation, POWER_RANGE};
+use crate::pose::{LogLight, Mode, Observation, POWER_RANGE};
 
 /// Most ways in which a neighbour can be its airframe that are taken over.
 const MOST_MODES: usize = 16;
@@ -211,8 +211,8 @@ pub(super) struct Moment {
     pub(super) moving: Option<Moving>,
     /// In the camera's.
     pub(super) up: Option<Unit<Vector3<f64>>>,
-    /// Light at which a marker is found half of the time.
-    pub(super) faintest_light: f64,
+    /// Light at which a marker is found half of the time, and how much that differs from marker to marker.
+    pub(super) detection_limit: Option<LogLight>,
     /// With the density of clutter per unit of the logarithm of its light, for one point of clutter per sr.
     pub(super) observations: Vec<Observation>,
     /// What the camera's calibration adds to the covariance of each.
@@ -253,7 +253,7 @@ impl Moment {
         let of_body =
             |own: Moving| Moving { velocity_m_s: mounting.body_from_camera * own.velocity_m_s, ..own };
         self.moving = moving.map(of_body);
-        self.faintest_light = located.faintest_light;
+        self.detection_limit = located.detection_limit;
         self.up = gravity.map(|down| -down);
         self.observations.clear();
         self.calibrations.clear();

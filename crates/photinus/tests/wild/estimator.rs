@@ -64,9 +64,8 @@ fn known() -> impl Strategy<Value = Known<'static>> {
     let size = prop::option::of(
         (-2.0f64..6.0, scale(-4.0..2.0)).prop_map(|(mean, sigma)| LogDistance { mean, sigma }),
     );
-    let light = || prop_oneof![Just(0.0), scale(-6.0..9.0)];
-    (up(), interval(), size, log_light(), light()).prop_map(|(up, bounds, size, power, faintest_light)| {
-        let visible = Visible { faintest_light, ..Visible::default() };
+    (up(), interval(), size, log_light(), log_light()).prop_map(|(up, bounds, size, power, detection_limit)| {
+        let visible = Visible { detection_limit, ..Visible::default() };
         Known { up, bounds, size, power, visible }
     })
 }

@@ -300,9 +300,8 @@ impl Matcher {
 
     /// What it costs that a spot's other markers are not seen, nats: nothing where it is hardly seen itself, all where it is e times as bright.
     fn lone_nats(&self, context: &Context<'_>, spot: usize) -> f64 {
-        let brighter = context.sightings[spot]
-            .log_light
-            .map_or(1.0, |light| light.value - libm::log(context.faintest_light));
+        let light = context.sightings[spot].log_light.zip(context.detection_limit);
+        let brighter = light.map_or(1.0, |(light, limit)| light.value - limit.value);
         self.views.lone_nats * brighter.clamp(0.0, 1.0)
     }
 

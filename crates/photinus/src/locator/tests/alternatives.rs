@@ -75,7 +75,7 @@ fn compare(
         gravity: down,
         watched: Watched::new(&camera, None),
         power: None,
-        faintest_light: 0.01 * FAINTEST,
+        detection_limit: limit(0.01 * FAINTEST),
         clutter: &clutter,
         log_neighbours: 0.0,
         known: None,

@@ -56,7 +56,7 @@ fn check(
             gravity: down,
             watched: Watched::new(&camera, None),
             power,
-            faintest_light: FAINTEST,
+            detection_limit: limit(FAINTEST),
             clutter: &density,
             log_neighbours: 0.0,
             known: None,

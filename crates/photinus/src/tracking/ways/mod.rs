@@ -410,7 +410,7 @@ impl Ways {
     fn measured<T>(&self, scene: &Scene<'_>, near: &Pose, with: impl FnOnce(&Measurement<'_>) -> T) -> T {
         let Scene { model, watched, moment, .. } = *scene;
         let visible = Visible {
-            faintest_light: moment.faintest_light,
+            detection_limit: moment.detection_limit,
             watched: Some(watched),
             others: &self.others,
             lit: &self.lit,

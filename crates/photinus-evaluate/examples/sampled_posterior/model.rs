@@ -7,6 +7,7 @@
 use nalgebra::{Matrix2, Matrix2x3, Rotation3, Unit, Vector2, Vector3};
 use photinus::airframe::Airframe;
 use photinus::locator::Sighting;
+use photinus::pose::LogLight;
 use photinus::ranging::Interval;
 
 /// The estimator's tolerances: of lobes (1 is one LED straight ahead), the intensity taken for none, how often a marker that
@@ -61,8 +62,8 @@ pub(crate) struct Model<'a> {
     pub(crate) tilt_sigma_rad: f64,
     /// Spread of power between LEDs, of its logarithm.
     pub(crate) unit_sigma: f64,
-    /// Light below which a marker is not found, grey levels.
-    pub(crate) faintest: f64,
+    /// Light at which half of the markers are found, grey levels, and how much that differs from marker to marker.
+    pub(crate) detection_limit: LogLight,
 }
 
 impl Model<'_> {
@@ -169,19 +170,29 @@ impl Model<'_> {
         (-0.5 * misfit.min(AS_TOLD) * tail - 0.5 * libm::log(of_a + of_b), libm::exp(log_power))
     }
 
+    /// The power of light by which the odds of a logistic distribution rise that is nearest to a normal one with this sigma, to a half.
+    fn rise(sigma: f64) -> f64 {
+        (2.0 * 1.7 / sigma).round() / 2.0
+    }
+
     /// Of seeing these markers and no others.
     fn visibility(&self, camera_m: &Vector3<f64>, markers: [usize; 2], power: f64) -> f64 {
         let intensity = |marker| self.airframe.intensity(marker, camera_m);
-        let half = (self.faintest * camera_m.norm_squared() / power).clamp(LOBE_SIGMA, 1.0);
+        let LogLight { value, sigma } = self.detection_limit;
+        let half = (libm::exp(value) * camera_m.norm_squared() / power).clamp(LOBE_SIGMA, 1.0);
+        let told: f64 =
+            self.seen.iter().map(|seen| 1.0 / (seen.log_light_variance + self.unit_sigma.powi(2))).sum();
+        let rise = Self::rise((sigma.powi(2) + self.unit_sigma.powi(2) + 1.0 / told).sqrt());
+        let rise_of_two = Self::rise(std::f64::consts::SQRT_2 * self.unit_sigma);
         let chance = |odds: f64| 1.0 - 1.0 / (1.0 + odds);
         let log_chance = |marker: usize| {
             let shines = intensity(marker).max(1e-4);
-            let found = (1.0 - MISSED) * chance((shines / half).powi(7));
+            let found = (1.0 - MISSED) * chance(libm::pow(shines / half, rise));
             if markers.contains(&marker) {
                 return libm::log(found.max(MISSED));
             }
             let into = |spot: usize| {
-                let outshines = chance((intensity(markers[spot]).max(1e-4) / shines).powi(7));
+                let outshines = chance(libm::pow(intensity(markers[spot]).max(1e-4) / shines, rise_of_two));
                 Self::one_spot(self.gap(spot, markers[spot], marker, camera_m)) * outshines
             };
             libm::log(1.0 - found * (1.0 - into(0).max(into(1))))

@@ -14,8 +14,6 @@ use crate::model::{Model, Seen};
 use crate::neighbour::{GRAVITY_RAD, TILT_RAD, UNIT_SIGMA, View as Neighbour};
 
 const SIGMA_PX: f64 = 0.1;
-/// The light of a spot that is barely found, grey levels.
-const FAINTEST: f64 = 50.0;
 
 pub(crate) fn hexarotor() -> Airframe {
     let ring = Ring { arms: 6, radius_m: 0.4, leds_per_arm: 1, splay_rad: 0.0 };
@@ -70,7 +68,7 @@ impl View {
             bounds: located.neighbours[0].distance.bounds,
             tilt_sigma_rad: tilt_sigma_rad(),
             unit_sigma: UNIT_SIGMA,
-            faintest: FAINTEST,
+            detection_limit: located.detection_limit.expect("a frame"),
         }
     }
 }

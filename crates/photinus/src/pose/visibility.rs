@@ -34,9 +34,10 @@ impl Rise {
         Self { halves: (2.0 * SIGMAS_PER_SCALE / sigma).round().clamp(1.0, 64.0) as u32 }
     }
 
-    /// Of markers that a detector finds from so much light on, and whose power is that of the airframe's file but for a spread.
-    fn of_markers(limit: Option<LogLight>, unit_sigma: f64) -> Self {
-        Self::of(libm::hypot(limit.map_or(UNKNOWN_SIGMA, |limit| limit.sigma), unit_sigma))
+    /// Of markers that a detector finds from so much light on, whose power is that of the airframe's file but for a spread, where that of all is known to a variance.
+    fn of_markers(limit: Option<LogLight>, unit_sigma: f64, power_variance: f64) -> Self {
+        let sigma = limit.map_or(UNKNOWN_SIGMA, |limit| limit.sigma);
+        Self::of((sigma * sigma + unit_sigma * unit_sigma + power_variance).sqrt())
     }
 
     /// Of two markers' light over each other's.
@@ -87,7 +88,7 @@ pub(crate) fn merged_into(
     unit_sigma: f64,
 ) -> Option<Part> {
     let camera_m = pose.camera_in_body_m();
-    let rise = Rise::of_markers(None, unit_sigma);
+    let rise = Rise::of_markers(None, unit_sigma, 0.0);
     let each = airframe.markers().iter().enumerate().filter_map(|(marker, own)| {
         let gap_rad2 = (direction(pose, own) - spot).norm_squared();
         let merged = one_spot(gap_rad2 / (resolution_rad * resolution_rad));
@@ -117,7 +118,7 @@ impl Problem<'_> {
     ) -> f64 {
         let camera_m = pose.camera_in_body_m();
         let limit = self.known.visible.detection_limit;
-        let rise = Rise::of_markers(limit, self.settings.unit_sigma);
+        let rise = Rise::of_markers(limit, self.settings.unit_sigma, self.power_variance());
         let rise_of_two = Rise::of_two(self.settings.unit_sigma);
         let half = match log_power.zip(limit) {
             // The intensity at which a marker at the origin's distance gives as much light.
@@ -149,6 +150,16 @@ impl Problem<'_> {
             -libm::log(unseen)
         };
         (0..self.airframe.markers().len()).map(&mut nats).sum::<f64>() + self.told_apart_nats(&camera_m)
+    }
+
+    /// How well the spots in use and what is known beforehand tell the power of the LEDs, as a logarithm.
+    fn power_variance(&self) -> f64 {
+        let unit = self.settings.unit_sigma;
+        let weight = |sigma: f64| 1.0 / (sigma * sigma + 1e-6);
+        let seen = self.used().filter_map(|(spot, _)| self.observations[spot].log_light);
+        let told: f64 = seen.map(|light| weight(libm::hypot(light.sigma, unit))).sum();
+        let told = told + self.known.power.map_or(0.0, |power| weight(power.sigma));
+        if told > 0.0 { 1.0 / told } else { 0.0 }
     }
 
     /// What it costs that markers beside each other are seen as two spots.

@@ -64,10 +64,12 @@ fn known() -> impl Strategy<Value = Known<'static>> {
     let size = prop::option::of(
         (-2.0f64..6.0, scale(-4.0..2.0)).prop_map(|(mean, sigma)| LogDistance { mean, sigma }),
     );
-    (up(), interval(), size, log_light(), log_light()).prop_map(|(up, bounds, size, power, detection_limit)| {
-        let visible = Visible { detection_limit, ..Visible::default() };
-        Known { up, bounds, size, power, visible }
-    })
+    (up(), interval(), size, log_light(), log_light()).prop_map(
+        |(up, bounds, size, power, detection_limit)| {
+            let visible = Visible { detection_limit, ..Visible::default() };
+            Known { up, bounds, size, power, visible }
+        },
+    )
 }
 
 /// All that pass the check.

@@ -13,7 +13,7 @@ use super::cells::{ByCell, Cells};
 use crate::float::Float as _;
 use crate::optics::Vignetting;
 use crate::pose::LogLight;
-use crate::spots::{self, Brightness, HIDDEN_LOG, HIDDEN_SIGMA, Spot};
+use crate::spots::{HIDDEN_LOG, HIDDEN_SIGMA, Spot};
 
 /// Error of a logarithm of light against others of the frame that all spots have: where in a pixel they fall, how much of the
 /// halo is in the window.
@@ -30,11 +30,6 @@ const NEGLIGIBLE_LOG: f64 = -12.0;
 const NARROWED: f64 = 0.25;
 const NARROWED_PX: f64 = 4.2;
 
-/// Light of a spot that is found half of the time over the step that makes a pixel bright, px, and how much the logarithm of it differs from spot to spot: before a
-/// lens about as sharp as a pixel.
-const FAINTEST_PX: f64 = 2.85;
-const FAINTEST_SIGMA: f64 = 0.33;
-
 /// The unit of light, the same for all frames: grey levels at the exposure of the first whose exposure is known.
 #[derive(Debug, Default)]
 pub(super) struct Unit {
@@ -46,12 +41,6 @@ impl Unit {
     pub(super) fn log_longer(&mut self, exposure_s: Option<f64>) -> f64 {
         exposure_s.map_or(0.0, |own| libm::log(own / *self.exposure_s.get_or_insert(own)))
     }
-}
-
-/// Light at which any detector with these settings finds a marker half of the time, grey levels of its frame.
-pub(super) fn any_detection_limit(settings: &spots::Settings) -> LogLight {
-    let (Brightness::Threshold(step) | Brightness::Contrast(step)) = settings.brightness;
-    LogLight { value: libm::log(FAINTEST_PX * f64::from(step)), sigma: FAINTEST_SIGMA }
 }
 
 /// Tells the light of all sightings in an image of `size` (width, height) px, as bright as they were on the axis where the

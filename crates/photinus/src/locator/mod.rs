@@ -140,7 +140,7 @@ impl Locator {
             detector,
             inference,
             by_cell: ByCell::default(),
-            any_detection_limit: brightness::any_detection_limit(&settings.spots),
+            any_detection_limit: Detector::any_detection_limit(&settings.spots),
             unit: brightness::Unit::default(),
             located: Located { is_complete: true, ..Located::default() },
         })

@@ -15,6 +15,7 @@ use alloc::vec::Vec;
 use wide::u8x16;
 
 use super::cut_off::CutOff;
+use super::detection_limit::Step;
 use super::settings::Brightness;
 use super::tiles::{Block, TILE_PX, Tiles};
 #[cfg(not(feature = "std"))]
@@ -110,13 +111,13 @@ impl Background {
     }
 
     /// How far above the mean of dark pixels a pixel is bright at a place, and their noise, grey levels; of a frame that was measured.
-    pub(super) fn step_above_dark(&self, [u, v]: [usize; 2]) -> (f64, f64) {
+    pub(super) fn step_above_dark(&self, [u, v]: [usize; 2]) -> Step {
         if self.level.is_empty() {
-            return (1.0, 0.0);
+            return Step { step_dn: 1.0, noise_dn: 0.0 };
         }
         let level = self.level(u, v);
         let [dark_dn, noise_dn] = self.dark(level);
-        ((f64::from(level) + f64::from(self.step) - dark_dn).max(1.0), noise_dn)
+        Step { step_dn: (f64::from(level) + f64::from(self.step) - dark_dn).max(1.0), noise_dn }
     }
 
     /// Tiles from the start of a row of them to the start of the next.

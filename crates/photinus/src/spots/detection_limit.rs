@@ -10,16 +10,30 @@ use crate::pose::LogLight;
 
 /// Places within a pixel that are looked at, along a side.
 const PLACES: usize = 6;
-/// What a point spread that frames have not told yet leaves open, as a logarithm.
-const UNKNOWN_SPREAD: f64 = 0.5;
+/// Light over the step before any lens, px, and what that leaves open, as a logarithm: one in three lenses is sharper than a third of a pixel or wider than one.
+const ANY_PX: f64 = 2.85;
+const ANY_SIGMA: f64 = 0.5;
 
-/// The limit for points that spread so, where windows see `seen` of their light. A pixel is bright this far above the mean of dark ones, whose noise is `noise_dn`,
-/// grey levels.
-pub(super) fn detection_limit(
-    (spread, seen): (&PointSpread, f64),
-    is_known: bool,
-    (step_dn, noise_dn): (f64, f64),
-) -> LogLight {
+/// How far above the mean of dark pixels a pixel is bright, and their noise, grey levels.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Step {
+    pub(super) step_dn: f64,
+    pub(super) noise_dn: f64,
+}
+
+impl Step {
+    fn noise(self) -> f64 {
+        self.noise_dn / self.step_dn
+    }
+}
+
+/// The limit before a lens of which nothing is known.
+pub(super) fn of_any_lens(step: Step) -> LogLight {
+    LogLight { value: libm::log(ANY_PX * step.step_dn), sigma: libm::hypot(ANY_SIGMA, step.noise()) }
+}
+
+/// The limit for points that spread so, where windows see `seen` of their light.
+pub(super) fn of_spread(spread: &PointSpread, seen: f64, is_known: bool, step: Step) -> LogLight {
     let at = |index: usize| (index as f64 + 0.5) / PLACES as f64 - 0.5;
     let (mut sum, mut squares) = (0.0, 0.0);
     for place in 0..PLACES * PLACES {
@@ -29,10 +43,10 @@ pub(super) fn detection_limit(
     }
     let places = (PLACES * PLACES) as f64;
     let mean = sum / places;
-    let unknown = if is_known { 0.0 } else { UNKNOWN_SPREAD };
-    let noise = noise_dn / step_dn;
+    let variance = (squares / places - mean * mean).max(0.0);
+    let unknown = if is_known { 0.0 } else { ANY_SIGMA };
     LogLight {
-        value: libm::log(step_dn * seen) - mean,
-        sigma: ((squares / places - mean * mean).max(0.0) + noise * noise + unknown * unknown).sqrt(),
+        value: libm::log(step.step_dn * seen) - mean,
+        sigma: (variance + step.noise() * step.noise() + unknown * unknown).sqrt(),
     }
 }

@@ -4,6 +4,7 @@ use alloc::sync::Arc;
 use alloc::vec::Vec;
 
 use super::background::Background;
+use super::detection_limit::{self, Step};
 use super::grouping::Components;
 use super::measuring::Meter;
 use super::neighbourhood::Neighbourhood;
@@ -11,7 +12,7 @@ use super::odds::{self, Look};
 use super::part::{Part, outline};
 use super::rejection::Reason;
 use super::runs::{Run, Runs};
-use super::settings::{Settings, SettingsError};
+use super::settings::{Brightness, Settings, SettingsError};
 use super::splitting::{Ground, Splitter};
 use super::{Detections, Extent, Rejected};
 use crate::frame::{FrameError, FrameView, Mask};
@@ -102,6 +103,12 @@ impl Detector {
     /// middle of the image.
     pub fn detection_limit(&self) -> LogLight {
         self.meter.detection_limit(self.background.step_above_dark(self.middle), self.middle)
+    }
+
+    /// The same of any detector with these settings, before any lens.
+    pub(crate) fn any_detection_limit(settings: &Settings) -> LogLight {
+        let (Brightness::Threshold(step) | Brightness::Contrast(step)) = settings.brightness;
+        detection_limit::of_any_lens(Step { step_dn: f64::from(step), noise_dn: 0.0 })
     }
 
     /// Whether frames still tell something of the camera: its point spread, noise and full level are learnt from the first frames that

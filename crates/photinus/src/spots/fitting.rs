@@ -11,7 +11,7 @@ use nalgebra::Matrix2;
 
 use super::centroid::PixelVariance;
 use super::cut_off::CutOff;
-use super::detection_limit::detection_limit;
+use super::detection_limit::{self, Step};
 use super::fit::{self, Fitted, PixelNoise, PointSource};
 use super::full_level::FullLevel;
 use super::hot_pixel::{self, Lone, LonePixels};
@@ -62,6 +62,9 @@ const SPILT_PX: f64 = 0.2;
 /// How often the light of others is taken away: their places are better known the second time.
 const PASSES_BESIDE: usize = 2;
 
+/// So many spots that are not full tell the core of the point spread.
+const FEWEST_UNSATURATED: u32 = 4;
+
 /// Where the point spread is wrong by more of the light than this, it is none of the shapes that are known.
 const SHAPELESS: f32 = 0.15;
 /// A point is no further from the centroid of its part, px and radii of the part: what is has taken the light of another for its own.
@@ -96,8 +99,9 @@ pub(super) struct Fitter {
     pub(super) lone_pixels: LonePixels,
     /// Whether parts are fitted at all: it takes time.
     pub(super) fits: bool,
-    /// Frames that have told something of the camera.
+    /// Frames that have told something of the camera, and spots that did and were not full.
     pub(super) frames: u32,
+    pub(super) unsaturated: u32,
     pub(super) window: Window,
     pub(super) widths: Vec<f64>,
     models: Vec<Option<Model>>,
@@ -121,6 +125,7 @@ impl Fitter {
             lone_pixels: LonePixels::default(),
             fits: matches!(settings.brightness, Brightness::Contrast(_)),
             frames: 0,
+            unsaturated: 0,
             window: Window::default(),
             widths: Vec::new(),
             models: Vec::new(),
@@ -364,12 +369,16 @@ impl Fitter {
         }
     }
 
-    /// Light at which a point is found half of the time at a place where a pixel is bright so far above dark ones of this noise.
-    pub(super) fn detection_limit(&self, step_and_noise_dn: (f64, f64), place: Pixel) -> LogLight {
-        let seen = if self.optics.is_some() { 1.0 } else { self.belief.seen_share() };
-        let is_known = self.is_sure() && self.unknown_shape() == 0.0;
-        let spread = spread(self.optics.as_deref(), &self.belief, place);
-        detection_limit((spread, seen), is_known, step_and_noise_dn)
+    /// Light at which a point is found half of the time at a place with this step. Full spots tell nothing of the core of a point spread.
+    pub(super) fn detection_limit(&self, step: Step, place: Pixel) -> LogLight {
+        match &self.optics {
+            Some(optics) => detection_limit::of_spread(optics.spread.at(place), 1.0, true, step),
+            None if self.unsaturated < FEWEST_UNSATURATED => detection_limit::of_any_lens(step),
+            None => {
+                let is_known = self.is_sure() && self.unknown_shape() == 0.0;
+                detection_limit::of_spread(self.belief.spread(), self.belief.seen_share(), is_known, step)
+            }
+        }
     }
 
     /// What becomes of charge above a full well.

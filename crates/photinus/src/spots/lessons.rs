@@ -59,7 +59,7 @@ impl Fitter {
         let is_end = noise_dn >= f64::from(NOISY_DN)
             && f64::from(lowest) + LEVEL_SIGMAS * noise_dn >= f64::from(u8::MAX);
         self.belief = Belief::new(self.noise, if is_end { u8::MAX } else { lowest });
-        self.frames = 0;
+        (self.frames, self.unsaturated) = (0, 0);
     }
 
     /// The same with what a frame tells.
@@ -125,7 +125,7 @@ impl Fitter {
             let mut told = Told::default();
             let numbers = self.belief.numbers();
             let is_last = round + 1 == ROUNDS;
-            let mut telling = MOST_TELLING;
+            let (mut telling, mut unsaturated) = (MOST_TELLING, 0);
             for (index, part) in parts.iter().enumerate() {
                 if telling == 0 || !tells(index, part) {
                     continue;
@@ -149,6 +149,7 @@ impl Fitter {
                 };
                 if let Some((numbers, widths, trust)) = lesson {
                     told.add(&numbers, &widths, weights, trust);
+                    unsaturated += u32::from(self.window.full_px == 0);
                     any = true;
                 }
             }
@@ -158,6 +159,7 @@ impl Fitter {
             let moved = self.belief.take(&told);
             if !moved || is_last {
                 self.belief.keep(&told, numbers);
+                self.unsaturated += unsaturated;
                 break;
             }
         }

@@ -12,6 +12,7 @@ use nalgebra::Matrix2;
 use super::Spot;
 use super::centroid::{self, PixelVariance};
 use super::cut_off::CutOff;
+use super::detection_limit::Step;
 use super::fitting::{Fitter, Model, SATURATION_BLUR_PX, WHOLE, reach_px, surroundings};
 use super::hot_pixel::Sides;
 use super::lessons::LEAST_SPILT;
@@ -72,9 +73,9 @@ impl Meter {
         self.fitter.learns()
     }
 
-    /// Light at which a point is found half of the time at a place where a pixel is bright so far above dark ones of this noise.
-    pub(super) fn detection_limit(&self, step_and_noise_dn: (f64, f64), [u, v]: [usize; 2]) -> LogLight {
-        self.fitter.detection_limit(step_and_noise_dn, Pixel::new(u as f64, v as f64))
+    /// Light at which a point is found half of the time at a place with this step.
+    pub(super) fn detection_limit(&self, step: Step, [u, v]: [usize; 2]) -> LogLight {
+        self.fitter.detection_limit(step, Pixel::new(u as f64, v as f64))
     }
 
     /// Whether light moved in the frame: then markers are long, too.

@@ -159,6 +159,9 @@ impl Explanation {
         self.probability.resize(candidates.len(), 0.0);
         self.clutter.clear();
         self.clutter.resize(count, 1.0);
+        // Whether its holders are asked for differs from frame to frame, but not the room for them.
+        self.held.clear();
+        self.held.resize(count, None);
         self.gains.clear();
         self.gains.extend((0..candidates.len()).map(|index| {
             let members = candidates.members(index);

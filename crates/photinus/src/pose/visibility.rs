@@ -13,6 +13,10 @@ use crate::float::Float as _;
 /// Light at which a marker is found half of the time when nothing tells what is faintest, 1 being one LED straight ahead.
 const FAINTEST_SHARE: f64 = 0.15;
 
+/// A marker that gives less than this share of the light at which half are found is not expected, whatever the spread, and nothing is said against its absence
+/// where that costs less than so much, nats.
+const NEGLIGIBLE_SHARE: f64 = 0.02;
+const NEGLIGIBLE: f64 = 1e-4;
 /// How much the light at which a marker is found differs from marker to marker when nothing tells it, as a logarithm: as before a lens as sharp as a pixel.
 const UNKNOWN_SIGMA: f64 = 0.33;
 /// A logistic distribution is nearest to a normal one whose sigma is so many times its scale (J. Aldrich, F. Nelson, Linear Probability, Logit, and Probit
@@ -129,6 +133,9 @@ impl Problem<'_> {
         let intensity = |marker: usize| self.airframe.intensity(marker, &camera_m);
         let mut nats = |marker: usize| {
             let shines = intensity(marker).max(1e-4);
+            if shines < NEGLIGIBLE_SHARE * half && !self.is_used(marker) {
+                return 0.0;
+            }
             let lit = self.known.visible.lit.get(marker).copied().unwrap_or(1.0);
             let found = lit * (1.0 - self.settings.missed) * probability(rise.odds(shines / half));
             if self.is_used(marker) {
@@ -136,7 +143,7 @@ impl Problem<'_> {
                 // How rarely a marker that is too faint is found all the same was never measured: it is taken to be no rarer than that a bright one is missed.
                 return -libm::log(found.max(self.settings.missed.max(1e-9)));
             }
-            if found == 0.0 || !self.is_watched(pose, marker) {
+            if found < NEGLIGIBLE || !self.is_watched(pose, marker) {
                 return 0.0;
             }
             // Of two markers that merge the spot is said to be the brighter one.
@@ -155,10 +162,10 @@ impl Problem<'_> {
     /// How well the spots in use and what is known beforehand tell the power of the LEDs, as a logarithm.
     fn power_variance(&self) -> f64 {
         let unit = self.settings.unit_sigma;
-        let weight = |sigma: f64| 1.0 / (sigma * sigma + 1e-6);
+        let weight = |variance: f64| 1.0 / (variance + 1e-6);
         let seen = self.used().filter_map(|(spot, _)| self.observations[spot].log_light);
-        let told: f64 = seen.map(|light| weight(libm::hypot(light.sigma, unit))).sum();
-        let told = told + self.known.power.map_or(0.0, |power| weight(power.sigma));
+        let told: f64 = seen.map(|light| weight(light.sigma * light.sigma + unit * unit)).sum();
+        let told = told + self.known.power.map_or(0.0, |power| weight(power.sigma * power.sigma));
         if told > 0.0 { 1.0 / told } else { 0.0 }
     }
 

@@ -56,6 +56,10 @@ long *arguments:
     cargo build --release -p photinus-cli --features ros2,mavlink --locked
     crates/photinus-run/try-long {{arguments}}
 
+# What becomes of accuracy when a constant is three times as large, or a third: about half an hour; arguments are parts of module paths.
+vary *arguments:
+    crates/photinus-evaluate/vary-constants {{arguments}}
+
 # Times beside floors measured in the same run.
 bench:
     cargo bench -p photinus -p photinus-sim

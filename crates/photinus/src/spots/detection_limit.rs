@@ -12,7 +12,7 @@ use crate::pose::LogLight;
 const PLACES: usize = 6;
 /// Light over the step before any lens, px, and what that leaves open, as a logarithm: one in three lenses is sharper than a third of a pixel or wider than one.
 const ANY_PX: f64 = 2.85;
-const ANY_SIGMA: f64 = 0.5;
+const ANY_SIGMA: f64 = 0.33;
 
 /// How far above the mean of dark pixels a pixel is bright, and their noise, grey levels.
 #[derive(Clone, Copy, Debug)]
@@ -33,7 +33,8 @@ pub(super) fn of_any_lens(step: Step) -> LogLight {
 }
 
 /// The limit for points that spread so, where windows see `seen` of their light.
-pub(super) fn of_spread(spread: &PointSpread, seen: f64, is_known: bool, step: Step) -> LogLight {
+/// How high that is at its summit is known to `summit_sigma`, as a logarithm.
+pub(super) fn of_spread(spread: &PointSpread, seen: f64, summit_sigma: f64, step: Step) -> LogLight {
     let at = |index: usize| (index as f64 + 0.5) / PLACES as f64 - 0.5;
     let (mut sum, mut squares) = (0.0, 0.0);
     for place in 0..PLACES * PLACES {
@@ -44,7 +45,7 @@ pub(super) fn of_spread(spread: &PointSpread, seen: f64, is_known: bool, step: S
     let places = (PLACES * PLACES) as f64;
     let mean = sum / places;
     let variance = (squares / places - mean * mean).max(0.0);
-    let unknown = if is_known { 0.0 } else { ANY_SIGMA };
+    let unknown = summit_sigma.min(ANY_SIGMA);
     LogLight {
         value: libm::log(step.step_dn * seen) - mean,
         sigma: (variance + step.noise() * step.noise() + unknown * unknown).sqrt(),

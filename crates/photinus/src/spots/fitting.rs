@@ -372,11 +372,12 @@ impl Fitter {
     /// Light at which a point is found half of the time at a place with this step. Full spots tell nothing of the core of a point spread.
     pub(super) fn detection_limit(&self, step: Step, place: Pixel) -> LogLight {
         match &self.optics {
-            Some(optics) => detection_limit::of_spread(optics.spread.at(place), 1.0, true, step),
+            Some(optics) => detection_limit::of_spread(optics.spread.at(place), 1.0, 0.0, step),
             None if self.unsaturated < FEWEST_UNSATURATED => detection_limit::of_any_lens(step),
             None => {
-                let is_known = self.is_sure() && self.unknown_shape() == 0.0;
-                detection_limit::of_spread(self.belief.spread(), self.belief.seen_share(), is_known, step)
+                let is_of_no_shape = self.unknown_shape() > 0.0;
+                let summit_sigma = if is_of_no_shape { f64::INFINITY } else { self.belief.summit_sigma() };
+                detection_limit::of_spread(self.belief.spread(), self.belief.seen_share(), summit_sigma, step)
             }
         }
     }

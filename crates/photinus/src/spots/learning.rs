@@ -112,6 +112,13 @@ impl Belief {
         self.sigmas().iter().zip(SURE).all(|(sigma, sure)| *sigma < sure)
     }
 
+    /// How well the share of a point's light that the brightest pixel gets is known, as a logarithm: it falls with the square of the core's width, and with what the
+    /// halo takes.
+    pub(super) fn summit_sigma(&self) -> f64 {
+        let [core, halo, ..] = self.sigmas();
+        libm::hypot(2.0 * core, halo / (1.0 - self.numbers[1]).max(0.1))
+    }
+
     fn sigmas(&self) -> [f64; NUMBERS] {
         let covariance = self.information.try_inverse().unwrap_or_else(Information::zeros);
         core::array::from_fn(|i| covariance[(i, i)].max(0.0).sqrt())

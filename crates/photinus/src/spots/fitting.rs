@@ -373,11 +373,12 @@ impl Fitter {
     pub(super) fn detection_limit(&self, step: Step, place: Pixel) -> LogLight {
         match &self.optics {
             Some(optics) => detection_limit::of_spread(optics.spread.at(place), 1.0, 0.0, step),
-            None if self.unsaturated < FEWEST_UNSATURATED => detection_limit::of_any_lens(step),
+            None if self.unsaturated < FEWEST_UNSATURATED || self.unknown_shape() > 0.0 => {
+                detection_limit::of_any_lens(step)
+            }
             None => {
-                let is_of_no_shape = self.unknown_shape() > 0.0;
-                let summit_sigma = if is_of_no_shape { f64::INFINITY } else { self.belief.summit_sigma() };
-                detection_limit::of_spread(self.belief.spread(), self.belief.seen_share(), summit_sigma, step)
+                let (spread, seen) = (self.belief.spread(), self.belief.seen_share());
+                detection_limit::of_spread(spread, seen, self.belief.summit_sigma(), step)
             }
         }
     }

@@ -113,7 +113,7 @@ fn show(eye: &Eye) -> (Vec<Shown>, LogLight) {
             all.extend(drawn.iter().map(|&(pixel, log_power)| (log_power, found(pixel))));
         }
     }
-    (all, detector.detection_limit())
+    (all, detector.detection_limit().unwrap())
 }
 
 /// Mean and standard deviation of the logarithm of light at which points were found, by the unit of light that points of middling brightness tell: a point is found

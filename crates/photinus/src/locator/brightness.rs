@@ -9,6 +9,7 @@ use core::cmp::Ordering;
 
 use super::Sighting;
 use super::cells::{ByCell, Cells};
+use super::neighbour::Located;
 #[cfg(not(feature = "std"))]
 use crate::float::Float as _;
 use crate::optics::Vignetting;
@@ -76,10 +77,10 @@ pub(super) fn tell(
     }
 }
 
-/// Tells light as at an exposure that is shorter by this factor, a logarithm.
-pub(super) fn shorten(sightings: &mut [Sighting], log_longer: f64) {
-    let lights = sightings.iter_mut().filter_map(|sighting| sighting.log_light.as_mut());
-    lights.for_each(|light| light.value -= log_longer);
+/// Tells light, and what is found of it, as at an exposure that is shorter by this factor, a logarithm.
+pub(super) fn shorten(located: &mut Located, log_longer: f64) {
+    let lights = located.sightings.iter_mut().filter_map(|sighting| sighting.log_light.as_mut());
+    lights.chain(&mut located.detection_limit).for_each(|light| light.value -= log_longer);
 }
 
 /// The order of light; of light that is not known, that of places.

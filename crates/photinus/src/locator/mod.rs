@@ -180,27 +180,19 @@ impl Locator {
     /// # Errors
     /// [`LocateError::Size`] when the frame is not of the camera's size; spots have none.
     pub fn locate(&mut self, mut input: Input<'_>) -> Result<&Located, LocateError> {
-        let limit = match input.seen {
-            Seen::Frame(frame) => {
-                self.detect(frame, &mut input)?;
-                self.detector.detection_limit()
-            }
-            Seen::Spots(spots) => {
-                self.sight(spots.iter().map(|spot| (spot, None)), &mut input);
-                self.any_detection_limit
-            }
+        match input.seen {
+            Seen::Frame(frame) => self.detect(frame, &mut input)?,
+            Seen::Spots(spots) => self.sight(spots.iter().map(|spot| (spot, None)), &mut input),
             Seen::Signalled(spots) => {
                 self.sight(spots.iter().map(|(spot, signal)| (spot, *signal)), &mut input);
-                self.any_detection_limit
             }
-        };
+        }
         let size = [self.camera.width(), self.camera.height()];
         let vignetting = self.camera.optics().and_then(|optics| optics.vignetting.as_ref());
         let most = self.inference.most();
         brightness::tell(&mut self.located.sightings, vignetting, most, size, &mut self.by_cell);
         let log_longer = self.unit.log_longer(input.exposure_s);
-        brightness::shorten(&mut self.located.sightings, log_longer);
-        self.located.detection_limit = Some(LogLight { value: limit.value - log_longer, ..limit });
+        brightness::shorten(&mut self.located, log_longer);
         input.tell(Stage::Bearings);
         let watched = Watched::new(&self.camera, self.mask.as_ref());
         self.inference.explain(&mut self.located, watched, &mut input);
@@ -223,12 +215,14 @@ impl Locator {
         input.tell(Stage::Spots);
         let spots = detections.spots.iter().map(|spot| (spot, None));
         sight_all(&self.camera, self.curve.as_ref(), spots, &mut self.located);
+        self.located.detection_limit = self.detector.detection_limit();
         Ok(())
     }
 
     /// Sights the spots of another detector.
     fn sight<'a>(&mut self, spots: impl Iterator<Item = (&'a Spot, Option<u32>)>, input: &mut Input<'_>) {
         self.located.rejected.clear();
+        self.located.detection_limit = Some(self.any_detection_limit);
         input.tell(Stage::Spots);
         sight_all(&self.camera, self.curve.as_ref(), spots, &mut self.located);
     }

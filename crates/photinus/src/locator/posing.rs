@@ -228,7 +228,8 @@ impl Poser {
                 let part = merged_into(
                     &self.airframe,
                     &mode.pose,
-                    (bearing.vector(), resolution_rad),
+                    bearing.vector(),
+                    resolution_rad,
                     self.unit_sigma,
                 );
                 let Some(Part { probability, intensity, range2_m2 }) = part else { continue };

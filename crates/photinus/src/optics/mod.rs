@@ -8,6 +8,7 @@
 
 mod field;
 mod hot_pixels;
+mod log_light;
 mod response;
 mod sensor;
 mod spline;
@@ -18,6 +19,7 @@ pub(crate) use spread::{Placed, Profile, Shares};
 
 pub use field::SpreadField;
 pub use hot_pixels::{HotPixel, HotPixels};
+pub use log_light::LogLight;
 pub use response::Response;
 pub use sensor::{Measured, Saturation, Sensor};
 pub use spread::{Gaussian, PointSpread};

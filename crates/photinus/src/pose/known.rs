@@ -2,8 +2,8 @@
 
 use nalgebra::{Unit, Vector3};
 
-use super::observation::LogLight;
 use crate::camera::{Bearing, Watched};
+use crate::optics::LogLight;
 use crate::ranging::Interval;
 
 /// What is known of a neighbour besides its spots.

@@ -5,8 +5,8 @@ use core::f64::consts::TAU;
 use nalgebra::Vector6;
 
 use super::merging::Shining;
-use super::observation::LogLight;
 use super::problem::{Normal, Pose, Problem};
+use crate::optics::LogLight;
 
 /// Light tells no more than that of this many spots: lobes that are no cosines and lenses that darken towards their edge err alike
 /// for spots that are near each other.

@@ -42,6 +42,7 @@ mod symmetry;
 mod tests;
 mod visibility;
 
+pub use crate::optics::LogLight;
 pub(crate) use assignment::Assignment;
 pub use estimator::{Estimator, Posterior};
 pub use hypotheses::Hypotheses;
@@ -51,8 +52,8 @@ pub(crate) use measurement::{Measurement, Seen};
 pub use misfit::Misfit;
 pub(crate) use mixture::turn_of;
 pub use mixture::{Mode, Summary};
+pub use observation::Observation;
 pub(crate) use observation::Whitened;
-pub use observation::{LogLight, Observation};
 pub(crate) use p3p::p3p_with_near_misses;
 pub use p3p::{P3pSolutions, p3p};
 pub use pnp::pnp;

@@ -5,6 +5,7 @@ use nalgebra::{Matrix2x3, Matrix3, Vector3};
 use crate::camera::Bearing;
 #[cfg(not(feature = "std"))]
 use crate::float::Float as _;
+use crate::optics::LogLight;
 
 /// Variances of a direction are taken between these, rad^2: nothing is known to better than a millionth of a radian, and a
 /// sphere is no wider.
@@ -27,15 +28,6 @@ pub struct Observation {
     /// Logarithm of the density of such a spot as clutter, per sr and per unit of the logarithm of its light where that is known: what it is
     /// worth to be no marker.
     pub clutter_log_density: f64,
-}
-
-/// A logarithm of light, and how far its measurement can be off.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LogLight {
-    /// Natural logarithm.
-    pub value: f64,
-    /// Standard deviation of the measurement alone.
-    pub sigma: f64,
 }
 
 /// A direction with the map that makes its error one of unit covariance: e = map (u - direction).

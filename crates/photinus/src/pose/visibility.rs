@@ -3,26 +3,23 @@
 use nalgebra::Vector3;
 
 use super::merging::one_spot;
-use super::observation::LogLight;
 use super::problem::{Pose, Problem};
 use crate::airframe::{Airframe, Marker};
 use crate::camera::Bearing;
 #[cfg(not(feature = "std"))]
 use crate::float::Float as _;
+use crate::optics::LogLight;
+use crate::spots::ANY_LIMIT_SIGMA;
 
 /// Light at which a marker is found half of the time when nothing tells what is faintest, 1 being one LED straight ahead.
 const FAINTEST_SHARE: f64 = 0.15;
-
-/// A marker that gives less than this share of the light at which half are found is not expected, whatever the spread, and nothing is said against its absence
-/// where that costs less than so much, nats.
+/// A marker that gives less than this share of the light at which half are found is not expected, and where its absence costs less than so much, nats, it costs nothing:
+/// most markers of an airframe shine away.
 const NEGLIGIBLE_SHARE: f64 = 0.02;
 const NEGLIGIBLE: f64 = 1e-4;
-/// How much the light at which a marker is found differs from marker to marker when nothing tells it, as a logarithm: as before a lens as sharp as a pixel.
-const UNKNOWN_SIGMA: f64 = 0.33;
 /// A logistic distribution is nearest to a normal one whose sigma is so many times its scale (J. Aldrich, F. Nelson, Linear Probability, Logit, and Probit
 /// Models, 1984: 1.6 to 1.8).
 const SIGMAS_PER_SCALE: f64 = 1.7;
-
 /// However alike the LEDs are said to be, which of two is brighter is no surer than with this spread.
 const LEAST_UNIT_SIGMA: f64 = 0.05;
 
@@ -40,7 +37,7 @@ impl Rise {
 
     /// Of markers that a detector finds from so much light on, whose power is that of the airframe's file but for a spread, where that of all is known to a variance.
     fn of_markers(limit: Option<LogLight>, unit_sigma: f64, power_variance: f64) -> Self {
-        let sigma = limit.map_or(UNKNOWN_SIGMA, |limit| limit.sigma);
+        let sigma = limit.map_or(ANY_LIMIT_SIGMA, |limit| limit.sigma);
         Self::of((sigma * sigma + unit_sigma * unit_sigma + power_variance).sqrt())
     }
 
@@ -88,7 +85,8 @@ pub(crate) struct Part {
 pub(crate) fn merged_into(
     airframe: &Airframe,
     pose: &Pose,
-    (spot, resolution_rad): (&Vector3<f64>, f64),
+    spot: &Vector3<f64>,
+    resolution_rad: f64,
     unit_sigma: f64,
 ) -> Option<Part> {
     let camera_m = pose.camera_in_body_m();

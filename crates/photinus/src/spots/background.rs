@@ -112,9 +112,6 @@ impl Background {
 
     /// How far above the mean of dark pixels a pixel is bright at a place, and their noise, grey levels; of a frame that was measured.
     pub(super) fn step_above_dark(&self, [u, v]: [usize; 2]) -> Step {
-        if self.level.is_empty() {
-            return Step { step_dn: 1.0, noise_dn: 0.0 };
-        }
         let level = self.level(u, v);
         let [dark_dn, noise_dn] = self.dark(level);
         Step { step_dn: (f64::from(level) + f64::from(self.step) - dark_dn).max(1.0), noise_dn }

@@ -5,14 +5,14 @@
 
 #[cfg(not(feature = "std"))]
 use crate::float::Float as _;
-use crate::optics::PointSpread;
-use crate::pose::LogLight;
+use crate::optics::{LogLight, PointSpread};
 
 /// Places within a pixel that are looked at, along a side.
 const PLACES: usize = 6;
-/// Light over the step before any lens, px, and what that leaves open, as a logarithm: one in three lenses is sharper than a third of a pixel or wider than one.
+/// Light over the step before any lens, px, and what that leaves open, as a logarithm: what a lens as sharp as a pixel makes of points. Lenses differ by more, but all
+/// markers before one alike, and each is expected by itself: were it half a unit, lone reflections would be boards of 35 LEDs.
 const ANY_PX: f64 = 2.85;
-const ANY_SIGMA: f64 = 0.33;
+pub(crate) const ANY_SIGMA: f64 = 0.33;
 
 /// How far above the mean of dark pixels a pixel is bright, and their noise, grey levels.
 #[derive(Clone, Copy, Debug)]
@@ -32,8 +32,7 @@ pub(super) fn of_any_lens(step: Step) -> LogLight {
     LogLight { value: libm::log(ANY_PX * step.step_dn), sigma: libm::hypot(ANY_SIGMA, step.noise()) }
 }
 
-/// The limit for points that spread so, where windows see `seen` of their light.
-/// How high that is at its summit is known to `summit_sigma`, as a logarithm.
+/// The limit for points that spread so, where windows see `seen` of their light. How high the spread is at its summit is known to `summit_sigma`, as a logarithm.
 pub(super) fn of_spread(spread: &PointSpread, seen: f64, summit_sigma: f64, step: Step) -> LogLight {
     let at = |index: usize| (index as f64 + 0.5) / PLACES as f64 - 0.5;
     let (mut sum, mut squares) = (0.0, 0.0);

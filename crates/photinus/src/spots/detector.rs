@@ -16,8 +16,7 @@ use super::settings::{Brightness, Settings, SettingsError};
 use super::splitting::{Ground, Splitter};
 use super::{Detections, Extent, Rejected};
 use crate::frame::{FrameError, FrameView, Mask};
-use crate::optics::Optics;
-use crate::pose::LogLight;
+use crate::optics::{LogLight, Optics};
 
 /// Finds spots in frames. Keeps its room from frame to frame, so that a warm detector allocates nothing.
 #[derive(Debug)]
@@ -37,7 +36,7 @@ pub struct Detector {
     looks: Vec<Look>,
     detections: Detections,
     /// The middle of the last frame, px.
-    middle: [usize; 2],
+    middle: Option<[usize; 2]>,
 }
 
 impl Detector {
@@ -68,7 +67,7 @@ impl Detector {
             meter: Meter::new(&settings, optics),
             looks: Vec::new(),
             detections: Detections::default(),
-            middle: [0; 2],
+            middle: None,
         })
     }
 
@@ -85,7 +84,7 @@ impl Detector {
         if let Some(mask) = mask {
             mask.check_size(frame.width(), frame.height())?;
         }
-        self.middle = [frame.width() / 2, frame.height() / 2];
+        self.middle = Some([frame.width() / 2, frame.height() / 2]);
         self.background.measure(frame, self.settings.brightness);
         self.components.group(self.runs.find(frame, &self.background));
         self.outline_parts(frame, mask);
@@ -100,9 +99,9 @@ impl Detector {
     }
 
     /// Light at which a point is found half of the time in the frame that was handed last, grey levels, and how much that differs from point to point; in the
-    /// middle of the image.
-    pub fn detection_limit(&self) -> LogLight {
-        self.meter.detection_limit(self.background.step_above_dark(self.middle), self.middle)
+    /// middle of the image. `None` before a frame.
+    pub fn detection_limit(&self) -> Option<LogLight> {
+        self.middle.map(|middle| self.meter.detection_limit(self.background.step_above_dark(middle), middle))
     }
 
     /// The same of any detector with these settings, before any lens.

@@ -27,8 +27,7 @@ use crate::camera::Pixel;
 #[cfg(not(feature = "std"))]
 use crate::float::Float as _;
 use crate::frame::FrameView;
-use crate::optics::{Measured, Optics, PointSpread, Sensor};
-use crate::pose::LogLight;
+use crate::optics::{LogLight, Measured, Optics, PointSpread, Sensor};
 
 /// Error of measured charge that spills into a pixel, over that.
 const SPILL_ERROR: f64 = 0.1;

@@ -29,8 +29,7 @@ use crate::camera::Pixel;
 #[cfg(not(feature = "std"))]
 use crate::float::Float as _;
 use crate::frame::FrameView;
-use crate::optics::{Measured, Optics};
-use crate::pose::LogLight;
+use crate::optics::{LogLight, Measured, Optics};
 
 /// Standard deviation of a place known to lie somewhere in one pixel, px.
 const WITHIN_A_PIXEL: f64 = UNIFORM;

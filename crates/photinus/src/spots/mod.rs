@@ -67,6 +67,7 @@ use crate::camera::Pixel;
 use crate::float::Float as _;
 use crate::optics::Measured;
 
+pub(crate) use detection_limit::ANY_SIGMA as ANY_LIMIT_SIGMA;
 pub use detector::Detector;
 pub(crate) use hot_pixel::BEFOREHAND as HOT_BEFOREHAND;
 pub(crate) use measuring::{HIDDEN_LOG, HIDDEN_SIGMA};

@@ -38,7 +38,7 @@ python-aarch64 *arguments:
 
 # The notebook with its pictures, run anew by the wheel that `just python` has built.
 notebook:
-    target/python/bin/jupyter-execute --inplace --NbClientApp.record_timing=False crates/photinus-py/examples/first_look.ipynb
+    target/python/bin/python crates/photinus-py/run-notebook
 
 # Static programs for x86_64 and aarch64, and whether they compute what this machine's own does, bit for bit; needs rustup and qemu-user.
 static:

@@ -1,8 +1,8 @@
 //! Candidates with their probabilities -> the neighbours of a frame.
 //!
-//! The likeliest candidates that share no observation are neighbours. Others of the same observations that are at the same place are the same
-//! neighbour, seen by more or fewer of its markers: they add to its probability, widen its covariance and stand among its modes. Those at another
-//! place are what it may be otherwise.
+//! The likeliest candidates that share no observation are neighbours, each the vehicle that its surest observation is of. Others that have that observation,
+//! and those of the same observations that are at the same place, are the same neighbour, seen by other markers: they add to its probability, widen its
+//! covariance and bounds, and stand among its modes. The rest is what its observations may be otherwise.
 
 use alloc::vec::Vec;
 
@@ -84,10 +84,9 @@ impl Telling {
     /// Gathers the candidates that are the same neighbour as `own`; the likeliest that shares an observation but is another is the runner-up,
     /// unless it is likelier that there is nothing but clutter.
     fn gather(&mut self, candidates: &Candidates, explanation: &Explanation, own: usize) -> RunnerUp {
-        let shares = |other: &usize| {
-            let members = candidates.members(own);
-            candidates.members(*other).iter().any(|spot| members.contains(spot))
-        };
+        let members = candidates.members(own);
+        let shares = |other: &usize| candidates.members(*other).iter().any(|spot| members.contains(spot));
+        let surest = self.surest(candidates, explanation, own);
         self.same.clear();
         let mut other = RunnerUp { probability: 0.0, distance_m: None };
         let mut all = 0.0;
@@ -97,7 +96,7 @@ impl Telling {
             if index == own && probability == 0.0 {
                 // Unlikely to be chosen, but it is what the setting asks for.
                 self.same.push((index, f64::MIN_POSITIVE));
-            } else if is_same(candidates, own, index) {
+            } else if candidates.members(index).contains(&surest) || is_same(candidates, own, index) {
                 self.same.push((index, probability));
             } else if probability > other.probability {
                 let distance_m = candidates.get(index).distance.estimate.map(|estimate| estimate.distance_m);
@@ -106,6 +105,18 @@ impl Telling {
         }
         let clutter = (1.0 - all).max(0.0);
         if clutter >= other.probability { RunnerUp { probability: clutter, distance_m: None } } else { other }
+    }
+
+    /// The observation of a candidate that is most surely a neighbour's.
+    fn surest(&self, candidates: &Candidates, explanation: &Explanation, own: usize) -> usize {
+        let members = candidates.members(own);
+        let of_any = |spot: usize| -> f64 {
+            let with = self.order.iter().filter(|&&index| candidates.members(index).contains(&spot));
+            with.map(|&index| explanation.probability(index)).sum()
+        };
+        let surer = |a: (usize, f64), b: (usize, f64)| if b.1 > a.1 { b } else { a };
+        let each = members.iter().map(|&spot| (spot, of_any(spot)));
+        each.reduce(surer).map_or(members[0], |(spot, _)| spot)
     }
 
     /// Adds a neighbour: the mixture of the candidates that it is.
@@ -202,4 +213,75 @@ fn is_same(candidates: &Candidates, a: usize, b: usize) -> bool {
     let covariance_m2 = first.covariance_m2 + second.covariance_m2 + Matrix3::identity() * 1e-9;
     let squared = covariance_m2.cholesky().map(|factor| off_m.dot(&factor.solve(&off_m)));
     squared.is_some_and(|squared| squared < SAME_SIGMAS * SAME_SIGMAS)
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Vector3;
+
+    use super::super::candidates::Told;
+    use super::super::neighbour::Distance;
+    use super::*;
+    use crate::camera::Bearing;
+    use crate::pose::Misfit;
+
+    const SIGMA_M: f64 = 0.1;
+
+    /// Of observations at a distance.
+    fn told(distance_m: f64, log_density: f64) -> Told {
+        let bounds = Interval::new(distance_m - 1.0, distance_m + 1.0).unwrap();
+        let estimate = Some(Estimate { distance_m, sigma_m: SIGMA_M });
+        Told {
+            kind: 0,
+            bearing: Bearing::new(Vector3::z()).unwrap(),
+            distance: Distance { estimate, bounds, perpendicular_m: None, inline_m: None },
+            position: Some(Position {
+                mean_m: Vector3::z() * distance_m,
+                covariance_m2: Matrix3::identity() * (SIGMA_M * SIGMA_M),
+            }),
+            orientation: None,
+            misfit: Misfit { chi_square: 0.0, degrees: 0 },
+            worst_sigma: 0.0,
+            log_density,
+            reach_m: 0.1,
+        }
+    }
+
+    /// What is told of candidates, each of observations at a distance, where clutter has a density of 1.
+    fn neighbours(of: &[(&[usize], f64, f64)], observations: usize) -> Vec<Neighbour> {
+        let mut candidates = Candidates::with_room(of.len());
+        candidates.clear();
+        for &(members, distance_m, log_density) in of {
+            candidates.push(members, &[], told(distance_m, log_density));
+        }
+        let mut explanation = Explanation::with_room(of.len());
+        explanation.explain(&candidates, &alloc::vec![0.0; observations], 0.0);
+        let mut located = Located::default();
+        Telling::with_room(of.len()).tell(&candidates, &explanation, (0.5, observations), &mut located);
+        located.neighbours
+    }
+
+    #[test]
+    fn with_or_without_a_lamp_for_a_marker_it_is_one_vehicle_at_either_place() {
+        let likelier = libm::log(0.7 / 0.3);
+        let [only] = &neighbours(&[(&[0, 1, 2], 5.0, 20.0 + likelier), (&[0, 1], 9.0, 20.0)], 3)[..] else {
+            panic!("one vehicle");
+        };
+        assert!(only.probability > 0.999, "{only:?}");
+        let estimate = only.distance.estimate.unwrap();
+        assert!((estimate.distance_m - (0.7 * 5.0 + 0.3 * 9.0)).abs() < 1e-6, "{estimate:?}");
+        let variance_m2 = 0.7 * 0.3 * 16.0 + SIGMA_M * SIGMA_M;
+        assert!((estimate.sigma_m - variance_m2.sqrt()).abs() < 1e-6, "{estimate:?}");
+        assert!((only.position.unwrap().covariance_m2[(2, 2)] - variance_m2).abs() < 1e-6, "{only:?}");
+        assert_eq!(only.distance.bounds, Interval::new(4.0, 10.0).unwrap());
+    }
+
+    #[test]
+    fn what_has_only_a_less_sure_one_of_its_observations_elsewhere_is_another_vehicle() {
+        let of: [(&[usize], f64, f64); 3] = [(&[0, 1], 5.0, 22.0), (&[0], 5.0, 20.0), (&[1], 9.0, 1.0)];
+        let found = neighbours(&of, 2);
+        let [first, ..] = &found[..] else { panic!("a vehicle") };
+        assert!(first.sightings == [0, 1] && first.distance.bounds.max_m() < 9.0, "{first:?}");
+        assert!(first.runner_up.distance_m == Some(9.0), "{first:?}");
+    }
 }

@@ -14,7 +14,7 @@ use photinus::identity::decoder::{self, Decoder};
 use photinus::identity::{CodeBook, Evidence, Word};
 use photinus::locator::{self, Input, Located, Locator};
 use photinus::lookout::{Fleet, Glance, Lookout, Vehicle};
-use photinus::pose::{p3p, pnp};
+use photinus::pose::{LogLight, p3p, pnp};
 use photinus::spots::{Brightness, Detector, Extent, Settings, Spot};
 use photinus::tracking::{self, Look, Tracker};
 use rand_distr::{Distribution, Uniform};
@@ -352,7 +352,7 @@ fn a_warm_follower_allocates_nothing() {
                 time_s,
                 exposure_s: 1e-3,
                 sightings: &sightings[..all],
-                faintest_light: 100.0,
+                detection_limit: Some(LogLight { value: libm::log(100.0), sigma: 0.2 }),
                 turn: None,
                 watched: Watched::new(&camera, None),
             };

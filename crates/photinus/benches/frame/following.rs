@@ -62,7 +62,7 @@ impl Markers {
             time_s: self.frame as f64 / 60.0,
             exposure_s: 1e-3,
             sightings: &self.frames[self.frame % FRAMES],
-            faintest_light: 200.0,
+            detection_limit: Some(LogLight { value: libm::log(200.0), sigma: 0.2 }),
             turn: self.turn,
             watched: Watched::new(&self.camera, None),
         };

@@ -203,7 +203,7 @@ impl Follower {
             let bearing = Bearing::new(track.motion.ahead());
             let is_watched = bearing.is_some_and(|bearing| frame.watched.sees(&bearing));
             track.presence.wait(&passage, is_watched);
-            track.expect_absence(frame.faintest_light, is_watched, &self.settings);
+            track.expect_absence(frame.detection_limit, is_watched, &self.settings);
         }
         let numbered = self.tracks.iter().enumerate().filter(|(_, track)| track.is_confirmed());
         self.confirmed.begin(numbered.map(|(index, track)| (index, track.motion.ahead())));

@@ -4,6 +4,7 @@ use nalgebra::Rotation3;
 
 use crate::camera::Watched;
 use crate::locator::Sighting;
+use crate::optics::LogLight;
 use crate::tracking::Turned;
 
 /// A frame of a camera.
@@ -15,8 +16,9 @@ pub struct Frame<'a> {
     pub exposure_s: f64,
     /// What may be markers.
     pub sightings: &'a [Sighting],
-    /// Light at which a marker is found half of the time, in units of the sightings' light.
-    pub faintest_light: f64,
+    /// Light at which a marker is found half of the time, in the unit of the sightings' light, and how much that differs from marker to marker; `None` where
+    /// any is found.
+    pub detection_limit: Option<LogLight>,
     /// How the observer turned since the frame before, where that is known.
     pub turn: Option<Turn>,
     /// Where a marker would be seen.

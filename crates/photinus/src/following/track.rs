@@ -7,9 +7,8 @@ use super::presence::Presence;
 use super::seen::Seen;
 use crate::identity::{Evidence, Level, SHARES, density_of_light, probability_of_absence};
 use crate::locator::Sighting;
+use crate::optics::LogLight;
 
-/// Spread of the light at which a spot is found half of the time, as a share of it (rendered frames: 39, 71, 86 % at 0.9, 1.1, 1.3 times).
-const FAINTEST_SPREAD: f64 = 0.23;
 /// Range of the logarithm of light over which what is no marker of a track is even.
 const LIGHT_RANGE: f64 = 6.0;
 /// How much more likely a spot without light is of an LED that shines than of clutter, by the share of the exposure.
@@ -128,10 +127,11 @@ impl Track {
         !(self.presence.exists() > self.least && place.trace() < 2.0 * LOST_RAD * LOST_RAD)
     }
 
-    /// How likely no spot is, by the share of the exposure, where a frame shows spots from this light on.
-    pub(super) fn expect_absence(&mut self, faintest_light: f64, is_watched: bool, settings: &Settings) {
-        let dark =
-            |level: &Level| probability_of_absence(faintest_light, FAINTEST_SPREAD * faintest_light, level);
+    /// How likely no spot is, by the share of the exposure, where a frame shows half of the spots of this light.
+    pub(super) fn expect_absence(&mut self, limit: Option<LogLight>, is_watched: bool, settings: &Settings) {
+        let light = limit.map_or(0.0, |limit| libm::exp(limit.value));
+        let spread = limit.map_or(0.0, |limit| limit.sigma * light);
+        let dark = |level: &Level| probability_of_absence(light, spread, level);
         let absence = match (is_watched, &self.level) {
             (false, _) => [1.0; SHARES],
             (true, Some(level)) => dark(level),

@@ -295,7 +295,7 @@ impl Blinking {
             time_s: glance.time_s,
             exposure_s: glance.exposure_s,
             sightings: &glance.located.sightings,
-            faintest_light: glance.located.detection_limit.map_or(0.0, |limit| libm::exp(limit.value)),
+            detection_limit: glance.located.detection_limit,
             turn: glance.turned.map(following::Turn::from),
             watched,
         };

@@ -3,6 +3,7 @@
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use photinus::camera::Watched;
 use photinus::following::{Frame, Turn};
+use photinus::pose::LogLight;
 use proptest::prelude::*;
 
 use crate::follower;
@@ -36,7 +37,8 @@ proptest! {
                 time_s,
                 exposure_s: EXPOSURE_S,
                 sightings: &sightings,
-                faintest_light,
+                detection_limit: (faintest_light > 0.0)
+                    .then(|| LogLight { value: libm::log(faintest_light), sigma: 0.2 }),
                 turn: (kind % 2 == 0).then_some(turn),
                 watched: Watched::new(&camera, None),
             };

@@ -23,8 +23,9 @@ use photinus::following::{Follower, Frame, MarkerTrack, Settings, Turn};
 use photinus::identity::CodeBook;
 use photinus::identity::decoder::{self, Decoder, Who};
 use photinus::locator::Sighting;
+use photinus::pose::LogLight;
 use score::{Followed, Nees, Score, nearest};
-use world::{DEGREE, EXPOSURE_S, FAINTEST, GYRO_RAD_S, Marker, Swing, World, camera, words};
+use world::{DEGREE, EXPOSURE_S, FAINTEST, GYRO_RAD_S, Marker, Swing, World, camera, detection_limit, words};
 
 fn follower(acceleration_rad2_s3: f64) -> Follower {
     let decoder = Decoder::new(&CodeBook::new(words()).unwrap(), decoder::Settings::default()).unwrap();
@@ -43,7 +44,7 @@ fn follow<'a>(
         time_s: world.time_s,
         exposure_s: EXPOSURE_S,
         sightings,
-        faintest_light: FAINTEST,
+        detection_limit: detection_limit(),
         turn,
         watched: Watched::new(&world.camera, None),
     };
@@ -55,6 +56,35 @@ fn next<'a>(world: &mut World, follower: &'a mut Follower, has_gyro: bool) -> &'
     let sightings = world.next();
     let turn = has_gyro.then(|| world.turned(GYRO_RAD_S));
     follow(follower, world, &sightings, turn)
+}
+
+/// How likely a marker that always shone does in a frame that does not show it, where its light, half over the limit, is so far from sure to be found.
+fn lit_unseen(limit_sigma: f64) -> f64 {
+    let mut world = World::new(3, 1);
+    world.markers[0] = Marker { word: None, light: 1.5 * FAINTEST, ..world.markers[0].clone() };
+    let mut follower = follower(world.acceleration);
+    for number in 0..61 {
+        let mut sightings = world.next();
+        if number == 60 {
+            sightings.clear();
+        }
+        let frame = Frame {
+            time_s: world.time_s,
+            exposure_s: EXPOSURE_S,
+            sightings: &sightings,
+            detection_limit: Some(LogLight { value: libm::log(FAINTEST), sigma: limit_sigma }),
+            turn: None,
+            watched: Watched::new(&world.camera, None),
+        };
+        follower.follow(&frame).unwrap();
+    }
+    follower.tracks().iter().map(|track| track.lit).fold(0.0, f64::max)
+}
+
+#[test]
+fn what_is_not_surely_found_may_shine_unseen() {
+    let [sharp, blunt] = [0.1, 0.6].map(lit_unseen);
+    assert!(sharp < 0.5 * blunt && blunt > 0.1, "{sharp} {blunt}");
 }
 
 /// What six seconds showed of markers that were all followed.
@@ -280,7 +310,7 @@ fn times_that_stand_change_nothing() {
             time_s,
             exposure_s: EXPOSURE_S,
             sightings: &sightings,
-            faintest_light: FAINTEST,
+            detection_limit: detection_limit(),
             turn: None,
             watched,
         };

@@ -1,27 +1,11 @@
 //! Accuracy as it was committed, number for number: the example `world` with the argument `snapshot`.
 
-#![allow(dead_code, reason = "the example prints more than the test looks at")]
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
-
-#[path = "../examples/world/calibrated.rs"]
-mod calibrated;
-#[path = "../examples/world/cameras.rs"]
-mod cameras;
-#[path = "../examples/world/light.rs"]
-mod light;
-#[path = "../examples/world/priors.rs"]
-mod priors;
-#[path = "../examples/world/row.rs"]
-mod row;
-#[path = "../examples/world/snapshot.rs"]
-mod snapshot;
-#[path = "../examples/world/table.rs"]
-mod table;
-
 use photinus::camera::{Camera, Pixel};
 use photinus_io::dataset::{TruthFrame, TruthLed, TruthNeighbour};
 use photinus_sim::optics::{Lens, PointLight};
 use photinus_sim::sensor::Charge;
+
+use crate::{calibrated, cameras, row, snapshot};
 
 #[test]
 fn accuracy_is_what_was_committed() {

@@ -1,19 +1,5 @@
 //! The light at which the detector says that it finds half of the points, against how many it finds: rendered points before cameras that nothing was tuned to.
 
-#![allow(dead_code, reason = "the example prints more than the test looks at")]
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
-
-#[path = "../examples/world/calibrated.rs"]
-mod calibrated;
-#[path = "../examples/world/cameras.rs"]
-mod cameras;
-#[path = "../examples/world/light.rs"]
-mod light;
-#[path = "../examples/world/priors.rs"]
-mod priors;
-#[path = "../examples/world/row.rs"]
-mod row;
-
 use std::sync::Arc;
 
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
@@ -25,7 +11,9 @@ use photinus_sim::snapshot::{LedLight, Lit, Moving, Snapshot, Vehicle};
 use photinus_sim::{CameraView, Renderer};
 use rand_distr::{Distribution, Uniform};
 use rand_pcg::Pcg64;
-use row::Eye;
+
+use crate::row::Eye;
+use crate::{cameras, priors};
 
 /// Frames in which the detector learns the camera, and those that count.
 const FIRST: u64 = 40;

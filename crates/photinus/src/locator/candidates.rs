@@ -11,7 +11,7 @@ use crate::camera::Bearing;
 #[cfg(not(feature = "std"))]
 use crate::float::Float as _;
 use crate::normal;
-use crate::pose::{LogLight, Misfit, Mode};
+use crate::pose::{LogLight, Misfit, Missed, Mode};
 
 /// Modes that a candidate has at most, or nearly.
 const MODES_EACH: usize = 32;
@@ -33,6 +33,8 @@ pub(super) struct Candidate {
     pub(super) position: Option<Position>,
     pub(super) orientation: Option<Orientation>,
     pub(super) misfit: Misfit,
+    /// Its markers that must show, and those of them that do not.
+    pub(super) missed: Missed,
     /// Largest misfit, in sigma.
     pub(super) worst_sigma: f64,
     /// Logarithm of the density of its observations as this neighbour, if it is there: per sr and per unit of the logarithm of light each, times
@@ -54,6 +56,7 @@ pub(super) struct Told {
     pub(super) position: Option<Position>,
     pub(super) orientation: Option<Orientation>,
     pub(super) misfit: Misfit,
+    pub(super) missed: Missed,
     pub(super) worst_sigma: f64,
     pub(super) log_density: f64,
     /// How far its outermost marker is from its origin, m.
@@ -235,6 +238,7 @@ impl Candidates {
             position,
             orientation,
             misfit,
+            missed,
             worst_sigma,
             log_density,
             reach_m,
@@ -248,6 +252,7 @@ impl Candidates {
             position,
             orientation,
             misfit,
+            missed,
             worst_sigma,
             log_density,
             first_member: self.members.len(),
@@ -344,6 +349,7 @@ mod tests {
             position: Some(Position { mean_m, covariance_m2 }),
             orientation: None,
             misfit: Misfit { chi_square: 0.0, degrees: 0 },
+            missed: Missed::default(),
             worst_sigma: 0.0,
             log_density: 0.0,
             reach_m: REACH_M,

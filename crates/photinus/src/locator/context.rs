@@ -23,6 +23,8 @@ pub(super) struct Context<'a> {
     pub(super) power: Option<LogLight>,
     /// Light at which a marker is found half of the time, in the unit of the sightings' light, and how much that differs from marker to marker.
     pub(super) detection_limit: Option<LogLight>,
+    /// How often a marker that must show does not.
+    pub(super) miss_rate: f64,
     /// Logarithm of the density of each observation as clutter, per sr and per unit of the logarithm of its light.
     pub(super) clutter: &'a [f64],
     /// Logarithm of how many neighbours there are per sr.

@@ -24,7 +24,7 @@ use super::fixtures::Fixtures;
 use super::grouping::{CLEAR_SPOTS, Groups};
 use super::input::Input;
 use super::kinds::{Kind, Kinds};
-use super::memory::{Memory, Spread, Told};
+use super::memory::{Frame, Memory, Spread, Told};
 use super::near::Near;
 use super::neighbour::Located;
 use super::places::Places;
@@ -33,7 +33,7 @@ use super::telling::Telling;
 use super::whereabouts::Whereabouts;
 use super::{LocatorError, Stage};
 use crate::camera::{Camera, Watched};
-use crate::pose::LogLight;
+use crate::pose::{LogLight, Missed};
 
 /// This many of the observations nearest to each are known, and as many as one neighbour shows.
 const FEWEST_BESIDE: usize = 16;
@@ -63,6 +63,8 @@ const LOOKS_PER_WEIGHING: u32 = 32;
 pub(super) struct Inference {
     min_probability: f64,
     budget: u32,
+    /// How often a marker that must show is supposed not to.
+    supposed_miss_rate: f64,
     near: Near,
     kinds: Kinds,
     groups: Groups,
@@ -106,6 +108,7 @@ impl Inference {
         Ok(Self {
             min_probability: settings.min_probability,
             budget: settings.budget,
+            supposed_miss_rate: settings.pose.missed,
             near: Near::default(),
             kinds: Kinds::new(kinds, settings)?,
             groups: Groups::default(),
@@ -158,6 +161,7 @@ impl Inference {
             watched,
             power: None,
             detection_limit: located.detection_limit,
+            miss_rate: self.memory.miss_rate(self.supposed_miss_rate),
             clutter: &[],
             log_neighbours: 0.0,
             known: None,
@@ -184,8 +188,13 @@ impl Inference {
         self.fixtures.remember(sightings, |spot| self.explanation.clutter(spot));
         let power = self.power(&context);
         self.find_whereabouts();
-        let neighbours = (self.explanation.neighbours(), self.whereabouts.counts());
-        self.memory.remember(self.clutter.counts(), neighbours, power);
+        self.memory.remember(Frame {
+            clutter: self.clutter.counts(),
+            neighbours: self.explanation.neighbours(),
+            whereabouts: self.whereabouts.counts(),
+            power,
+            missed: missed(&self.candidates, &self.explanation),
+        });
         located.is_complete = work.left > 0 && besides.is_empty();
         self.telling.tell(
             &self.candidates,
@@ -364,6 +373,17 @@ impl Inference {
             - clutter.excess(&frame, |spot| explanation.clutter(spot))
             - excess_of_neighbours(explanation.neighbours(), density, memory)
     }
+}
+
+/// The markers that must show of what is explained, and those of them that do not.
+fn missed(candidates: &Candidates, explanation: &Explanation) -> Missed {
+    let mut all = Missed::default();
+    for index in 0..candidates.len() {
+        let Missed { expected, missed } = candidates.get(index).missed;
+        all.expected += explanation.probability(index) * expected;
+        all.missed += explanation.probability(index) * missed;
+    }
+    all
 }
 
 /// Work that is left for a frame, in first looks. Counted, not timed: the same frame is given up at the same place everywhere.

@@ -1,6 +1,6 @@
 //! What the frames before told: how bright the LEDs are, where clutter is, and how many neighbours there are, and where.
 //!
-//! In: of each frame its clutter, how many neighbours it has, where, and the power of their LEDs. Out: the same over the last [`Memory::FRAMES`] frames.
+//! In: of each frame its clutter, how many neighbours it has, where, the power of their LEDs, and which of these do not show. Out: the same over the last [`Memory::FRAMES`] frames.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -8,7 +8,7 @@ use alloc::vec::Vec;
 use super::whereabouts::PerFrame;
 #[cfg(not(feature = "std"))]
 use crate::float::Float as _;
-use crate::pose::LogLight;
+use crate::pose::{LogLight, Missed};
 
 /// Spread of the logarithm of light between neighbours, before any are compared: lobes, units, the lens towards its edge.
 pub(super) const LOG_POWER_SIGMA: f64 = 0.35;
@@ -16,6 +16,24 @@ pub(super) const LOG_POWER_SIGMA: f64 = 0.35;
 const SUPPOSED: f64 = 4.0;
 /// The power of the LEDs is known from this many frames on.
 const FEWEST: usize = 3;
+
+/// How often a marker that must show does not is supposed to be as sure as what so many markers would tell, ...
+const SUPPOSED_MARKERS: f64 = 50.0;
+/// ... and all frames tell no more than so many: they show the same ones again.
+const MOST_MARKERS: f64 = 200.0;
+
+/// What is remembered of a frame.
+#[derive(Clone, Copy)]
+pub(super) struct Frame<'a> {
+    /// By cell of the image and of light.
+    pub(super) clutter: &'a [f64],
+    pub(super) neighbours: f64,
+    /// By cell of the image and by distance.
+    pub(super) whereabouts: &'a [f64],
+    pub(super) power: Option<Told>,
+    /// Of all its neighbours.
+    pub(super) missed: Missed,
+}
 
 /// What a frame tells of the power of LEDs.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -95,6 +113,7 @@ pub(super) struct Memory {
     whereabouts: Counted,
     powers: Vec<Option<Told>>,
     neighbours: Vec<f64>,
+    missed: Vec<Missed>,
     sorted: Vec<f64>,
 }
 
@@ -111,6 +130,7 @@ impl Memory {
             whereabouts: Counted::new(whereabouts),
             powers: vec![None; Self::FRAMES],
             neighbours: vec![0.0; Self::FRAMES],
+            missed: vec![Missed::default(); Self::FRAMES],
             sorted: Vec::with_capacity(Self::FRAMES),
         }
     }
@@ -142,6 +162,17 @@ impl Memory {
     /// How many neighbours they had, together.
     pub(super) fn neighbours(&self) -> f64 {
         (0..self.frames).map(|age| self.neighbours[self.aged(age)]).sum()
+    }
+
+    /// How often a marker that must show does not, where it is supposed to this often.
+    pub(super) fn miss_rate(&self, supposed: f64) -> f64 {
+        let (mut expected, mut missed) = (0.0, 0.0);
+        for frame in (0..self.frames).map(|age| self.missed[self.aged(age)]) {
+            expected += frame.expected;
+            missed += frame.missed;
+        }
+        let share = if expected > MOST_MARKERS { MOST_MARKERS / expected } else { 1.0 };
+        (SUPPOSED_MARKERS * supposed + share * missed) / (SUPPOSED_MARKERS + share * expected)
     }
 
     /// The place of the frame this many frames ago.
@@ -185,17 +216,13 @@ impl Memory {
     }
 
     /// Remembers a frame and forgets the oldest.
-    pub(super) fn remember(
-        &mut self,
-        clutter: &[f64],
-        (neighbours, whereabouts): (f64, &[f64]),
-        power: Option<Told>,
-    ) {
+    pub(super) fn remember(&mut self, Frame { clutter, neighbours, whereabouts, power, missed }: Frame<'_>) {
         for (counted, counts) in [(&mut self.clutter, clutter), (&mut self.whereabouts, whereabouts)] {
             counted.frames[self.next * counted.cells..][..counted.cells].copy_from_slice(counts);
         }
         self.powers[self.next] = power;
         self.neighbours[self.next] = neighbours;
+        self.missed[self.next] = missed;
         self.next = (self.next + 1) % Self::FRAMES;
         self.frames = (self.frames + 1).min(Self::FRAMES);
         let next = self.next;
@@ -213,16 +240,19 @@ mod tests {
         Told { log_power, is_clear: false, spread: None }
     }
 
+    /// A frame with a neighbour.
+    fn of_power(power: Told) -> Frame<'static> {
+        let missed = Missed::default();
+        Frame { clutter: &[0.0], neighbours: 1.0, whereabouts: &[1.0], power: Some(power), missed }
+    }
+
     #[test]
     fn what_three_spots_tell_goes_before_what_two_do() {
         let mut memory = Memory::new(1, 1);
         for number in 0..Memory::FRAMES {
             let is_clear = number % 16 == 0;
-            memory.remember(
-                &[0.0],
-                (1.0, &[1.0]),
-                Some(Told { log_power: if is_clear { 10.0 } else { 8.0 }, is_clear, spread: None }),
-            );
+            let log_power = if is_clear { 10.0 } else { 8.0 };
+            memory.remember(of_power(Told { log_power, is_clear, spread: None }));
         }
         assert_eq!(memory.power(), Some(LogLight { value: 10.0, sigma: LOG_POWER_SIGMA }));
     }
@@ -238,7 +268,9 @@ mod tests {
             for number in first..200 {
                 let (clutter, power) = frame(number);
                 let neighbours = number as f64 % 3.0;
-                memory.remember(&clutter, (neighbours, &[0.9 * neighbours]), power);
+                let missed = Missed { expected: 3.0 * neighbours, missed: 0.1 * neighbours };
+                let whereabouts = &[0.9 * neighbours];
+                memory.remember(Frame { clutter: &clutter, neighbours, whereabouts, power, missed });
             }
             (
                 memory.frames(),
@@ -246,6 +278,7 @@ mod tests {
                 memory.neighbours(),
                 memory.whereabouts().sums[0].to_bits(),
                 memory.power(),
+                memory.miss_rate(0.02).to_bits(),
             )
         };
         assert_eq!(after(0), after(200 - Memory::FRAMES));
@@ -259,7 +292,7 @@ mod tests {
             let powers: Vec<f64> = (0..neighbours).map(|own| 9.0 + apart * own as f64).collect();
             for _ in 0..frames {
                 let spread = Spread::of(&powers);
-                memory.remember(&[0.0], (1.0, &[1.0]), Some(Told { log_power: 9.0, is_clear: true, spread }));
+                memory.remember(of_power(Told { log_power: 9.0, is_clear: true, spread }));
             }
             memory.power().unwrap().sigma
         };
@@ -274,9 +307,25 @@ mod tests {
         let mut memory = Memory::new(1, 1);
         assert_eq!(memory.power(), None);
         for number in 0..Memory::FRAMES {
-            memory.remember(&[0.0], (1.0, &[1.0]), Some(told(if number % 2 == 0 { 8.0 } else { 10.0 })));
+            memory.remember(of_power(told(if number % 2 == 0 { 8.0 } else { 10.0 })));
         }
         let LogLight { value, sigma } = memory.power().unwrap();
         assert!((8.0..=10.0).contains(&value) && sigma > 1.0, "{value} {sigma}");
+    }
+
+    #[test]
+    fn how_often_markers_are_missed_is_told_by_frames_but_never_for_sure() {
+        let after = |frames: usize, missed: f64| {
+            let mut memory = Memory::new(1, 1);
+            for _ in 0..frames {
+                let missed = Missed { expected: 4.0, missed };
+                memory.remember(Frame { missed, ..of_power(told(9.0)) });
+            }
+            memory.miss_rate(0.02)
+        };
+        assert!((after(0, 0.0) - 0.02).abs() < 1e-12);
+        assert!((after(10, 1.0) - (1.0 + 10.0) / (50.0 + 40.0)).abs() < 1e-12);
+        assert!((after(64, 1.0) - (1.0 + 50.0) / 250.0).abs() < 1e-12, "no more than 200 markers");
+        assert!((after(64, 0.0) - 1.0 / 250.0).abs() < 1e-12);
     }
 }

@@ -140,6 +140,7 @@ impl Poser {
         let power = if group.len() < CLEAR_SPOTS { context.power } else { None };
         let visible = Visible {
             detection_limit: context.detection_limit,
+            miss_rate: Some(context.miss_rate),
             watched: Some(context.watched),
             others: &self.others,
             lit: &self.lit,
@@ -174,7 +175,7 @@ impl Poser {
         (bounds, reach_m): (Interval, f64),
         candidates: &mut Candidates,
     ) {
-        let Posterior { summary, modes, markers, log_evidence, misfit, worst_sigma, log_power } =
+        let Posterior { summary, modes, markers, log_evidence, misfit, worst_sigma, missed, log_power } =
             self.estimator.posterior();
         let Some(summary) = *summary else { return };
         let Summary { pose, mut position_covariance_m2, mut distance, .. } = summary;
@@ -201,6 +202,7 @@ impl Poser {
                 position_covariance_m_rad: summary.position_orientation_covariance_m_rad,
             }),
             misfit: *misfit,
+            missed: *missed,
             worst_sigma: *worst_sigma,
             log_density: log_evidence - log_range(group.len())
                 + power_agreement(context, group, *log_power)

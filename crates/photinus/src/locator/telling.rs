@@ -223,7 +223,7 @@ mod tests {
     use super::super::neighbour::Distance;
     use super::*;
     use crate::camera::Bearing;
-    use crate::pose::Misfit;
+    use crate::pose::{Misfit, Missed};
 
     const SIGMA_M: f64 = 0.1;
 
@@ -241,6 +241,7 @@ mod tests {
             }),
             orientation: None,
             misfit: Misfit { chi_square: 0.0, degrees: 0 },
+            missed: Missed::default(),
             worst_sigma: 0.0,
             log_density,
             reach_m: 0.1,

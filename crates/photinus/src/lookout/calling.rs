@@ -161,6 +161,7 @@ impl Calling {
         };
         let visible = Visible {
             detection_limit: before.detection_limit,
+            miss_rate: None,
             watched: Some(before.watched),
             others: &[],
             lit: &self.lit,

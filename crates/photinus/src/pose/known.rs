@@ -36,6 +36,8 @@ pub struct Visible<'a> {
     /// Light at which a marker is found half of the time, in the units of the observations, and how much that differs from marker to marker; `None` where
     /// unknown.
     pub detection_limit: Option<LogLight>,
+    /// How often a marker that must show does not, where frames told it; as the settings have it where that is `None`.
+    pub miss_rate: Option<f64>,
     /// Where the camera looks; everywhere where that is `None`.
     pub watched: Option<Watched<'a>>,
     /// Spots that are not this neighbour's, near it: a marker beside one of them may be merged with it.

@@ -61,4 +61,5 @@ pub(crate) use problem::Normal;
 pub use problem::Pose;
 pub use settings::{Settings, SettingsError};
 pub use symmetry::Symmetry;
+pub use visibility::Missed;
 pub(crate) use visibility::{Part, merged_into};

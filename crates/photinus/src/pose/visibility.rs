@@ -104,7 +104,33 @@ pub(crate) fn merged_into(
     each.max_by(|a, b| a.probability.total_cmp(&b.probability))
 }
 
+/// Markers that must show, and those of them that do not, as far as a pose tells.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Missed {
+    /// How many must show.
+    pub expected: f64,
+    /// How many of these do not.
+    pub missed: f64,
+}
+
 impl Problem<'_> {
+    /// How often a marker that must show does not.
+    fn miss_rate(&self) -> f64 {
+        self.known.visible.miss_rate.unwrap_or(self.settings.missed)
+    }
+
+    /// The markers that must show at a pose and do not, as likely as that rate, what is too faint, and what merges make it.
+    pub(super) fn missed(&self, pose: &Pose, log_power: Option<f64>) -> Missed {
+        let odds = self.miss_rate() / (1.0 - self.miss_rate());
+        let mut all = Missed::default();
+        self.visibility(pose, log_power, |_, unseen| {
+            let missed = unseen.map_or(0.0, |unseen| odds * (1.0 - unseen) / unseen);
+            all.missed += missed;
+            all.expected += if unseen.is_some() { missed } else { 1.0 };
+        });
+        all
+    }
+
     /// What it costs, nats, that these markers are seen and the others are not, if an LED of intensity 1 at 1 m gives a light
     /// of this logarithm.
     pub(super) fn visibility_nats(&self, pose: &Pose, log_power: Option<f64>) -> f64 {
@@ -129,17 +155,18 @@ impl Problem<'_> {
             None => FAINTEST_SHARE,
         };
         let intensity = |marker: usize| self.airframe.intensity(marker, &camera_m);
+        let miss_rate = self.miss_rate();
         let mut nats = |marker: usize| {
             let shines = intensity(marker).max(1e-4);
             if shines < NEGLIGIBLE_SHARE * half && !self.is_used(marker) {
                 return 0.0;
             }
             let lit = self.known.visible.lit.get(marker).copied().unwrap_or(1.0);
-            let found = lit * (1.0 - self.settings.missed) * probability(rise.odds(shines / half));
+            let found = lit * (1.0 - miss_rate) * probability(rise.odds(shines / half));
             if self.is_used(marker) {
                 tell(marker, None);
                 // How rarely a marker that is too faint is found all the same was never measured: it is taken to be no rarer than that a bright one is missed.
-                return -libm::log(found.max(self.settings.missed.max(1e-9)));
+                return -libm::log(found.max(miss_rate.max(1e-9)));
             }
             if found < NEGLIGIBLE || !self.is_watched(pose, marker) {
                 return 0.0;

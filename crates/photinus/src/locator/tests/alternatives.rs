@@ -77,6 +77,7 @@ fn compare(
         power: None,
         detection_limit: limit(0.01 * FAINTEST),
         clutter: &clutter,
+        miss_rate: pose::Settings::default().missed,
         log_neighbours: 0.0,
         known: None,
     };

@@ -58,6 +58,7 @@ fn check(
             power,
             detection_limit: limit(FAINTEST),
             clutter: &density,
+            miss_rate: pose::Settings::default().missed,
             log_neighbours: 0.0,
             known: None,
         };

@@ -154,6 +154,8 @@ impl Inference {
         self.beforehand.expect(&located.rejected);
         let mut near = core::mem::take(&mut self.near);
         near.sort(sightings, self.kinds.most_visible().max(FEWEST_BESIDE));
+        let miss_rate = self.memory.miss_rate(self.supposed_miss_rate);
+        located.miss_rate = Some(miss_rate);
         let context = Context {
             sightings,
             near: &near,
@@ -161,7 +163,7 @@ impl Inference {
             watched,
             power: None,
             detection_limit: located.detection_limit,
-            miss_rate: self.memory.miss_rate(self.supposed_miss_rate),
+            miss_rate,
             clutter: &[],
             log_neighbours: 0.0,
             known: None,

@@ -94,4 +94,6 @@ pub struct Located {
     /// Light at which a marker is found half of the time, in the unit of the sightings' light, and how much that differs from marker to marker; `None` before a
     /// frame.
     pub detection_limit: Option<LogLight>,
+    /// How often a marker that must show does not, as the frames before told it; `None` before a frame.
+    pub miss_rate: Option<f64>,
 }

@@ -161,7 +161,7 @@ impl Calling {
         };
         let visible = Visible {
             detection_limit: before.detection_limit,
-            miss_rate: None,
+            miss_rate: before.miss_rate,
             watched: Some(before.watched),
             others: &[],
             lit: &self.lit,

@@ -152,6 +152,8 @@ struct Before<'a> {
     tracked: &'a Tracked,
     /// Light at which a marker is found half of the time, and how much that differs from marker to marker.
     detection_limit: Option<LogLight>,
+    /// How often a marker that must show does not.
+    miss_rate: Option<f64>,
     /// The light of an LED of intensity 1 at 1 m, where several tracks tell it.
     power: Option<LogLight>,
 }
@@ -223,8 +225,8 @@ impl Lookout {
         if let Some(blinking) = &mut self.blinking {
             let power = self.tracker.power(camera);
             let watched = self.tracker.rig().watched(camera);
-            let detection_limit = located.detection_limit;
-            let before = Before { watched, tracked: &self.tracked, detection_limit, power };
+            let Located { detection_limit, miss_rate, .. } = *located;
+            let before = Before { watched, tracked: &self.tracked, detection_limit, miss_rate, power };
             if self.tracker.is_of_another_clock(camera, time_s) {
                 blinking.followers.iter_mut().for_each(Follower::restart);
             }

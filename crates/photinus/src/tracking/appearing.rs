@@ -2,8 +2,8 @@
 //!
 //! A neighbour that is a vehicle's own spots, located again, is claimed and no news. The mixture of a neighbour's poses enters as it is. A vehicle that is
 //! heard appears once; where its track is lost, that one begins anew where the vehicle shows. So does a track that has its markers together with another
-//! vehicle's. Where one that was hidden may be what comes out, one that nobody knew of does so as seldom: a marker that comes out from behind another vehicle
-//! is the known one's rather than a stranger's.
+//! vehicle's. Where one that was hidden may be what comes out, one that nobody knew of does so as seldom as those that are hidden are gone: a marker that comes out
+//! from behind another vehicle is the known one's rather than a stranger's.
 
 use alloc::vec::Vec;
 
@@ -36,7 +36,7 @@ pub(super) fn appear(
     modes: &mut Vec<Component>,
     after: &mut State,
 ) -> f64 {
-    let Scene { model, moment, interval_s, .. } = *scene;
+    let Scene { moment, interval_s, .. } = *scene;
     let mut unexplained: f64 = claimed.iter().map(|claimed| (1.0 - claimed).max(0.0)).sum();
     for appearance in &moment.appearances {
         let members = moment.members(appearance);
@@ -49,11 +49,8 @@ pub(super) fn appear(
         };
         let free = if instead.is_some() { 1.0 } else { (1.0 - of_others).max(0.0) };
         let is_anybody = instead.is_none() && appearance.vehicle.is_none();
-        let seldom = if is_anybody && ways.may_be_hidden(members) {
-            existence::shows(interval_s, &model.settings)
-        } else {
-            1.0
-        };
+        let seldom =
+            if is_anybody && ways.may_be_hidden(members) { existence::comes(interval_s) } else { 1.0 };
         let exists = free * seldom_as(appearance.probability, seldom);
         unexplained -= exists * members.len() as f64;
         let is_there = |own: &Target| {

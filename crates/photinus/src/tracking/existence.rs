@@ -9,9 +9,9 @@ use super::settings::Settings;
 const LEAVES_SHOWN: f64 = 1.0 / 600.0;
 const LEAVES_HIDDEN: f64 = 1.0 / 60.0;
 
-/// How likely one that is hidden shows after a while.
-pub(super) fn shows(interval_s: f64, settings: &Settings) -> f64 {
-    within(1.0 / settings.hidden_s, interval_s)
+/// How likely one comes after a while that nobody knew of, out of where one is hidden: as often as those leave for good.
+pub(super) fn comes(interval_s: f64) -> f64 {
+    within(LEAVES_HIDDEN, interval_s)
 }
 
 /// How likely what happens at a rate has happened after a while.
@@ -39,7 +39,7 @@ impl Existence {
     /// A while later.
     pub(super) fn after(&self, interval_s: f64, settings: &Settings) -> Self {
         let within = |rate: f64| within(rate, interval_s);
-        let (hides, shows) = (within(settings.hiding_per_s), shows(interval_s, settings));
+        let (hides, shows) = (within(settings.hiding_per_s), within(1.0 / settings.hidden_s));
         let shown = self.shown * (1.0 - within(LEAVES_SHOWN));
         let hidden = self.hidden * (1.0 - within(LEAVES_HIDDEN));
         Self { shown: shown * (1.0 - hides) + hidden * shows, hidden: hidden * (1.0 - shows) + shown * hides }

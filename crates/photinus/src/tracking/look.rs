@@ -213,6 +213,8 @@ pub(super) struct Moment {
     pub(super) up: Option<Unit<Vector3<f64>>>,
     /// Light at which a marker is found half of the time, and how much that differs from marker to marker.
     pub(super) detection_limit: Option<LogLight>,
+    /// How often a marker that must show does not.
+    pub(super) miss_rate: Option<f64>,
     /// With the density of clutter per unit of the logarithm of its light, for one point of clutter per sr.
     pub(super) observations: Vec<Observation>,
     /// What the camera's calibration adds to the covariance of each.
@@ -254,6 +256,7 @@ impl Moment {
             |own: Moving| Moving { velocity_m_s: mounting.body_from_camera * own.velocity_m_s, ..own };
         self.moving = moving.map(of_body);
         self.detection_limit = located.detection_limit;
+        self.miss_rate = located.miss_rate;
         self.up = gravity.map(|down| -down);
         self.observations.clear();
         self.calibrations.clear();

@@ -411,7 +411,7 @@ impl Ways {
         let Scene { model, watched, moment, .. } = *scene;
         let visible = Visible {
             detection_limit: moment.detection_limit,
-            miss_rate: None,
+            miss_rate: moment.miss_rate,
             watched: Some(watched),
             others: &self.others,
             lit: &self.lit,

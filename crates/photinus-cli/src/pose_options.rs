@@ -25,7 +25,7 @@ pub(crate) struct PoseArgs {
     /// it, and all distances are off by as much
     #[arg(long, value_name = "SHARE", default_value_t = 0.01, value_parser = scale_sigma)]
     scale_sigma: f64,
-    /// Probability that a marker that faces the camera gives no spot, because it is dead or hidden
+    /// Probability that a marker that faces the camera gives no spot, because it is dead or hidden, before the frames tell it
     #[arg(long, alias = "missed", value_name = "SHARE", default_value_t = 0.02, value_parser = miss_rate)]
     miss_rate: f64,
     /// Do not use the brightness of spots for poses: for LEDs whose power or lobes are not known

@@ -17,7 +17,7 @@ pub struct Settings {
     /// decide nothing. Default 0.02: an LED mounted a degree askew.
     pub lobe_sigma: f64,
     /// How often a marker that must show does not: dead, occluded, taken for something else. It keeps alive the explanation of
-    /// two spots that a marker between them is missing. Default 0.02.
+    /// two spots that a marker between them is missing. What is believed before frames tell it ([`crate::pose::Visible::miss_rate`]). Default 0.02.
     pub missed: f64,
     /// Whether brightness counts. Default yes.
     pub use_brightness: bool,

@@ -97,7 +97,7 @@ typedef struct {
     double power_spread;
     // Spread of the size of the airframe, a share.
     double scale_sigma;
-    // How often a marker does not show, a share.
+    // How often a marker does not show, a share, before frames tell it.
     double miss_rate;
     // A TOML file with the curve of spot sizes, or "paper" for the paper's; null: none. Needed while the locator is opened only.
     const char *spot_curve;

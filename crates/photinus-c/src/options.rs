@@ -41,7 +41,7 @@ pub struct Options {
     pub power_spread: f64,
     /// Spread of the size of the airframe, a share.
     pub scale_sigma: f64,
-    /// How often a marker does not show, a share.
+    /// How often a marker does not show, a share, before frames tell it.
     pub miss_rate: f64,
     /// A TOML file with the curve of spot sizes, or "paper" for the paper's; null: none. Needed while the locator is opened only.
     pub spot_curve: *const c_char,

@@ -16,6 +16,7 @@ use super::turn::OwnTurn;
 use super::{Settings, SettingsError};
 use crate::camera::{Bearing, Camera};
 use crate::identity::decoder::{Decoder, TimeStands, Who};
+use crate::optics::LogLight;
 
 /// Tracks at most: beyond, no new ones begin.
 const MOST_TRACKS: usize = 512;
@@ -199,11 +200,15 @@ impl Follower {
     /// What the frame should show of each track.
     fn expect(&mut self, frame: &Frame<'_>, passed_s: f64) {
         let passage = Passage::of(passed_s, &self.settings);
+        let faintest = frame.detection_limit.map_or((0.0, 0.0), |LogLight { value, sigma }| {
+            let light = libm::exp(value);
+            (light, sigma * light)
+        });
         for track in &mut self.tracks {
             let bearing = Bearing::new(track.motion.ahead());
             let is_watched = bearing.is_some_and(|bearing| frame.watched.sees(&bearing));
             track.presence.wait(&passage, is_watched);
-            track.expect_absence(frame.detection_limit, is_watched, &self.settings);
+            track.expect_absence(faintest, is_watched, &self.settings);
         }
         let numbered = self.tracks.iter().enumerate().filter(|(_, track)| track.is_confirmed());
         self.confirmed.begin(numbered.map(|(index, track)| (index, track.motion.ahead())));

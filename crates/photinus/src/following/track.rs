@@ -7,7 +7,6 @@ use super::presence::Presence;
 use super::seen::Seen;
 use crate::identity::{Evidence, Level, SHARES, density_of_light, probability_of_absence};
 use crate::locator::Sighting;
-use crate::optics::LogLight;
 
 /// Range of the logarithm of light over which what is no marker of a track is even.
 const LIGHT_RANGE: f64 = 6.0;
@@ -127,10 +126,13 @@ impl Track {
         !(self.presence.exists() > self.least && place.trace() < 2.0 * LOST_RAD * LOST_RAD)
     }
 
-    /// How likely no spot is, by the share of the exposure, where a frame shows half of the spots of this light.
-    pub(super) fn expect_absence(&mut self, limit: Option<LogLight>, is_watched: bool, settings: &Settings) {
-        let light = limit.map_or(0.0, |limit| libm::exp(limit.value));
-        let spread = limit.map_or(0.0, |limit| limit.sigma * light);
+    /// How likely no spot is, by the share of the exposure, where a frame shows half of the spots of this light, which has this spread.
+    pub(super) fn expect_absence(
+        &mut self,
+        (light, spread): (f64, f64),
+        is_watched: bool,
+        settings: &Settings,
+    ) {
         let dark = |level: &Level| probability_of_absence(light, spread, level);
         let absence = match (is_watched, &self.level) {
             (false, _) => [1.0; SHARES],

@@ -33,6 +33,18 @@ fn follower(acceleration_rad2_s3: f64) -> Follower {
     Follower::new(&camera(), Some(decoder), settings).unwrap()
 }
 
+/// The frame of a world that shows these sightings.
+fn frame<'a>(world: &'a World, sightings: &'a [Sighting], turn: Option<Turn>) -> Frame<'a> {
+    Frame {
+        time_s: world.time_s,
+        exposure_s: EXPOSURE_S,
+        sightings,
+        detection_limit: detection_limit(),
+        turn,
+        watched: Watched::new(&world.camera, None),
+    }
+}
+
 /// Follows a frame.
 fn follow<'a>(
     follower: &'a mut Follower,
@@ -40,15 +52,7 @@ fn follow<'a>(
     sightings: &[Sighting],
     turn: Option<Turn>,
 ) -> &'a [MarkerTrack] {
-    let frame = Frame {
-        time_s: world.time_s,
-        exposure_s: EXPOSURE_S,
-        sightings,
-        detection_limit: detection_limit(),
-        turn,
-        watched: Watched::new(&world.camera, None),
-    };
-    follower.follow(&frame).unwrap()
+    follower.follow(&frame(world, sightings, turn)).unwrap()
 }
 
 /// The next frame, with a gyro or without.
@@ -68,15 +72,8 @@ fn lit_unseen(limit_sigma: f64) -> f64 {
         if number == 60 {
             sightings.clear();
         }
-        let frame = Frame {
-            time_s: world.time_s,
-            exposure_s: EXPOSURE_S,
-            sightings: &sightings,
-            detection_limit: Some(LogLight { value: libm::log(FAINTEST), sigma: limit_sigma }),
-            turn: None,
-            watched: Watched::new(&world.camera, None),
-        };
-        follower.follow(&frame).unwrap();
+        let limit = detection_limit().map(|limit| LogLight { sigma: limit_sigma, ..limit });
+        follower.follow(&Frame { detection_limit: limit, ..frame(&world, &sightings, None) }).unwrap();
     }
     follower.tracks().iter().map(|track| track.lit).fold(0.0, f64::max)
 }

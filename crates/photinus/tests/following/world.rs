@@ -13,14 +13,15 @@ use rand_pcg::Pcg64Mcg;
 pub const FRAME_S: f64 = 1.0 / 60.0;
 pub const EXPOSURE_S: f64 = 1e-3;
 pub const FAINTEST: f64 = 200.0;
-
-/// What the follower is told of it.
-pub fn detection_limit() -> Option<LogLight> {
-    Some(LogLight { value: libm::log(FAINTEST), sigma: 0.23 })
-}
 pub const DEGREE: f64 = std::f64::consts::PI / 180.0;
 /// Noise of a gyro.
 pub const GYRO_RAD_S: f64 = 0.3 * DEGREE;
+
+/// What the follower is told of the faintest light.
+pub fn detection_limit() -> Option<LogLight> {
+    Some(LogLight { value: libm::log(FAINTEST), sigma: 0.23 })
+}
+
 const SIGMA_PX: f64 = 0.1;
 const LIGHT_SIGMA: f64 = 0.05;
 /// Steps of the motion in a frame.

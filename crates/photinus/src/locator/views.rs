@@ -211,13 +211,8 @@ impl Seen {
 }
 
 impl Views {
-    /// What `airframe` can look like, where a bright marker that is not seen costs `unseen_nats`, by marker, and beside one that alone is seen
-    /// `unseen_alone_nats`.
-    pub(super) fn of(
-        airframe: &Airframe,
-        symmetry: &Symmetry,
-        [unseen_nats, unseen_alone_nats]: [&[f64]; 2],
-    ) -> Self {
+    /// What `airframe` can look like, where a bright marker that is not seen costs `unseen_nats`, by marker.
+    pub(super) fn of(airframe: &Airframe, symmetry: &Symmetry, unseen_nats: &[f64]) -> Self {
         let sector_rad = TAU / symmetry.turns() as f64;
         let yaws = (sector_rad / YAW_STEP_RAD).ceil().max(1.0) as usize;
         let mut views = Self {
@@ -236,7 +231,7 @@ impl Views {
                 let seen = look(airframe, yaw_rad, elevation_rad);
                 views.most_visible = views.most_visible.max(seen.len());
                 showing += libm::exp(log_prior) * f64::from(u8::from(!seen.is_empty()));
-                alone += libm::exp(log_prior) * alone_share(&seen, unseen_alone_nats);
+                alone += libm::exp(log_prior) * alone_share(&seen, unseen_nats);
                 if seen.len() >= 2 {
                     total += libm::exp(log_prior);
                     views.add(&seen, symmetry, [yaw_rad, elevation_rad], log_prior, unseen_nats);

@@ -76,13 +76,11 @@ pub(super) struct Matcher {
 
 impl Matcher {
     pub(super) fn new(airframe: &Airframe, max_tilt_rad: f64, believed: &pose::Settings) -> Self {
-        let not_missed = 1.0 - believed.missed;
-        let unseen_nats = unseen_nats(airframe, not_missed * (1.0 - UNSEEN));
-        // Whether the others are too faint a spot alone tells by its own light.
-        let unseen_alone_nats = self::unseen_nats(airframe, not_missed);
+        let seen = (1.0 - believed.missed) * (1.0 - UNSEEN);
+        let unseen_nats: Vec<f64> = lit(airframe).iter().map(|lit| -libm::log(1.0 - lit * seen)).collect();
         let grid_rad = ELEVATION_STEP_RAD / 2.0;
         let symmetry = Symmetry::of(airframe);
-        let views = Views::of(airframe, &symmetry, [&unseen_nats, &unseen_alone_nats]);
+        let views = Views::of(airframe, &symmetry, &unseen_nats);
         let bounds = DistanceBounds::new(airframe, max_tilt_rad);
         let log_flux_sigma = libm::hypot(LOG_FLUX_GRID, believed.unit_sigma);
         let most_unseen_nats = unseen_nats.iter().copied().fold(0.0, f64::max);
@@ -379,11 +377,6 @@ impl Matcher {
             }
         }
     }
-}
-
-/// What it costs that a marker is not seen, nats, by marker, where this share of those that are lit is.
-fn unseen_nats(airframe: &Airframe, seen: f64) -> Vec<f64> {
-    lit(airframe).iter().map(|lit| -libm::log(1.0 - lit * seen)).collect()
 }
 
 /// What the outline of all spots costs, nats, and the distance at which it fits best, m.

@@ -1,7 +1,7 @@
 //! An observation that is explained poorly -> other ways to put it together with those around it.
 //!
 //! In: an observation that may be clutter, or is of a group that fits poorly. Out: handfuls of it and those next to it, the likeliest by a first
-//! look, each to be weighed in full. What they leave is clutter, or another neighbour's. One that stands alone is put to the nearest group of several too,
+//! look, each to be weighed in full. What they leave is clutter, or another neighbour's. One that stands alone is put to the nearest group too,
 //! whatever that looks like at first: what hardly shows is hardly told from afar. A look is taken once a frame; what it is worth changes as clutter
 //! is known better.
 
@@ -175,10 +175,9 @@ impl Alternatives {
         }
         self.chosen.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
         self.chosen.truncate(MOST_WEIGHED);
-        let nearest = beside.map(|nearest| asked.groups.group_of(nearest));
-        if let (&[_], Some(nearest @ [_, _, ..])) = (asked.groups.group_of(observation), nearest) {
+        if let (&[_], Some(nearest)) = (asked.groups.group_of(observation), beside) {
             self.handful.push(observation);
-            self.handful.extend_from_slice(nearest);
+            self.handful.extend_from_slice(asked.groups.group_of(nearest));
             self.handful.sort_unstable();
             let most = kinds.most_in_full(asked.context, &self.handful);
             // A look says little of what only joins at a pinch.

@@ -39,9 +39,6 @@ use triples::Triples;
 
 /// What a neighbour costs, nats: fewer neighbours are the better explanation.
 pub(super) const NEIGHBOUR_NATS: f64 = 8.0;
-/// So many of the markers that a view shows have no spot of their own though they are not missed: they are too faint, or one spot with others, which views do
-/// not know. Of vehicles 2 to 15 m away, one or fifty, it is 13 to 17 in a hundred.
-const UNSEEN: f64 = 0.15;
 /// A view that costs this much more than the best one, nats, is no first guess of a pose. Views are a coarse grid, and what
 /// they cost as coarse.
 const POOR_NATS: f32 = 9.0;
@@ -76,8 +73,8 @@ pub(super) struct Matcher {
 
 impl Matcher {
     pub(super) fn new(airframe: &Airframe, max_tilt_rad: f64, believed: &pose::Settings) -> Self {
-        let seen = (1.0 - believed.missed) * (1.0 - UNSEEN);
-        let unseen_nats: Vec<f64> = lit(airframe).iter().map(|lit| -libm::log(1.0 - lit * seen)).collect();
+        let unseen_nats: Vec<f64> =
+            lit(airframe).iter().map(|lit| -libm::log(1.0 - lit * (1.0 - believed.missed))).collect();
         let grid_rad = ELEVATION_STEP_RAD / 2.0;
         let symmetry = Symmetry::of(airframe);
         let views = Views::of(airframe, &symmetry, &unseen_nats);

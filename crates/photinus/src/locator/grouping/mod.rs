@@ -39,8 +39,8 @@ const LARGEST_ORDERED: usize = 6;
 /// A handful may cost so much less in full than it looks, nats: of 20,000 neighbours of two or three spots in crowds of 20, nineteen in twenty cost no more
 /// than 2.6 less.
 const SLACK_NATS: f64 = 3.0;
-/// One spot alone that looks like costing more than this, nats, is clutter: of those in crowds of 20 and 50, ninety-nine in a hundred cost no more than 9.4
-/// less in full, where their neighbours' other markers may be in the spots of others.
+/// One spot alone that looks like costing more than this, nats, is clutter: of 113 that were neighbours in crowds of 20 and 50, where their other markers may be
+/// in the spots of others, none cost less in full by more than 9.4.
 const POOR_ALONE_NATS: f64 = 12.0;
 /// A group that costs more than this, nats, may not be one: half-way from a good match to two neighbours.
 const DOUBTFUL_NATS: f64 = 1.5 * NEIGHBOUR_NATS;

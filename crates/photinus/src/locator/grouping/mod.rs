@@ -39,9 +39,6 @@ const LARGEST_ORDERED: usize = 6;
 /// A handful may cost so much less in full than it looks, nats: of 20,000 neighbours of two or three spots in crowds of 20, nineteen in twenty cost no more
 /// than 2.6 less.
 const SLACK_NATS: f64 = 3.0;
-/// One spot alone that looks like costing more than this, nats, is clutter: of 113 that were neighbours in crowds of 20 and 50, where their other markers may be
-/// in the spots of others, none cost less in full by more than 9.4.
-const POOR_ALONE_NATS: f64 = 12.0;
 /// A group that costs more than this, nats, may not be one: half-way from a good match to two neighbours.
 const DOUBTFUL_NATS: f64 = 1.5 * NEIGHBOUR_NATS;
 
@@ -210,18 +207,15 @@ impl Groups {
         let (looks, most_visible) = (kinds.looks(), kinds.most_visible());
         let cost = |handful: &[usize]| {
             // One spot alone may be clutter as well.
-            let (at_most, poor) = match handful.len() {
-                1 => (0.0, POOR_ALONE_NATS),
-                _ => (f64::INFINITY, f64::INFINITY),
-            };
-            let cost = |log_density: f64| -context.gain(handful, log_density);
+            let at_most = if handful.len() == 1 { 0.0 } else { f64::INFINITY };
+            let cost = |log_density: f64| at_most.min(-context.gain(handful, log_density));
             match candidates.log_density(handful) {
-                Some(log_density) => Cost::Known(at_most.min(cost(log_density))),
+                Some(log_density) => Cost::Known(cost(log_density)),
                 None if candidates.was_weighed(handful) => Cost::Known(at_most),
-                None => match kinds.log_density(context, handful).map_or(f64::INFINITY, cost) {
-                    nats if nats > poor => Cost::Known(at_most),
-                    nats => Cost::Looks { nats: at_most.min(nats), known: at_most },
-                },
+                None => {
+                    let nats = kinds.log_density(context, handful).map_or(at_most, cost);
+                    Cost::Looks { nats, known: at_most }
+                }
             }
         };
         partition.each_rival(SLACK_NATS, most_visible, cost, |handful| rivals.push(handful, 0.0));

@@ -51,6 +51,8 @@ pub(super) struct Clutter {
     shares: Vec<f64>,
     /// The same of hot pixels.
     hot: Vec<f64>,
+    /// The same as `shares` while a group is asked about: of its observations those before one.
+    shares_before: Vec<f64>,
     counts: Counts,
     /// Counts of the observations before one.
     before: Counts,
@@ -65,6 +67,7 @@ impl Clutter {
             log_density: Vec::new(),
             shares: Vec::new(),
             hot: Vec::new(),
+            shares_before: Vec::new(),
             counts: Counts::of(size),
             before: Counts::of(size),
         }
@@ -89,6 +92,7 @@ impl Clutter {
     ) {
         let Surroundings { places, besides, companions, .. } = *frame;
         self.share_out(places, share);
+        self.shares_before.clone_from(&self.shares);
         self.counts.list.copy_from_slice(&besides.list);
         for index in 0..places.len() {
             self.count(places, index, 1.0);
@@ -131,19 +135,18 @@ impl Clutter {
     }
 
     /// The same of what comes and goes, for a group: the mean over its observations, one after the other.
-    fn mean_of_group(&self, frame: &Surroundings<'_>, members: &[usize]) -> f64 {
+    fn mean_of_group(&mut self, frame: &Surroundings<'_>, members: &[usize]) -> f64 {
         let each = members.iter().map(|&index| self.shares[index]).sum::<f64>() / members.len() as f64;
-        let one_after_the_other = |(before, &index): (usize, &usize)| {
-            let weight = |other: usize| match members[..before].contains(&other) {
-                true => each,
-                false if members.contains(&other) => 0.0,
-                false => self.shares[other],
-            };
+        members.iter().for_each(|&index| self.shares_before[index] = 0.0);
+        let mut sum = 0.0;
+        for (before, &index) in members.iter().enumerate() {
             let near = frame.companions.of(index).iter();
-            let beside: f64 = near.map(|near| weight(near.observation) * near.density).sum();
-            self.log_per_sr(&self.counts, frame, &frame.places[index], before as f64 * each, beside)
-        };
-        members.iter().enumerate().map(one_after_the_other).sum::<f64>() / members.len() as f64
+            let beside: f64 = near.map(|near| near.density_at(&self.shares_before)).sum();
+            sum += self.log_per_sr(&self.counts, frame, &frame.places[index], before as f64 * each, beside);
+            self.shares_before[index] = each;
+        }
+        members.iter().for_each(|&index| self.shares_before[index] = self.shares[index]);
+        sum / members.len() as f64
     }
 
     /// How much less likely it is that all observations are clutter, as likely as `share` tells, than the densities measured have it: each of those is

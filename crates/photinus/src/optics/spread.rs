@@ -1,9 +1,9 @@
 //! The effective point spread: the share of a point's light in a pixel, by how far its centre is from the point.
 //!
 //! In: samples four to a pixel, the integration over the pixel included (J. Anderson, I. King, PASP 112, 2000), or Gaussians.
-//! Out: shares and their slopes for a whole window of pixels at once. The spline through the samples has its coefficients
-//! sorted by phase: all pixels of a window have the same phase, so that each of the 16 coefficients that make a value comes from a
-//! plane of its own, in which neighbouring pixels lie side by side.
+//! Out: shares and their slopes for a whole window of pixels at once. The coefficients of the spline through the samples are
+//! sorted by phase along each row: all pixels of a window have the same phase, so that the coefficients that make the values of
+//! neighbouring pixels lie side by side.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -57,8 +57,8 @@ pub struct PointSpread {
     samples: Vec<f64>,
     /// Room to work in.
     table: Vec<f64>,
-    /// Planes of coefficients, first by the phase of rows, then by that of columns.
-    planes: Vec<f32>,
+    /// Coefficients of the spline: of each row of samples the columns of one phase after those of another.
+    coefficients: Vec<f32>,
 }
 
 impl PartialEq for PointSpread {
@@ -74,8 +74,10 @@ impl PointSpread {
     pub const SAMPLES_PER_PX: usize = PER_PX;
     /// Samples along a side.
     pub const SIDE: usize = 2 * PER_PX * Self::REACH_PX + 1;
-    /// Entries of a plane along a row: a pixel each, with room for whole lanes.
-    const PLANE: usize = (2 * Self::REACH_PX + 4).next_multiple_of(LANES) + LANES;
+    /// Coefficients of one phase along a row: a pixel each, with room for whole lanes.
+    const PHASE: usize = (2 * Self::REACH_PX + 4).next_multiple_of(LANES) + LANES;
+    /// Coefficients of a row.
+    const ROW: usize = PER_PX * Self::PHASE;
 
     /// A spread from its samples, row by row, the point in the middle. They are taken as they are: light that they lack is out of reach.
     ///
@@ -112,9 +114,10 @@ impl PointSpread {
 
     /// No light at all.
     pub(crate) fn dark() -> Self {
-        let plane = Self::PLANE * Self::PLANE;
         let samples = vec![0.0; Self::SIDE * Self::SIDE];
-        Self { table: samples.clone(), samples, planes: vec![0.0; PER_PX * PER_PX * plane] }
+        // A row for every sample of as many pixels as a phase has, and as much after the last as a read of four rows may take.
+        let coefficients = vec![0.0; PER_PX * Self::PHASE * Self::ROW + FOUR_ROWS];
+        Self { table: samples.clone(), samples, coefficients }
     }
 
     /// Takes all light away.
@@ -146,7 +149,7 @@ impl PointSpread {
         // The window of one pixel lies in the middle; others are this many pixels further.
         let across = Along::new((column - x_px) as f32, 0).shifted(column as isize);
         let down = Along::new((row - y_px) as f32, 0).shifted(row as isize);
-        f64::from(Placed::new(&self.planes, across, down).four(0, 0).share.to_array()[0])
+        f64::from(Placed::new(&self.coefficients, across, down).four(0, 0).share.to_array()[0])
     }
 
     /// How far apart two points of the same light must be that the middle between them is darker than both by an eighth, px: the
@@ -174,7 +177,7 @@ impl PointSpread {
         0.5 * (along(1) + along(Self::SIDE))
     }
 
-    /// Makes the planes of coefficients from the samples.
+    /// Makes the coefficients from the samples.
     pub(crate) fn sort_coefficients(&mut self) {
         let side = Self::SIDE;
         let mut room = [0.0; Self::SIDE];
@@ -192,12 +195,9 @@ impl PointSpread {
             }
             spline::coefficients(&mut line, &mut room);
             // A pixel before the first sample, so that no window begins outside.
-            let column = column + PER_PX;
+            let column = place_in_row(column + PER_PX);
             for (row, &value) in line.iter().enumerate() {
-                let row = row + PER_PX;
-                let plane = (row % PER_PX) * PER_PX + column % PER_PX;
-                let entry = (row / PER_PX) * Self::PLANE + column / PER_PX;
-                self.planes[plane * Self::PLANE * Self::PLANE + entry] = value as f32;
+                self.coefficients[(row + PER_PX) * Self::ROW + column] = value as f32;
             }
         }
         self.table = table;
@@ -206,8 +206,13 @@ impl PointSpread {
     /// The spread around a point that is (`u`, `v`) px from the middle of a window of `2 reach + 1` pixels. Point and window stay within
     /// reach of the table: what is further is taken for as far as that.
     pub(crate) fn placed(&self, u: f32, v: f32, reach: usize) -> Placed<'_> {
-        Placed::new(&self.planes, Along::new(u, reach), Along::new(v, reach))
+        Placed::new(&self.coefficients, Along::new(u, reach), Along::new(v, reach))
     }
+}
+
+/// Where a column of samples has its coefficient in a row.
+fn place_in_row(column: usize) -> usize {
+    column % PER_PX * PointSpread::PHASE + column / PER_PX
 }
 
 /// Where the coefficients of a window lie along one axis, and their weights.
@@ -245,11 +250,16 @@ impl Along {
     }
 }
 
+/// Coefficients that make the values of a row of pixels, as far as any column begins, and four more.
+const FOUR_ROWS: usize = PER_PX * PointSpread::ROW + LANES;
+
 /// A point spread around a point, ready for the pixels of a window.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Placed<'a> {
-    /// The planes of the coefficients, each from that of the first pixel on, down and across.
-    planes: [[&'a [f32]; 4]; 4],
+    /// The coefficients from those of the first row of pixels on.
+    coefficients: &'a [f32],
+    /// Where those of the first pixel are in a row.
+    columns: [usize; 4],
     across: Along,
     down: Along,
 }
@@ -266,30 +276,27 @@ pub(crate) struct Shares {
 }
 
 impl<'a> Placed<'a> {
-    fn new(planes: &'a [f32], across: Along, down: Along) -> Self {
-        const LENGTH: usize = PointSpread::PLANE * PointSpread::PLANE;
-        let planes = core::array::from_fn(|b| {
-            let y = down.first + b;
-            core::array::from_fn(|a| {
-                let x = across.first + a;
-                let plane = (y % PER_PX) * PER_PX + x % PER_PX;
-                let first = y / PER_PX * PointSpread::PLANE + x / PER_PX;
-                planes.get(plane * LENGTH + first..(plane + 1) * LENGTH).unwrap_or_default()
-            })
-        });
-        Self { planes, across, down }
+    fn new(coefficients: &'a [f32], across: Along, down: Along) -> Self {
+        let coefficients = coefficients.get(down.first * PointSpread::ROW..).unwrap_or_default();
+        let columns = core::array::from_fn(|a| place_in_row(across.first + a));
+        Self { coefficients, columns, across, down }
     }
 
     /// The shares in four pixels from `column` on in `row` of the window.
     #[inline(always)]
     pub(crate) fn four(&self, row: usize, column: usize) -> Shares {
-        let at = row * PointSpread::PLANE + column;
         let [mut share, mut by_u, mut by_v, mut by_uu, mut by_vv] = [Lanes::ZERO; 5];
-        for (b, planes) in self.planes.iter().enumerate() {
+        let rows = self.coefficients.get(PER_PX * row * PointSpread::ROW..);
+        let Some(rows) = rows.and_then(<[f32]>::first_chunk::<FOUR_ROWS>) else {
+            return Shares { share, by_u, by_v, by_variance: Lanes::ZERO };
+        };
+        // Modulo a power of two that no column reaches, which tells the compiler that four more are there.
+        let columns = self.columns.map(|first| (first + column) % PointSpread::ROW);
+        for b in 0..4 {
             let [mut along, mut slope, mut curvature] = [Lanes::ZERO; 3];
-            for (a, plane) in planes.iter().enumerate() {
-                let four = plane.get(at..at + LANES).and_then(<[f32]>::first_chunk::<LANES>);
-                let four = four.map_or(Lanes::ZERO, |&four| Lanes::new(four));
+            for (a, first) in columns.into_iter().enumerate() {
+                let at = b * PointSpread::ROW + first;
+                let four = Lanes::new([rows[at], rows[at + 1], rows[at + 2], rows[at + 3]]);
                 along += self.across.values[a] * four;
                 slope += self.across.slopes[a] * four;
                 curvature += self.across.curvatures[a] * four;

@@ -25,7 +25,7 @@ use crate::float::Float as _;
 /// Radius of the window in resolutions.
 const WINDOW: f64 = 1.32;
 /// Beyond this many resolutions markers have nothing to do with each other.
-const FAR: f64 = 2.0;
+pub(super) const FAR: f64 = 2.0;
 /// The window is moved so often to where the centre is.
 const MOVES: usize = 3;
 /// Lights that are kept while a centre is followed; more are worked out again each time.
@@ -276,7 +276,7 @@ impl Problem<'_> {
         kept.iter_mut().zip(lights).for_each(|(place, light)| *place = Some(light));
         let are_more = kept[KEPT - 1].is_some();
         let rest = || self.beside(spot, marker, *camera_m, *unseen).skip(KEPT - 1);
-        let all = || kept.into_iter().flatten().chain(are_more.then(rest).into_iter().flatten());
+        let all = || kept.iter().flatten().copied().chain(are_more.then(rest).into_iter().flatten());
         let open = |_: &Beside| Window { room: 1.0, gradient: Vector3::zeros() };
         let mut middle = centre_of(&alone_m, all(), open);
         for _ in 0..MOVES {

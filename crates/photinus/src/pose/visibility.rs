@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::merging::one_spot;
+use super::merging::{FAR, one_spot};
 use super::problem::{Pose, Problem};
 use crate::airframe::{Airframe, Marker};
 use crate::camera::Bearing;
@@ -89,6 +89,12 @@ pub(crate) fn merged_into(
     resolution_rad: f64,
     unit_sigma: f64,
 ) -> Option<Part> {
+    // No marker is seen further from the origin than sqrt(2) radii over its distance, as a chord.
+    let distance_m = pose.position_m.norm();
+    let near = core::f64::consts::SQRT_2 * airframe.max_radius_m() / distance_m + FAR * resolution_rad;
+    if (pose.position_m / distance_m - spot).norm_squared() > near * near * (1.0 + 1e-9) {
+        return None;
+    }
     let camera_m = pose.camera_in_body_m();
     let rise = Rise::of_markers(None, unit_sigma, 0.0);
     let each = airframe.markers().iter().enumerate().filter_map(|(marker, own)| {

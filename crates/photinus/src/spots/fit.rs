@@ -84,11 +84,11 @@ pub(super) trait Shape<const N: usize> {
     fn spill(&self, numbers: &SVector<f64, N>) -> Spill;
 }
 
-/// Tells the window what spills over from pixels that the model makes full.
+/// Keeps what a shape has in each four pixels of the window, and tells it what spills over from those that the model makes full.
 fn overflow<const N: usize>(window: &mut Window, shape: &impl Shape<N>, numbers: &SVector<f64, N>) {
+    window.keep(|four| shape.shares(four.row, four.column, numbers));
     let (light, level) = (Lanes::splat(numbers[LIGHT] as f32), Lanes::splat(numbers[LEVEL] as f32));
-    let spill = shape.spill(numbers);
-    window.overflow(&spill, |four| light * shape.shares(four.row, four.column, numbers).0 + level);
+    window.overflow(&shape.spill(numbers), |share| light * share + level);
 }
 
 /// A spot as fitted.
@@ -329,8 +329,12 @@ fn sums<const N: usize>(
     let [mut chi2, mut pixels, mut log_variances] = [Lanes::ZERO; 3];
     let mut products = [[Lanes::ZERO; N]; N];
     let mut right = [Lanes::ZERO; N];
-    for four in &window.fours {
-        let (columns, residual, weight) = weighed(four, shape, numbers, &model);
+    for (place, four) in window.fours.iter().enumerate() {
+        let shares = match window.kept(place) {
+            Some(kept) if window.full_px > 0 => kept,
+            _ => shape.shares(four.row, four.column, numbers),
+        };
+        let (columns, residual, weight) = weighed(four, shares, &model);
         let counts = lanes::less(Lanes::ZERO, weight);
         pixels += counts;
         if window.full_px > 0 {
@@ -370,11 +374,9 @@ struct PixelModel<'a> {
 #[inline(always)]
 fn weighed<const N: usize>(
     four: &Four,
-    shape: &impl Shape<N>,
-    numbers: &SVector<f64, N>,
+    (share, mut columns): (Lanes, [Lanes; N]),
     &PixelModel { light, level, noise, spilling, window }: &PixelModel<'_>,
 ) -> ([Lanes; N], Lanes, Lanes) {
-    let (share, mut columns) = shape.shares(four.row, four.column, numbers);
     let own = light * share;
     for column in &mut columns {
         *column *= light;
@@ -422,7 +424,8 @@ pub(super) fn residuals<const N: usize>(
     let (light, level) = (Lanes::splat(numbers[LIGHT] as f32), Lanes::splat(numbers[LEVEL] as f32));
     let model = PixelModel { light, level, noise, spilling: shape.spill(numbers).numbers, window };
     for four in &window.fours {
-        let (columns, residual, weight) = weighed(four, shape, numbers, &model);
+        let shares = shape.shares(four.row, four.column, numbers);
+        let (columns, residual, weight) = weighed(four, shares, &model);
         let own = (light * columns[LIGHT]).to_array();
         let seen = columns[LEVEL].to_array();
         let columns = columns.map(Lanes::to_array);

@@ -81,6 +81,7 @@ impl Fitter {
             second: first,
             place_px: [places[1].0, places[1].1],
             ln_ratio: libm::log(lights[1] / lights[0]),
+            times: Lanes::ONE,
         };
         let guess = (places[0].0, places[0].1, light);
         let fitted: Fitted<NUMBERS> = fit::fit(&mut self.window, &mut pair, guess, noise)?;
@@ -132,6 +133,8 @@ struct PointPair<'a> {
     second: PointSource<'a>,
     place_px: [f64; 2],
     ln_ratio: f64,
+    /// The light of the second over that of the first, where they were placed last.
+    times: Lanes,
 }
 
 impl PointPair<'_> {
@@ -157,7 +160,7 @@ impl Shape<NUMBERS> for PointPair<'_> {
     ) -> (Lanes, [Lanes; NUMBERS]) {
         let (one, by_one) = self.first.shares(row, column, &first(numbers));
         let (other, by_other) = self.second.shares(row, column, &Self::second(numbers));
-        let times = Lanes::splat(libm::exp(numbers[RATIO]) as f32);
+        let times = self.times;
         let mut columns = [Lanes::ZERO; NUMBERS];
         (columns[fit::U], columns[fit::V]) = (by_one[fit::U], by_one[fit::V]);
         columns[WIDTH] = by_one[WIDTH] + times * by_other[WIDTH];
@@ -177,6 +180,7 @@ impl Shape<NUMBERS> for PointPair<'_> {
     fn place(&mut self, numbers: &SVector<f64, NUMBERS>, reach: usize) {
         self.first.place(&first(numbers), reach);
         self.second.place(&Self::second(numbers), reach);
+        self.times = Lanes::splat(libm::exp(numbers[RATIO]) as f32);
     }
 
     fn believed(&self, number: usize) -> (f64, f64) {

@@ -49,6 +49,9 @@ pub(super) struct Window {
     /// Pixels that are full.
     pub(super) full_px: u32,
     pub(super) fours: Vec<Four>,
+    /// The share of the light that a shape has in each of them, and its slopes, those of one after those of another.
+    shares: Vec<Lanes>,
+    slopes: Vec<Lanes>,
     /// What noisy pixels read, and the signal at which they are cut off, grey levels; `None` where noise does not reach as low.
     pub(super) cut_off: CutOff,
     pub(super) floor_dn: Option<f32>,
@@ -175,16 +178,35 @@ impl Window {
         self.full_dn = response.straightened(f64::from(self.full_dn)).0 as f32;
     }
 
+    /// Keeps the share of the light and the slopes that a shape has in every four pixels.
+    pub(super) fn keep<const N: usize>(&mut self, shape: impl Fn(&Four) -> (Lanes, [Lanes; N])) {
+        self.shares.clear();
+        self.slopes.clear();
+        for four in &self.fours {
+            let (share, slopes) = shape(four);
+            self.shares.push(share);
+            self.slopes.extend_from_slice(&slopes);
+        }
+    }
+
+    /// What was kept of the four pixels of this number, as many slopes as were.
+    #[inline(always)]
+    pub(super) fn kept<const N: usize>(&self, four: usize) -> Option<(Lanes, [Lanes; N])> {
+        let slopes = self.slopes.get(four * N..)?.first_chunk()?;
+        Some((*self.shares.get(four)?, *slopes))
+    }
+
     /// Lets charge above a full well spill: a share of it into the four neighbours and the rest away, until no pixel has more; `model` is
-    /// the light of a pixel without that. Slopes by the share and by the logarithm of the well are worked out on demand.
-    pub(super) fn overflow(&mut self, spill: &Spill, model: impl Fn(&Four) -> Lanes) {
+    /// the light of pixels without that, by the share that was kept. Slopes by the share that spills and by the logarithm of the well are worked out on
+    /// demand.
+    pub(super) fn overflow(&mut self, spill: &Spill, model: impl Fn(Lanes) -> Lanes) {
         let side = 2 * self.reach + 1;
         let stride = side + LANES + 1;
         self.charge.clear();
         self.charge.resize((side + 2) * stride, 0.0);
-        for four in &self.fours {
+        for (four, &share) in self.fours.iter().zip(&self.shares) {
             let at = (four.row + 1) * stride + four.column + 1;
-            let light = (model(four) + four.others).to_array();
+            let light = (model(share) + four.others).to_array();
             // Beside the pixels that count a model may be without bounds.
             let charge = light.map(|light| if light.is_finite() { light } else { 0.0 });
             self.charge[at..at + LANES].copy_from_slice(&charge);
@@ -389,9 +411,10 @@ mod tests {
     fn light_without_bounds_leaves_nothing_to_the_next_step() {
         let mut window = Window { reach: 3, full_dn: 200.0, ..Window::default() };
         let spill = Spill { share: 0.3, ln_well: 0.7, relative_error: 0.3, numbers: None };
-        window.overflow(&spill, |_| Lanes::ZERO);
+        window.keep(|_| (Lanes::ZERO, []));
+        window.overflow(&spill, |share| share);
         window.given[40] = f32::INFINITY;
-        window.overflow(&spill, |_| Lanes::ZERO);
+        window.overflow(&spill, |share| share);
         assert!(window.given.iter().all(|&given| given == 0.0));
     }
 
@@ -403,7 +426,8 @@ mod tests {
             let spill = Spill { share: 0.3, ln_well: 0.0, relative_error: 0.3, numbers: None };
             let mut light = [0.0; LANES];
             (light[0], light[LANES - 1]) = (1000.0, beside);
-            window.overflow(&spill, |_| Lanes::new(light));
+            window.keep(|_| (Lanes::new(light), []));
+            window.overflow(&spill, |share| share);
             window.fours[0].spilled.to_array().map(f32::to_bits)
         };
         assert!(f32::from_bits(spilled(0.0)[1]) > 0.0);

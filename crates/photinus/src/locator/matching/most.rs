@@ -26,10 +26,14 @@ pub(super) const GRID_NATS: f64 = 5.0;
 pub(super) struct Most {
     /// By number of spots: the logarithm of how many orders of as many markers show.
     log_orders: Vec<f64>,
-    tilt_sigma_rad: f64,
-    /// Variance of a light for its LED alone, and with the grid of views.
+    /// Logarithm of the width of the tilt's distribution with gravity, and of upright's in the image without it.
+    log_tilt: [f64; 2],
+    /// Logarithm of the range of the logarithm of distance.
+    log_of_range: f64,
+    /// Variance of a light for its LED alone.
     unit_variance: f64,
-    grid_variance: f64,
+    /// Logarithm of the peak density of a light in a first look.
+    light_of_look: f64,
     /// What it costs at most that a marker that shows is not seen, nats.
     unseen_nats: f64,
     /// Standard deviation of a marker's place over how far the outermost can be apart.
@@ -72,9 +76,10 @@ impl Most {
             |spots: usize| (0..spots).map(|taken| libm::log((most_visible - taken) as f64)).sum();
         Self {
             log_orders: (0..=most_visible).map(log_orders).collect(),
-            tilt_sigma_rad: believed.tilt_sigma_rad,
+            log_tilt: [believed.tilt_sigma_rad, IMAGE_TILT_SIGMA].map(|sigma| libm::log(ROOT_OF_TAU * sigma)),
+            log_of_range: libm::log(LOG_RANGE),
             unit_variance: believed.unit_sigma * believed.unit_sigma,
-            grid_variance: log_flux_sigma * log_flux_sigma,
+            light_of_look: -0.5 * libm::log(TAU * (log_flux_sigma * log_flux_sigma)),
             unseen_nats,
             marker_share: believed.marker_sigma_m / (2.0 * reach_m),
         }
@@ -103,7 +108,7 @@ impl Most {
     pub(super) fn peak_of_look(&self, widest2_rad2: f64, is_lit: bool) -> Peak {
         // The two spots farthest apart make half of its squared size, at least.
         let variance_rad2 = GRID_ERROR * GRID_ERROR * 0.5 * widest2_rad2 + 1e-12;
-        let light = -0.5 * libm::log(TAU * self.grid_variance);
+        let light = self.light_of_look;
         Peak {
             direction: -libm::log(TAU * variance_rad2),
             light: if is_lit { light } else { light.max(0.0) },
@@ -125,15 +130,16 @@ impl Most {
         peak: Peak,
     ) -> f64 {
         let Some(log_orders) = self.log_orders.get(spots) else { return f64::NEG_INFINITY };
-        let tilt_sigma = if context.gravity.is_some() { self.tilt_sigma_rad } else { IMAGE_TILT_SIGMA };
+        let [of_gravity, of_image] = self.log_tilt;
+        let log_tilt = if context.gravity.is_some() { of_gravity } else { of_image };
         let first_light = first_light(context);
         let first_light = if peak.is_lit { first_light } else { first_light.max(0.0) };
         let further = spots as f64 - 2.0;
-        log_orders - libm::log(widest2_rad2) - libm::log(ROOT_OF_TAU * tilt_sigma)
+        log_orders - libm::log(widest2_rad2) - log_tilt
             + further * peak.direction
             + first_light
             + (further + 1.0) * peak.light
-            - libm::log(LOG_RANGE)
+            - self.log_of_range
     }
 
     /// The most that the density of the lights of a group can be.

@@ -64,10 +64,29 @@ impl Ordered {
         costs: &mut Vec<Lanes>,
     ) -> Best<'a> {
         let Band { all, quads } = arrangements.within(image.elevation_rad, tilt_sigma_rad);
+        // The number of spots is known when the loop over the views is compiled.
+        match self.count {
+            2 => self.add_costs::<2>(quads, image, tilt_sigma_rad, costs),
+            3 => self.add_costs::<3>(quads, image, tilt_sigma_rad, costs),
+            _ => self.add_costs::<MOST_ORDERED>(quads, image, tilt_sigma_rad, costs),
+        }
+        let least = costs.iter().fold(Lanes::splat(f32::INFINITY), |least, &four| least.fast_min(four));
+        let nats = least.to_array().into_iter().fold(f32::INFINITY, f32::min);
+        let of_best = costs.iter().flat_map(|four| four.to_array()).position(|cost| cost <= nats);
+        Best { nats, arrangement: &all[of_best.unwrap_or(0)], among: all, quads }
+    }
+
+    fn add_costs<const N: usize>(
+        &self,
+        quads: &[Quad],
+        image: &Image<'_>,
+        tilt_sigma_rad: f64,
+        costs: &mut Vec<Lanes>,
+    ) {
         let splat = |number: f64| Lanes::splat(number as f32);
-        let x: [Lanes; MOST_ORDERED] = core::array::from_fn(|spot| splat(self.shape[spot].x));
-        let y: [Lanes; MOST_ORDERED] = core::array::from_fn(|spot| splat(self.shape[spot].y));
-        let log_flux: [Lanes; MOST_ORDERED] = core::array::from_fn(|spot| splat(self.log_flux[spot]));
+        let x: [Lanes; N] = core::array::from_fn(|spot| splat(self.shape[spot].x));
+        let y: [Lanes; N] = core::array::from_fn(|spot| splat(self.shape[spot].y));
+        let log_flux: [Lanes; N] = core::array::from_fn(|spot| splat(self.log_flux[spot]));
         let per_shape = splat(0.5 / (self.shape_sigma * self.shape_sigma));
         let per_light = splat(0.5 / (self.log_flux_sigma * self.log_flux_sigma));
         let tilt = 1.0 / (tilt_sigma_rad * tilt_sigma_rad);
@@ -78,7 +97,7 @@ impl Ordered {
         costs.extend(quads.iter().map(|quad| {
             // Places as complex numbers: the best turn and scale is the sum of conj(w) z, its size tells how much they agree.
             let [mut dot, mut cross, mut light] = [Lanes::ZERO; 3];
-            for spot in 0..self.count {
+            for spot in 0..N {
                 dot += quad.x[spot] * x[spot] + quad.y[spot] * y[spot];
                 cross += quad.x[spot] * y[spot] - quad.y[spot] * x[spot];
                 let off = log_flux[spot] - quad.log_intensity[spot];
@@ -93,10 +112,6 @@ impl Ordered {
                 + off * off * per_elevation
                 + quad.nats
         }));
-        let least = costs.iter().fold(Lanes::splat(f32::INFINITY), |least, &four| least.fast_min(four));
-        let nats = least.to_array().into_iter().fold(f32::INFINITY, f32::min);
-        let of_best = costs.iter().flat_map(|four| four.to_array()).position(|cost| cost <= nats);
-        Best { nats, arrangement: &all[of_best.unwrap_or(0)], among: all, quads }
     }
 
     /// Variance of a place per axis, in the image, with the error of the grid of views.

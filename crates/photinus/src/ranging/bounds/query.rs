@@ -74,22 +74,17 @@ impl DistanceBounds {
         measured: &Measured,
         rows: impl Fn(&Column) -> Option<(usize, usize)>,
     ) -> Option<Interval> {
-        let (mut min_m, mut max_m) = (f64::INFINITY, f64::NEG_INFINITY);
-        for (column, any_row, by_row) in self.table.of_spots(spots) {
+        let allowed = |(column, any_row, by_row): (&Column, &Extents, &[Extents])| {
             let possible = measured.distances(column, any_row);
-            if possible.lo > possible.hi {
-                continue;
-            }
-            let Some((first, last)) = rows(column) else { continue };
-            for extents in &by_row[first..=last] {
-                let possible = measured.distances(column, extents);
-                if possible.lo <= possible.hi {
-                    min_m = min_m.min(possible.lo);
-                    max_m = max_m.max(possible.hi);
-                }
-            }
-        }
-        Interval::new(min_m, max_m)
+            let (first, last) = rows(column).filter(|_| possible.lo <= possible.hi)?;
+            let each = by_row[first..=last].iter().map(|extents| measured.distances(column, extents));
+            each.filter(|possible| possible.lo <= possible.hi)
+                .reduce(|all, one| Range { lo: all.lo.min(one.lo), hi: all.hi.max(one.hi) })
+        };
+        // From the farthest column to the nearest: those between the first and the last that allow any add nothing.
+        let farthest = self.table.of_spots(spots).find_map(allowed)?;
+        let nearest = self.table.of_spots(spots).rev().find_map(allowed)?;
+        Interval::new(nearest.lo, farthest.hi)
     }
 }
 
@@ -128,9 +123,12 @@ impl Measured {
 
     /// The distances of a column at which these extents meet the angles; `lo` above `hi` where they do not.
     fn distances(&self, column: &Column, extents: &Extents) -> Range {
-        let lo = (extents.widest.lo * self.widest.lo).max(extents.narrowest.lo * self.narrowest.lo);
-        let hi = (extents.widest.hi * self.widest.hi).min(extents.narrowest.hi * self.narrowest.hi);
-        Range { lo: lo.max(column.min_m), hi: hi.min(column.max_m) }
+        // What is no number, markers that may seem to be in one place at any distance, gives way to the other.
+        let larger = |a: f64, b: f64| if a > b { a } else { b };
+        let smaller = |a: f64, b: f64| if a < b { a } else { b };
+        let lo = larger(extents.narrowest.lo * self.narrowest.lo, extents.widest.lo * self.widest.lo);
+        let hi = smaller(extents.narrowest.hi * self.narrowest.hi, extents.widest.hi * self.widest.hi);
+        Range { lo: larger(lo, column.min_m), hi: smaller(hi, column.max_m) }
     }
 }
 

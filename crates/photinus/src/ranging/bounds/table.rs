@@ -131,8 +131,11 @@ impl Table {
         self.columns[COLUMNS - 1].min_m
     }
 
-    /// For this many spots, 2 or more: each column with its extents in any row and by row.
-    pub(super) fn of_spots(&self, spots: usize) -> impl Iterator<Item = (&Column, &Extents, &[Extents])> {
+    /// For this many spots, 2 or more: each column, the farthest first, with its extents in any row and by row.
+    pub(super) fn of_spots(
+        &self,
+        spots: usize,
+    ) -> impl DoubleEndedIterator<Item = (&Column, &Extents, &[Extents])> {
         let size = spots.min(self.any_row.len() / COLUMNS + 1) - 2;
         let any_row = &self.any_row[size * COLUMNS..][..COLUMNS];
         let rows = self.extents[size * COLUMNS * ROWS..][..COLUMNS * ROWS].chunks_exact(ROWS);

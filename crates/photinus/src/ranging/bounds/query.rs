@@ -81,9 +81,10 @@ impl DistanceBounds {
             each.filter(|possible| possible.lo <= possible.hi)
                 .reduce(|all, one| Range { lo: all.lo.min(one.lo), hi: all.hi.max(one.hi) })
         };
+        let possible = measured.distances(&Column::ANY, self.table.anywhere(spots));
         // From the farthest column to the nearest: those between the first and the last that allow any add nothing.
-        let farthest = self.table.of_spots(spots).find_map(allowed)?;
-        let nearest = self.table.of_spots(spots).rev().find_map(allowed)?;
+        let farthest = self.table.of_spots(spots, &possible).find_map(allowed)?;
+        let nearest = self.table.of_spots(spots, &possible).rev().find_map(allowed)?;
         Interval::new(nearest.lo, farthest.hi)
     }
 }

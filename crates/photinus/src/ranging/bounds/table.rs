@@ -78,6 +78,11 @@ pub(super) struct Column {
     pub(super) off_origin_rad: f64,
 }
 
+impl Column {
+    /// All distances.
+    pub(super) const ANY: Self = Self { min_m: 0.0, max_m: f64::INFINITY, off_origin_rad: PI };
+}
+
 /// The extents by number of spots, distance and elevation.
 #[derive(Clone, Debug)]
 pub(super) struct Table {
@@ -86,6 +91,8 @@ pub(super) struct Table {
     extents: Vec<Extents>,
     /// The hull over the rows: by number of spots from 2, then column.
     any_row: Vec<Extents>,
+    /// The hull over these: by number of spots from 2.
+    anywhere: Vec<Extents>,
 }
 
 impl Table {
@@ -102,6 +109,7 @@ impl Table {
         let mut columns = Vec::with_capacity(COLUMNS);
         let mut extents = vec![Extents::NONE; sizes * COLUMNS * ROWS];
         let mut any_row = vec![Extents::NONE; sizes * COLUMNS];
+        let mut anywhere = vec![Extents::NONE; sizes];
         for index in 0..COLUMNS {
             let inverse_m = Range { lo: inverse_m(index), hi: inverse_m(index + 1) };
             let min_m = 1.0 / inverse_m.hi;
@@ -121,25 +129,39 @@ impl Table {
                         rows[ROWS - 1 - row] = widened;
                     }
                     any_row[size * COLUMNS + index].include(&widened);
+                    anywhere[size].include(&widened);
                 }
             }
         }
-        Self { columns, extents, any_row }
+        Self { columns, extents, any_row, anywhere }
     }
 
     pub(super) fn near_m(&self) -> f64 {
         self.columns[COLUMNS - 1].min_m
     }
 
-    /// For this many spots, 2 or more: each column, the farthest first, with its extents in any row and by row.
+    /// For this many spots, 2 or more: the extents at any place of the camera.
+    pub(super) fn anywhere(&self, spots: usize) -> &Extents {
+        &self.anywhere[self.size(spots)]
+    }
+
+    /// For this many spots, 2 or more: each column with any of these distances, the farthest first, with its extents in any row and by row.
     pub(super) fn of_spots(
         &self,
         spots: usize,
+        distances_m: &Range,
     ) -> impl DoubleEndedIterator<Item = (&Column, &Extents, &[Extents])> {
-        let size = spots.min(self.any_row.len() / COLUMNS + 1) - 2;
-        let any_row = &self.any_row[size * COLUMNS..][..COLUMNS];
-        let rows = self.extents[size * COLUMNS * ROWS..][..COLUMNS * ROWS].chunks_exact(ROWS);
-        self.columns.iter().zip(any_row).zip(rows).map(|((column, any_row), rows)| (column, any_row, rows))
+        let first = self.columns.partition_point(|column| column.min_m > distances_m.hi);
+        let end = self.columns.partition_point(|column| column.max_m >= distances_m.lo).max(first);
+        let columns = self.size(spots) * COLUMNS + first..self.size(spots) * COLUMNS + end;
+        let by_row = self.extents[columns.start * ROWS..columns.end * ROWS].chunks_exact(ROWS);
+        let each = self.columns[first..end].iter().zip(&self.any_row[columns]).zip(by_row);
+        each.map(|((column, any_row), by_row)| (column, any_row, by_row))
+    }
+
+    /// The place of this number of spots.
+    fn size(&self, spots: usize) -> usize {
+        spots.min(self.anywhere.len() + 1) - 2
     }
 }
 

@@ -255,7 +255,7 @@ impl Inference {
             if work.left < *budget / 2 {
                 break;
             }
-            work.look(groups.find_rivals(group, &context, kinds, candidates));
+            work.look(groups.find_rivals((group, poor_gain), &context, kinds, candidates));
             for rival in groups.rivals() {
                 kinds.weigh(&context, rival, candidates, || work.weigh());
             }

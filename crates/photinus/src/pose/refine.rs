@@ -13,6 +13,10 @@ pub(super) const MOST_STEPS: usize = 80;
 const SMALL_GAIN: f64 = 1e-4;
 /// The same for a slice, which is one of many.
 const SMALL_SLICE_GAIN: f64 = 1e-2;
+/// A step within a slice that gains less than this, nats, leads to where slope and bend say it does: nothing is worked out anew there.
+const FORESEEN_GAIN: f64 = 0.1;
+/// From one slice to the next the pose changes by no more than so many times the yaw beyond what the first order has, unless it leaves its valley.
+const LEAP: f64 = 3.0;
 /// Most steps towards the least cost of a slice.
 const MOST_SLICE_STEPS: usize = 12;
 /// Longest step of the position, in distances, and of the attitude, rad.
@@ -28,6 +32,14 @@ pub(super) struct Refined {
 impl Refined {
     pub(super) fn at(problem: &Problem<'_>, pose: Pose) -> Self {
         Self { pose, normal: problem.normal(&pose) }
+    }
+
+    /// A step of all but yaw further, that gains so much, as slope and bend here foresee it.
+    fn foreseen(&self, rest: &Vector5<f64>, gain: f64) -> Self {
+        let mut normal = self.normal;
+        normal.nats -= 0.5 * gain;
+        normal.gradient += normal.information.fixed_columns::<5>(0) * rest;
+        Self { pose: self.pose.stepped(&rest.push(0.0)), normal }
     }
 }
 
@@ -115,6 +127,7 @@ impl Held {
         bend: &mut Vector5<f64>,
     ) -> Option<Self> {
         let mut there = Self::of(Refined::at(problem, self.bending(yaw_rad, bend)))?;
+        let mut off = Vector5::zeros();
         for _ in 0..MOST_SLICE_STEPS {
             let gradient = there.at.normal.gradient.fixed_rows::<5>(0).into_owned();
             let rest = -there.rest.solve(&gradient);
@@ -122,13 +135,20 @@ impl Held {
             if gain.is_nan() || gain <= SMALL_SLICE_GAIN {
                 break;
             }
+            if gain < FORESEEN_GAIN {
+                there.at = there.at.foreseen(&rest, gain);
+                off += rest;
+                break;
+            }
             let next = Refined::at(problem, there.at.pose.stepped(&shortened(rest.push(0.0))));
             if next.normal.nats > there.at.normal.nats {
                 break;
             }
             there = Self::of(next)?;
-            *bend += rest;
+            off += rest;
         }
+        // A leap, as where a marker turns away, is no bend of the valley.
+        *bend = if off.norm() > LEAP * yaw_rad.abs() { Vector5::zeros() } else { *bend + off };
         Some(there)
     }
 }

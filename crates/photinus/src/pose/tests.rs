@@ -3,6 +3,7 @@ use proptest::prelude::*;
 
 use super::observation::Whitened;
 use super::problem::Problem;
+use super::refine::{Held, MOST_STEPS, Refined, refine};
 use super::*;
 use crate::airframe::{Airframe, Led, Lobe, LobeTable, Ring};
 use crate::camera::Bearing;
@@ -303,4 +304,68 @@ fn nobody_is_behind_the_camera_that_sees_them() {
     };
     assert!(problem.normal_of_spots(&pose).nats.is_finite());
     assert!(problem.normal_of_spots(&mirrored).nats.is_infinite());
+}
+
+/// How much lower, nats, a pose with its yaw held may still come, by slope and bend there.
+fn height_over_valley(problem: &Problem<'_>, pose: &Pose) -> Option<f64> {
+    let held = Held::of(Refined::at(problem, *pose))?;
+    let slope = held.at.normal.gradient.fixed_rows::<5>(0).into_owned();
+    Some(0.5 * slope.dot(&held.rest.solve(&slope)))
+}
+
+#[test]
+fn slices_lie_at_the_bottom_of_their_valley() {
+    let (settings, airframe) = (Settings::default(), hexarotor());
+    let (mut slices, mut off) = (0, 0);
+    for (number, spots) in (0..120).zip([1, 1, 2, 2, 3].into_iter().cycle()) {
+        let yaw_rad = 0.37 * f64::from(number);
+        let pose = Pose {
+            position_m: Vector3::new(0.3, -0.2 + 0.01 * f64::from(number), 2.0 + 0.05 * f64::from(number)),
+            camera_from_body: level() * Rotation3::new(Vector3::z() * yaw_rad),
+        };
+        let camera_m = pose.camera_in_body_m();
+        let mut seen: Vec<usize> = airframe.visible(camera_m).collect();
+        seen.sort_by(|&a, &b| airframe.intensity(b, &camera_m).total_cmp(&airframe.intensity(a, &camera_m)));
+        seen.truncate(spots);
+        let observations: Vec<Observation> = seen
+            .iter()
+            .map(|&marker| {
+                let place = pose.camera_from_body * airframe.markers()[marker].position_m + pose.position_m;
+                let light = airframe.intensity(marker, &camera_m) / place.norm_squared();
+                observation(place.normalize(), 2e-3, light)
+            })
+            .collect();
+        let whitened: Vec<Whitened> = observations.iter().map(|seen| Whitened::of(seen, 0.0)).collect();
+        let markers: Vec<Option<u16>> = seen.iter().map(|&marker| Some(marker as u16)).collect();
+        let size = LogDistance { mean: libm::log(pose.position_m.norm()), sigma: 0.3 };
+        let up = (number % 2 == 0).then(|| Unit::new_unchecked(-Vector3::y()));
+        let power = LogLight { value: 0.0, sigma: 0.35 };
+        let known = Known {
+            up,
+            size: (spots == 1).then_some(size),
+            power: (spots == 1).then_some(power),
+            ..nothing()
+        };
+        let problem = Problem {
+            airframe: &airframe,
+            settings: &settings,
+            observations: &observations,
+            whitened: &whitened,
+            markers: &markers,
+            known: &known,
+            merging: false,
+            repeats: 1.0,
+        };
+        let mode = refine(&problem, pose, MOST_STEPS);
+        let mut components = Vec::new();
+        along_yaw::spread(&problem, &mode, 0, &mut components);
+        let best = components.iter().map(|component| component.log_weight).fold(f64::NEG_INFINITY, f64::max);
+        for component in components.iter().filter(|component| component.log_weight > best - 5.0) {
+            slices += 1;
+            let height = height_over_valley(&problem, &component.pose).unwrap_or(f64::INFINITY);
+            off += usize::from(height > 0.02);
+        }
+    }
+    // Those beside a marker that turns away may have no bottom.
+    assert!(slices > 1000 && off * 50 < slices, "{off} of {slices}");
 }

@@ -190,10 +190,11 @@ impl Groups {
         self.list.group(group)
     }
 
-    /// Finds the handfuls of a group and of those that it touches which may be right and are no candidates. Returns how many looks that took.
+    /// Finds the handfuls of a group and of those that it touches which may be right and are no candidates; one spot alone only where it may gain more than
+    /// `poor_gain` over clutter. Returns how many looks that took.
     pub(super) fn find_rivals(
         &mut self,
-        group: usize,
+        (group, poor_gain): (usize, f64),
         context: &Context<'_>,
         kinds: &mut Kinds,
         candidates: &Candidates,
@@ -212,10 +213,14 @@ impl Groups {
             match candidates.log_density(handful) {
                 Some(log_density) => Cost::Known(cost(log_density)),
                 None if candidates.was_weighed(handful) => Cost::Known(at_most),
-                None => {
-                    let nats = kinds.log_density(context, handful).map_or(at_most, cost);
-                    Cost::Looks { nats, known: at_most }
-                }
+                None => match kinds.log_density(context, handful) {
+                    Some(look)
+                        if handful.len() > 1 || context.gain(handful, look) + SLACK_NATS > poor_gain =>
+                    {
+                        Cost::Looks { nats: cost(look), known: at_most }
+                    }
+                    _ => Cost::Known(at_most),
+                },
             }
         };
         partition.each_rival(SLACK_NATS, most_visible, cost, |handful| rivals.push(handful, 0.0));

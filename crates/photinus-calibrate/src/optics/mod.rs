@@ -10,6 +10,7 @@
 //! ground       how the level under each spot rises and bends
 //! spot, field  places and light of spots by the table, the table by what they leave, in turn (phases: kept even)
 //! light        noise against light, and how wrong the table is
+//! source_size  how wide sources are, by their light
 //! response     whether bright spots are flatter than faint ones
 //! spill        what the excess of full pixels does to their neighbours
 //! choice       which spots are fit to learn from
@@ -38,6 +39,7 @@ mod prediction;
 mod profile;
 mod response;
 mod saturation;
+mod source_size;
 mod spill;
 mod spot;
 mod start;
@@ -162,6 +164,10 @@ pub fn learn(collection: &Collection) -> Result<Learned, LearnError> {
     let [shape_error, wings_error] =
         Field::scatter(&halves).map(|scatter| light.noise.shape.max(scatter).min(1.0));
     let spread = field.spread([shape_error, wings_error.max(shape_error)])?;
+    let spread = match source_size::learn(told, &field, &light.noise) {
+        Some(size) => spread.with_source_size(size)?,
+        None => spread,
+    };
     let hot_pixels = standing.as_ref().map(|standing| hot_pixels(standing, &spread)).transpose()?;
     let (sensor, mut unseen) = sensor(&darkness, &light, pile.as_ref(), spill);
     let missing = [

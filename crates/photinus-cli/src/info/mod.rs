@@ -16,6 +16,8 @@ use photinus_io::codes::read_codes;
 use photinus_io::kind::Kind;
 use photinus_io::{Error, Result};
 
+pub(crate) use optics::sources;
+
 use crate::aligned::{Aligned, Side};
 use crate::codes;
 use crate::failure::Failure;

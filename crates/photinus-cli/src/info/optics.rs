@@ -1,6 +1,6 @@
 //! The optics of a camera: what was measured, and what was not.
 
-use photinus::optics::{Measured, Optics};
+use photinus::optics::{Measured, Optics, SourceSize};
 use photinus_io::camera::OpticsSummary;
 
 use super::Report;
@@ -12,6 +12,7 @@ pub(super) fn report(optics: &Optics, summary: Option<&OpticsSummary>, report: &
     let wings = 100.0 * optics.spread.wings_error();
     let known = format!("known to {error:.2} % of a pixel's light, {wings:.1} % beside its summit");
     report.fact("point spread", format!("{}, {known}", widths(optics)));
+    report.fact("sources", sources(optics.spread.source_size()));
     let plain = |measured: Measured| format!("{:.4} ± {:.4}", measured.value, measured.sigma);
     let levels = |measured: Measured| format!("{:.2} ± {:.2} grey levels", measured.value, measured.sigma);
     report.fact("read noise", levels(sensor.read_noise_dn));
@@ -56,6 +57,15 @@ pub(super) fn report(optics: &Optics, summary: Option<&OpticsSummary>, report: &
     if !summary.unseen.is_empty() {
         report.fact("unseen", format!("{}: believed, not measured", summary.unseen.join(", ")));
     }
+}
+
+/// How wide sources are.
+pub(crate) fn sources(size: &SourceSize) -> String {
+    let SourceSize { light_dn, growth_px2: Measured { value, sigma }, scatter_px2 } = size;
+    let (value, sigma, scatter) = (1e3 * value, 1e3 * sigma, 1e3 * scatter_px2);
+    format!(
+        "wider by {value:.1} ± {sigma:.1}e-3 px^2 with every {light_dn:.0} grey levels of light, scatter {scatter:.1}e-3"
+    )
 }
 
 /// Widths of the point spread over the image.

@@ -3,7 +3,7 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-use super::{OpticsError, PointSpread, check};
+use super::{OpticsError, PointSpread, SourceSize, check};
 use crate::camera::Pixel;
 
 /// Point spreads of a grid of zones that share the image evenly.
@@ -15,6 +15,7 @@ pub struct SpreadField {
     per_zone: [f64; 2],
     shape_error: f64,
     wings_error: f64,
+    source_size: SourceSize,
 }
 
 impl SpreadField {
@@ -45,7 +46,15 @@ impl SpreadField {
         let is_legal = (0.0..=1.0).contains(&shape_error);
         check("the error of the point spread", shape_error, is_legal, "a share, 0 to 1")?;
         let per_zone = [columns as f64 / width_px, rows as f64 / height_px];
-        Ok(Self { columns, rows, zones, per_zone, shape_error, wings_error: shape_error })
+        Ok(Self {
+            columns,
+            rows,
+            zones,
+            per_zone,
+            shape_error,
+            wings_error: shape_error,
+            source_size: SourceSize::UNKNOWN,
+        })
     }
 
     /// The same, wrong by `wings_error` of the light in a pixel beside the summit: fewer spots tell what is there.
@@ -56,6 +65,15 @@ impl SpreadField {
         let is_legal = (0.0..=1.0).contains(&wings_error);
         check("the error of the point spread's wings", wings_error, is_legal, "a share, 0 to 1")?;
         Ok(Self { wings_error, ..self })
+    }
+
+    /// The same, learnt from sources of this size.
+    ///
+    /// # Errors
+    /// [`OpticsError`] for numbers that no source has.
+    pub fn with_source_size(self, source_size: SourceSize) -> Result<Self, OpticsError> {
+        source_size.check()?;
+        Ok(Self { source_size, ..self })
     }
 
     /// The spread at a place.
@@ -85,5 +103,10 @@ impl SpreadField {
     /// How wrong it is beside its summit, where all of a saturated spot that can be seen lies.
     pub fn wings_error(&self) -> f64 {
         self.wings_error
+    }
+
+    /// How wide sources are, beyond those that it was learnt from.
+    pub fn source_size(&self) -> &SourceSize {
+        &self.source_size
     }
 }

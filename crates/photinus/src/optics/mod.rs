@@ -11,6 +11,7 @@ mod hot_pixels;
 mod log_light;
 mod response;
 mod sensor;
+mod source_size;
 mod spline;
 mod spread;
 mod vignetting;
@@ -22,6 +23,7 @@ pub use hot_pixels::{HotPixel, HotPixels};
 pub use log_light::LogLight;
 pub use response::Response;
 pub use sensor::{Measured, Saturation, Sensor};
+pub use source_size::SourceSize;
 pub use spread::{Gaussian, PointSpread};
 pub use vignetting::Vignetting;
 

@@ -17,7 +17,7 @@ use super::window::{Four, Spill, Window};
 #[cfg(not(feature = "std"))]
 use crate::float::Float as _;
 use crate::lanes::{self, Lanes};
-use crate::optics::{PointSpread, Shares};
+use crate::optics::{Measured, PointSpread, Shares, SourceSize};
 
 /// Steps of Gauss and Newton at most; of a spot with full pixels, whose set of pixels that count changes.
 const STEPS: usize = 8;
@@ -39,6 +39,8 @@ const SETTLED_PX: f64 = 0.05;
 const LIGHT_STEP: f64 = 3.0;
 /// Share of a pixel's noise that must not be cut off for what it leaves to tell of noise.
 const WHOLLY_SEEN: f32 = 0.98;
+/// No source's own variance is known better than this, px^2.
+const LEAST_SIZE_PX2: f64 = 1e-4;
 /// How far the level of the background is known beforehand, grey levels.
 const LEVEL_KNOWN_DN: f64 = 3.0;
 
@@ -130,6 +132,14 @@ impl<const N: usize> Fitted<N> {
 
     pub(super) fn light(&self) -> f64 {
         self.numbers[LIGHT]
+    }
+
+    /// The same with another light and its variance.
+    pub(super) fn with_light(self, light: f64, variance: f64) -> Self {
+        let Self { mut numbers, mut covariance, .. } = self;
+        numbers[LIGHT] = light;
+        covariance[(LIGHT, LIGHT)] = variance;
+        Self { numbers, covariance, ..self }
     }
 
     pub(super) fn light_variance(&self) -> f64 {
@@ -410,6 +420,33 @@ fn weighed<const N: usize>(
     (columns, residual, four.counts * tells / variance)
 }
 
+/// What full pixels add to the normal equations at the answer of a fit: the matrix, and the right side.
+pub(super) fn of_full_pixels<const N: usize>(
+    window: &mut Window,
+    shape: &mut impl Shape<N>,
+    fitted: &Fitted<N>,
+    noise: PixelNoise,
+) -> (SMatrix<f64, N, N>, SVector<f64, N>) {
+    let numbers = &fitted.numbers;
+    shape.place(numbers, window.reach);
+    overflow(window, shape, numbers);
+    let (light, level) = (Lanes::splat(numbers[LIGHT] as f32), Lanes::splat(numbers[LEVEL] as f32));
+    let model = PixelModel { light, level, noise, spilling: shape.spill(numbers).numbers, window };
+    let (mut matrix, mut right) = (SMatrix::zeros(), SVector::zeros());
+    for (place, four) in window.fours.iter().enumerate().filter(|(_, four)| four.full != Lanes::ZERO) {
+        let Some(shares) = window.kept::<N>(place) else { continue };
+        let (columns, residual, weight) = weighed(four, shares, &model);
+        let columns = columns.map(Lanes::to_array);
+        let (residual, weight) = (residual.to_array(), (weight * four.full).to_array());
+        for lane in (0..lanes::LANES).filter(|&lane| weight[lane] > 0.0) {
+            let slopes = SVector::<f64, N>::from_fn(|i, _| f64::from(columns[i][lane]));
+            matrix += slopes * slopes.transpose() * f64::from(weight[lane]);
+            right += slopes * f64::from(weight[lane] * residual[lane]);
+        }
+    }
+    (matrix, right)
+}
+
 /// Tells of each pixel that counts and is not full the own light of a spot that is fitted, and its squared residual, over 1 less the share of
 /// it that the fit took away.
 pub(super) fn residuals<const N: usize>(
@@ -449,15 +486,16 @@ pub(super) fn residuals<const N: usize>(
 #[derive(Clone, Copy)]
 pub(super) struct PointSource<'a> {
     spread: &'a PointSpread,
-    /// Standard deviation that a source's own variance is believed to have, px^2.
-    size_px2: f64,
+    size: SourceSize,
+    /// What is believed of its own variance, px^2: mean and one over the variance.
+    believed: (f64, f64),
     spill: Spill,
     placed: Option<crate::optics::Placed<'a>>,
 }
 
 impl<'a> PointSource<'a> {
-    pub(super) fn new(spread: &'a PointSpread, size_px2: f64, spill: Spill) -> Self {
-        Self { spread, size_px2, spill, placed: None }
+    pub(super) fn new(spread: &'a PointSpread, size: SourceSize, spill: Spill) -> Self {
+        Self { spread, size, believed: (0.0, 0.0), spill, placed: None }
     }
 }
 
@@ -472,10 +510,12 @@ impl Shape<5> for PointSource<'_> {
 
     fn place(&mut self, numbers: &SVector<f64, 5>, reach: usize) {
         self.placed = Some(self.spread.placed(numbers[U] as f32, numbers[V] as f32, reach));
+        let Measured { value, sigma } = self.size.believed(numbers[LIGHT]);
+        self.believed = (value, 1.0 / (sigma * sigma).max(LEAST_SIZE_PX2 * LEAST_SIZE_PX2));
     }
 
     fn believed(&self, _: usize) -> (f64, f64) {
-        (0.0, 1.0 / (self.size_px2 * self.size_px2))
+        self.believed
     }
 
     fn spill(&self, _: &SVector<f64, 5>) -> Spill {

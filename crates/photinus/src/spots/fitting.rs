@@ -17,6 +17,7 @@ use super::full_level::FullLevel;
 use super::hot_pixel::{self, Lone, LonePixels};
 use super::learning::{Belief, UNKNOWNS};
 use super::lessons::LEARNT_FRAMES;
+use super::limits;
 use super::neighbourhood::Neighbourhood;
 use super::part::Part;
 use super::patch::{self, Dark, Surroundings};
@@ -27,7 +28,7 @@ use crate::camera::Pixel;
 #[cfg(not(feature = "std"))]
 use crate::float::Float as _;
 use crate::frame::FrameView;
-use crate::optics::{LogLight, Measured, Optics, PointSpread, Sensor};
+use crate::optics::{LogLight, Measured, Optics, PointSpread, Sensor, SourceSize};
 
 /// Error of measured charge that spills into a pixel, over that.
 const SPILL_ERROR: f64 = 0.1;
@@ -39,8 +40,6 @@ const MARGIN_PX: f64 = 2.2;
 const OTHERS_PX: f64 = 5.0;
 /// How far the light of another spot is known, as a share of it.
 const OTHERS_KNOWN: f64 = 0.05;
-/// A source's own variance is believed to be about this, px^2.
-pub(super) const SIZE_PX2: f64 = 0.05;
 /// Pixels by whose number the scatter of a spot's own residuals counts against the noise that all tell.
 const PIXELS_OF_ALL: f64 = 30.0;
 /// A misfit (squared residuals over degrees of freedom) from which a spot is no point's light.
@@ -48,7 +47,7 @@ pub(super) const NO_POINT: f64 = 25.0;
 /// Error of the centre of a saturated core of no pixels at all, px; it falls with the root of their number.
 pub(super) const SATURATION_BLUR_PX: f64 = 0.13;
 /// Error of light over that of the shape: of a spot that is seen whole, of one of which only the wings are.
-pub(super) const WHOLE: f64 = 0.5;
+pub(super) const WHOLE: f64 = 0.4;
 const WINGS: f64 = 1.0;
 /// Error of a centre that a wrong shape makes, px; it grows with the square of the shape's error.
 const MISSHAPEN_PX: f64 = 1.0;
@@ -168,7 +167,8 @@ impl Fitter {
         // A point spread that is known tells by itself, by what it does not fit, whether it is worth while to look for motion.
         self.motion = None;
         let knows = self.is_sharp() && self.unknown_shape() == 0.0;
-        if !knows {
+        // While frames still teach, streaks must not be taken for points.
+        if !knows || self.learns() {
             self.motion = self.motion(frame, parts, near, full_from);
         }
         self.learn(frame, parts, near, full_from);
@@ -382,6 +382,11 @@ impl Fitter {
         }
     }
 
+    /// How wide sources are, beyond those that the point spread was learnt from.
+    pub(super) fn source_size(&self) -> SourceSize {
+        self.optics.as_ref().map_or(SourceSize::UNKNOWN, |optics| *optics.spread.source_size())
+    }
+
     /// What becomes of charge above a full well.
     pub(super) fn spill(&self) -> Spill {
         self.optics.as_ref().map_or_else(|| self.belief.spill(), |optics| measured_spill(&optics.sensor))
@@ -397,7 +402,7 @@ impl Fitter {
         let guess = self.guess(part);
         if is_sharp {
             let spread = spread(self.optics.as_deref(), &self.belief, part.guess);
-            let mut point = PointSource::new(spread, SIZE_PX2, self.spill());
+            let mut point = PointSource::new(spread, self.source_size(), self.spill());
             if let Some(motion) = self.motion {
                 let streak: Option<Fitted<7>> =
                     fit::fit(&mut self.window, &mut Smeared::new(point, motion), guess, noise);
@@ -412,8 +417,9 @@ impl Fitter {
                     (_, still) => self.told(&still?, noise, part),
                 };
             }
-            let fitted = fit::fit(&mut self.window, &mut point, guess, noise);
-            self.told(&fitted?, noise, part)
+            let fitted = fit::fit(&mut self.window, &mut point, guess, noise)?;
+            let fitted = limits::held(&mut self.window, &mut point, fitted, noise);
+            self.told(&fitted, noise, part)
         } else if let Some(motion) = self.motion {
             let mut streak = Smeared::new(self.belief.free(), motion);
             let fitted: Option<Fitted<{ UNKNOWNS + 2 }>> =

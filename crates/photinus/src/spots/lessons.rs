@@ -7,7 +7,7 @@
 use nalgebra::SVector;
 
 use super::fit::{self, Fitted, PixelNoise, PointSource, Shape, WIDTH};
-use super::fitting::{Fitter, NO_POINT, SIZE_PX2, WIDEST_POINT_PX};
+use super::fitting::{Fitter, NO_POINT, WIDEST_POINT_PX};
 use super::learning::{Belief, Information, NUMBERS, Told, UNKNOWNS};
 use super::neighbourhood::Neighbourhood;
 use super::part::Part;
@@ -17,6 +17,7 @@ use super::window::Window;
 #[cfg(not(feature = "std"))]
 use crate::float::Float as _;
 use crate::frame::FrameView;
+use crate::optics::SourceSize;
 
 /// Levels of full pixels that differ by no more are one, grey levels.
 const SAME_LEVEL_DN: u8 = 4;
@@ -38,6 +39,9 @@ const TELLING_SIGMAS: f64 = 6.0;
 const FULL_SIGMAS: f64 = 2.0;
 /// So many sigmas of noise are from the mean level of full pixels to the lowest.
 const LEVEL_SIGMAS: f64 = 2.5;
+
+/// While the point spread is being learnt a spot's own variance takes in how wide it is not known to be.
+const UNLEARNT: SourceSize = SourceSize { scatter_px2: 0.05, ..SourceSize::UNKNOWN };
 
 impl Fitter {
     /// Whether frames still tell something of the camera.
@@ -202,7 +206,7 @@ impl Fitter {
             let guess = self.guess(part);
             let known = (noise.dark - self.belief.noise().dark).max(0.0);
             let mut bins = *self.belief.noise_bins();
-            let mut shape = PointSource::new(self.belief.spread(), SIZE_PX2, self.belief.spill());
+            let mut shape = PointSource::new(self.belief.spread(), UNLEARNT, self.belief.spill());
             let mut add = |light, square| bins.add(light, square, known);
             match self.motion {
                 None => tell_noise::<5>(&mut self.window, &mut shape, guess, noise, &mut add),

@@ -14,7 +14,7 @@
 //! cut_off        what noisy pixels read where darkness is cut off at 0
 //! lessons        what the frame tells of the camera               -> point spread (learning), noise (noise_bins), full_level
 //! fitting        a window on each part, less its background (window, patch), and the camera's point spread in it (fit), along a segment where it moved (smear)
-//!                two at once where neither is seen alone (pairs)
+//!                two at once where neither is seen alone (pairs); what full pixels say of its light (limits)
 //!                -> centre and light of a point, with covariances
 //! measuring      spots of those; what is no point's light by its wings (wings) or a balanced window (centroid)
 //!                -> spots
@@ -40,6 +40,7 @@ mod hot_pixel;
 mod learning;
 mod ledge;
 mod lessons;
+mod limits;
 mod measuring;
 mod neighbourhood;
 mod noise_bins;

@@ -6,7 +6,7 @@
 use nalgebra::{Matrix2, SVector};
 
 use super::fit::{self, Fitted, PointSource, Shape, WIDTH};
-use super::fitting::{Fitter, Model, Point, SIZE_PX2, radius_px, spread, surroundings_at};
+use super::fitting::{Fitter, Model, Point, radius_px, spread, surroundings_at};
 use super::neighbourhood::Neighbourhood;
 use super::part::Part;
 use super::window::{Spill, WIDEST_PX};
@@ -75,7 +75,7 @@ impl Fitter {
         let flux = self.window.flux().max(2.0);
         let light = flux * lights[0] / (lights[0] + lights[1]);
         let spread = spread(self.optics.as_deref(), &self.belief, middle);
-        let first = PointSource::new(spread, SIZE_PX2, self.spill());
+        let first = PointSource::new(spread, self.source_size(), self.spill());
         let mut pair = PointPair {
             first,
             second: first,

@@ -8,7 +8,7 @@ use alloc::vec::Vec;
 use nalgebra::SVector;
 
 use super::fit::{self, Fitted, PixelNoise, PointSource, Shape, U, V};
-use super::fitting::{Fitter, NO_POINT, SIZE_PX2, WIDEST_POINT_PX, radius_px, spread};
+use super::fitting::{Fitter, NO_POINT, WIDEST_POINT_PX, radius_px, spread};
 use super::learning::UNKNOWNS;
 use super::neighbourhood::Neighbourhood;
 use super::part::Part;
@@ -210,7 +210,7 @@ impl Fitter {
     ) -> Option<(f64, f64, [f64; 2])> {
         if self.is_sharp() {
             let spread = spread(self.optics.as_deref(), &self.belief, part.guess);
-            let mut point = PointSource::new(spread, SIZE_PX2, self.spill());
+            let mut point = PointSource::new(spread, self.source_size(), self.spill());
             let still = fit::fit(&mut self.window, &mut point, guess, noise);
             if still.as_ref().is_some_and(Fitted::fits) {
                 return None;
@@ -238,7 +238,7 @@ impl Fitter {
         let noise = PixelNoise { shape: (noise.shape * noise.shape + bend_px * bend_px).sqrt(), ..noise };
         if self.is_sharp() {
             let spread = spread(self.optics.as_deref(), &self.belief, part.guess);
-            let mut streak = Smeared::new(PointSource::new(spread, SIZE_PX2, self.spill()), moved);
+            let mut streak = Smeared::new(PointSource::new(spread, self.source_size(), self.spill()), moved);
             let fitted: Option<Fitted<7>> = fit::fit(&mut self.window, &mut streak, guess, noise);
             fitted.is_some_and(|fitted| fitted.leaves_noise())
         } else {

@@ -9,7 +9,8 @@ use std::path::Path;
 
 use photinus::camera::Camera;
 use photinus::optics::{
-    HotPixel, HotPixels, Measured, Optics, OpticsError, Response, Saturation, Sensor, SpreadField, Vignetting,
+    HotPixel, HotPixels, Measured, Optics, OpticsError, Response, Saturation, Sensor, SourceSize,
+    SpreadField, Vignetting,
 };
 use serde::{Deserialize, Serialize};
 
@@ -37,6 +38,7 @@ pub(super) struct OpticsTable {
     /// Column, row, level and its sigma; absent where there is none.
     hot_pixels: Option<Vec<(u32, u32, Finite, Finite)>>,
     vignetting: Option<VignettingTable>,
+    sources: Option<SourcesTable>,
     point_spread: PointSpreadTable,
 }
 
@@ -58,6 +60,14 @@ struct PointSpreadTable {
     /// Row by row. Written by hand, so that rows are lines.
     #[serde(skip_serializing)]
     zones: Vec<String>,
+}
+
+#[derive(Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+struct SourcesTable {
+    light_dn: Finite,
+    growth_px2: [Finite; 2],
+    scatter_px2: Finite,
 }
 
 impl OpticsTable {
@@ -82,6 +92,7 @@ impl OpticsTable {
             column_smear: sensor.column_smear.map(pair),
             hot_pixels: (optics.hot_pixels.iter().len() > 0).then(|| listed(&optics.hot_pixels)),
             vignetting: optics.vignetting.as_ref().map(VignettingTable::of),
+            sources: Some(SourcesTable::of(optics.spread.source_size())),
             point_spread: PointSpreadTable {
                 shape_error: Finite(optics.spread.shape_error()),
                 shape_error_sigma: finite(summary.and_then(|summary| summary.shape_error_sigma)),
@@ -108,8 +119,10 @@ impl OpticsTable {
         let hot_pixels =
             read_hot_pixels(hot_pixels, size).map_err(|error| wrong(path, "optics.hot_pixels", &error))?;
         let vignetting = self.vignetting.map(VignettingTable::read).transpose();
+        let sources = self.sources.as_ref().map_or(SourceSize::UNKNOWN, SourcesTable::read);
+        let spread = self.point_spread.read(size, path)?.with_source_size(sources);
         let optics = Optics {
-            spread: self.point_spread.read(size, path)?,
+            spread: spread.map_err(|error| wrong(path, "optics.sources", &error))?,
             sensor,
             vignetting: vignetting.map_err(|error| wrong(path, "optics.vignetting", &error))?,
             hot_pixels,
@@ -167,6 +180,26 @@ impl VignettingTable {
     fn read(self) -> std::result::Result<Vignetting, OpticsError> {
         let angles_rad: Vec<f64> = self.off_axis_deg.iter().map(|deg| deg.0.to_radians()).collect();
         Vignetting::new(&angles_rad, &values(&self.share), &values(&self.sigma))
+    }
+}
+
+impl SourcesTable {
+    fn of(size: &SourceSize) -> Self {
+        let Measured { value, sigma } = size.growth_px2;
+        Self {
+            light_dn: Finite(size.light_dn),
+            growth_px2: [Finite(value), Finite(sigma)],
+            scatter_px2: Finite(size.scatter_px2),
+        }
+    }
+
+    fn read(&self) -> SourceSize {
+        let [value, sigma] = &self.growth_px2;
+        SourceSize {
+            light_dn: self.light_dn.0,
+            growth_px2: Measured { value: value.0, sigma: sigma.0 },
+            scatter_px2: self.scatter_px2.0,
+        }
     }
 }
 
@@ -248,6 +281,9 @@ mod tests {
                     _ => SpreadField::new(zones, columns, 752.0, 480.0, error).unwrap(),
                 };
                 let spread = spread.with_wings_error(noise.value).unwrap();
+                let sources =
+                    SourceSize { light_dn: 100.0 + shot.value, growth_px2: shot, scatter_px2: noise.sigma };
+                let spread = spread.with_source_size(sources).unwrap();
                 let angles = [0.0, (17.0 + noise.value).to_radians(), 80.0_f64.to_radians()];
                 let vignetting =
                     is_dim.then(|| Vignetting::new(&angles, &[1.0, 0.9, 0.4], &[0.0, 0.01, 0.1]).unwrap());

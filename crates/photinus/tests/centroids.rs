@@ -220,6 +220,8 @@ struct Trouble {
     noise_dn: f64,
     /// How far light moves during the exposure, px, in a direction drawn for each frame.
     smear_px: f64,
+    /// The first frame in which it does.
+    moves_from: usize,
 }
 
 /// Errors of centres and, as logarithms, of light, over what is claimed of them; light is told up to a factor.
@@ -251,6 +253,7 @@ fn in_trouble(trouble: Trouble, seed: u64) -> Claims {
     let (phase, even) = (Uniform::new(-3.0, 3.0).unwrap(), Uniform::new(0.0, 1.0).unwrap());
     let mut claims = Claims::default();
     for number in 0..50 {
+        let smear_px = if number < trouble.moves_from { 0.0 } else { trouble.smear_px };
         let angle: f64 = std::f64::consts::PI * even.sample(&mut rng);
         // A way in the image is a curve: a camera that turns sees light pass on circles about its axis.
         let bent: f64 = StandardNormal.sample(&mut rng);
@@ -262,10 +265,10 @@ fn in_trouble(trouble: Trouble, seed: u64) -> Claims {
             let centre =
                 Pixel::new(middle(left, phase.sample(&mut rng)), middle(top, phase.sample(&mut rng)));
             let all: f64 = 60.0 * libm::exp(libm::log(700.0 / 60.0) * even.sample(&mut rng));
-            let all = all * (1.0 + trouble.smear_px / 3.0);
+            let all = all * (1.0 + smear_px / 3.0);
             for (u, v) in (top..top + SPACING).flat_map(|v| (left..left + SPACING).map(move |u| (u, v))) {
                 for place in 0..PLACES {
-                    let along = trouble.smear_px * ((place as f64 + 0.5) / PLACES as f64 - 0.5);
+                    let along = smear_px * ((place as f64 + 0.5) / PLACES as f64 - 0.5);
                     let beside = 0.5 * curvature * along * along;
                     let (sin, cos) = libm::sincos(angle);
                     let du = u as f64 - centre.u - along * cos + beside * sin;
@@ -320,7 +323,7 @@ const SEEDS: [u64; 4] = [1, 2, 31, 32];
 fn noise_that_is_cut_off_at_0_is_in_the_claim() {
     for (noise_dn, most_px) in [(3.0, 0.023), (8.0, 0.056)] {
         for seed in SEEDS {
-            let claims = in_trouble(Trouble { noise_dn, smear_px: 0.0 }, seed);
+            let claims = in_trouble(Trouble { noise_dn, smear_px: 0.0, moves_from: 0 }, seed);
             let (honesty, light) = (claims.centres.honesty(), claims.light());
             assert!(claims.centres.rms() < most_px, "noise {noise_dn}: {}", claims.centres.rms());
             assert!((0.85..1.2).contains(&honesty), "noise {noise_dn}, seed {seed}: {honesty}");
@@ -331,15 +334,16 @@ fn noise_that_is_cut_off_at_0_is_in_the_claim() {
 
 #[test]
 fn light_that_moves_is_placed_in_the_middle_of_its_way() {
-    for (smear_px, most_px) in [(3.0, 0.012), (6.0, 0.036)] {
+    // Nor is it taken for another lens where it begins to move while the point spread is being learnt.
+    for (smear_px, moves_from, most_px) in [(3.0, 0, 0.012), (6.0, 0, 0.036), (3.0, 5, 0.012)] {
         for seed in SEEDS {
-            let claims = in_trouble(Trouble { noise_dn: 0.5, smear_px }, seed);
+            let claims = in_trouble(Trouble { noise_dn: 0.5, smear_px, moves_from }, seed);
             let (honesty, light) = (claims.centres.honesty(), claims.light());
             assert!(claims.doubles <= 4, "{} of {} are two", claims.doubles, claims.centres.count / 2.0);
             assert!(claims.centres.count > 1100.0, "{} places", claims.centres.count);
             assert!(claims.centres.rms() < most_px, "smear {smear_px}: {}", claims.centres.rms());
-            assert!((0.8..2.0).contains(&honesty), "smear {smear_px}, seed {seed}: {honesty}");
-            assert!((0.15..1.5).contains(&light), "smear {smear_px}, seed {seed}: light {light}");
+            assert!((0.85..1.4).contains(&honesty), "smear {smear_px}, seed {seed}: {honesty}");
+            assert!((0.58..1.2).contains(&light), "smear {smear_px}, seed {seed}: light {light}");
         }
     }
 }

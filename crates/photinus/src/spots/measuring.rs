@@ -150,8 +150,8 @@ impl Meter {
     /// tells the background, and by what the edge of the window still holds: up to as much may lie beyond, or be another's. Of what the
     /// border cuts, as much as shows may be hidden.
     fn flux(&self, part: &Part, window_px: f64, around: Surroundings) -> (f64, f64) {
-        let within = |radius_px: f64| {
-            let flux = self.patch.flux(part.guess, radius_px as f32);
+        let [flux, inner] = self.patch.flux(part.guess, window_px as f32);
+        let within = |flux: f64, radius_px: f64| {
             let pixels = core::f64::consts::PI * radius_px * radius_px;
             if !around.is_cut_off {
                 return (flux, pixels);
@@ -160,7 +160,7 @@ impl Meter {
             let dark = (pixels - f64::from(part.outline.area_px)).max(0.0);
             (flux - dark * self.fitter.window.cut_off.excess(around.level, around.variance), pixels)
         };
-        let ((flux, pixels), (inner, _)) = (within(window_px), within(window_px - 1.0));
+        let ((flux, pixels), (inner, _)) = (within(flux, window_px), within(inner, window_px - 1.0));
         let PixelVariance { dark, shot, .. } = self.fitter.told_noise(around);
         let [dark, shot] = [dark, shot].map(f64::from);
         let signal = flux.max(0.0);

@@ -141,20 +141,23 @@ impl Patch {
         Lone { own: at([0, 0]), around: sides.each().map(at).sum(), sides }
     }
 
-    /// Signal within `radius_px` of `centre`, grey levels.
-    pub(super) fn flux(&self, centre: Pixel, radius_px: f32) -> f64 {
-        let room = Lanes::splat(radius_px * radius_px);
-        let mut flux = Lanes::default();
+    /// Signal within `radius_px` of `centre`, and within a pixel less, grey levels.
+    pub(super) fn flux(&self, centre: Pixel, radius_px: f32) -> [f64; 2] {
+        let rooms = [radius_px, radius_px - 1.0].map(|radius_px| Lanes::splat(radius_px * radius_px));
+        let mut fluxes = [Lanes::default(); 2];
         for near in self.near(self.local(centre), radius_px) {
             let dx = lanes::counting_from(near.dx);
             let across = dx * dx;
             let mut dy = near.dy;
             for &signal in near.signal {
-                flux += signal & (across + Lanes::splat(dy * dy)).simd_lt(room);
+                let away = across + Lanes::splat(dy * dy);
+                for (flux, room) in fluxes.iter_mut().zip(rooms) {
+                    *flux += signal & away.simd_lt(room);
+                }
                 dy += 1.0;
             }
         }
-        f64::from(lanes::sum(flux))
+        fluxes.map(|flux| f64::from(lanes::sum(flux)))
     }
 }
 

@@ -3,6 +3,9 @@
 //! A bend of the response makes bright spots flatter than faint ones, which no point spread does: what it does to all alike is the
 //! table's, what differs with their light is the response's. Each pixel's slope by the bend is freed of what its spot's own fit and
 //! the table can follow, and what is left of the pixels is set against it (two-stage least squares: such a slope is an instrument).
+//! Spots of one LED have much in common besides its light, as a horizon beside it, and say together what it alone says.
+
+use std::collections::BTreeSet;
 
 use nalgebra::{SMatrix, SVector};
 use photinus::optics::Measured;
@@ -16,7 +19,9 @@ const REACH_PX: usize = 4;
 /// Rings of shares, per factor of e, over which the table is free.
 const PER_E: f64 = 3.0;
 const RINGS: usize = 24;
+/// Parts of the LEDs, each of which is left out once, at most and at least.
 const PARTS: usize = 10;
+const LEAST_LEDS: usize = 3;
 /// It is told if at so many grey levels of light it is known to this share of them.
 const AT_DN: f64 = 200.0;
 const KNOWN: f64 = 0.02;
@@ -35,18 +40,24 @@ struct Slope {
 
 /// The bend on top of that of `noise`, and how sure it is; `None` where lights are too much alike.
 pub(super) fn learn(spots: &[Spot<'_>], field: &Field, noise: &Noise) -> Option<Measured> {
+    let used = || spots.iter().filter(|spot| spot.is_used && spot.is_linear());
+    let leds: BTreeSet<u64> = used().map(|spot| spot.window.seen.trail).collect();
+    if leds.len() < LEAST_LEDS {
+        return None;
+    }
     let mut slopes = Vec::new();
-    for (number, spot) in spots.iter().enumerate().filter(|(_, spot)| spot.is_used && spot.is_linear()) {
-        gather(spot, field, noise, number % PARTS, &mut slopes);
+    for spot in used() {
+        let led = leds.range(..spot.window.seen.trail).count();
+        gather(spot, field, noise, led % PARTS, &mut slopes);
     }
     let whole = solve(&slopes, PARTS)?;
-    let parts = (0..PARTS).map(|part| solve(&slopes, part));
+    let parts = leds.len().min(PARTS);
     let mut square = 0.0;
-    for part in parts {
-        let off = part? - whole;
+    for part in 0..parts {
+        let off = solve(&slopes, part)? - whole;
         square += off * off;
     }
-    let sigma = (square * (PARTS - 1) as f64 / PARTS as f64).sqrt();
+    let sigma = (square * (parts - 1) as f64 / parts as f64).sqrt();
     (0.5 * AT_DN * sigma < KNOWN).then_some(Measured { value: noise.bend + whole, sigma })
 }
 

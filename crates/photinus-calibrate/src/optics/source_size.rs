@@ -85,7 +85,8 @@ fn line(sources: &[Source]) -> SourceSize {
         let light_dn = sum(&|source| source.light) / all;
         let middle = sum(&|source| source.own) / all;
         let from = |source: &Source| source.light / light_dn - 1.0;
-        let information = sum(&|source| from(source) * from(source));
+        // Lights that are all alike tell of no growth.
+        let information = sum(&|source| from(source) * from(source)).max(f64::MIN_POSITIVE);
         let seen = Measured {
             value: sum(&|source| from(source) * (source.own - middle)) / information,
             sigma: (1.0 / information).sqrt(),
@@ -141,6 +142,14 @@ mod tests {
             Window { column: 100, row: 100, reach: REACH, seen: Seen::default(), pixels }
         };
         (0..400).map(window).collect()
+    }
+
+    #[test]
+    fn lights_that_are_all_alike_leave_the_belief() {
+        let alike = [Source { light: 500.0, own: 0.01, variance: 1e-6 }; 30];
+        let size = line(&alike);
+        assert!((size.growth_px2.value - SourceSize::UNKNOWN.growth_px2.value).abs() < 1e-9, "{size:?}");
+        assert!(size.check().is_ok(), "{size:?}");
     }
 
     #[test]

@@ -3,7 +3,8 @@
 //! A bend of the response makes bright spots flatter than faint ones, which no point spread does: what it does to all alike is the
 //! table's, what differs with their light is the response's. Each pixel's slope by the bend is freed of what its spot's own fit and
 //! the table can follow, and what is left of the pixels is set against it (two-stage least squares: such a slope is an instrument).
-//! Spots of one LED have much in common besides its light, as a horizon beside it, and say together what it alone says.
+//! Spots of one LED have much in common besides its light, as a horizon beside it: what leaving out LEDs changes counts where it is more than what
+//! leaving out spots does.
 
 use std::collections::BTreeSet;
 
@@ -19,8 +20,9 @@ const REACH_PX: usize = 4;
 /// Rings of shares, per factor of e, over which the table is free.
 const PER_E: f64 = 3.0;
 const RINGS: usize = 24;
-/// Parts of the LEDs, each of which is left out once, at most and at least.
+/// Parts of the spots, and at most of the LEDs, each of which is left out once.
 const PARTS: usize = 10;
+/// Fewer LEDs tell nothing.
 const LEAST_LEDS: usize = 3;
 /// It is told if at so many grey levels of light it is known to this share of them.
 const AT_DN: f64 = 200.0;
@@ -35,7 +37,8 @@ struct Slope {
     left: f64,
     freed: f64,
     light: f64,
-    part: usize,
+    /// Which part of the spots and of the LEDs it is of.
+    parts: [usize; 2],
 }
 
 /// The bend on top of that of `noise`, and how sure it is; `None` where lights are too much alike.
@@ -46,23 +49,25 @@ pub(super) fn learn(spots: &[Spot<'_>], field: &Field, noise: &Noise) -> Option<
         return None;
     }
     let mut slopes = Vec::new();
-    for spot in used() {
+    for (number, spot) in used().enumerate() {
         let led = leds.range(..spot.window.seen.trail).count();
-        gather(spot, field, noise, led % PARTS, &mut slopes);
+        gather(spot, field, noise, [number % PARTS, led % PARTS], &mut slopes);
     }
-    let whole = solve(&slopes, PARTS)?;
-    let parts = leds.len().min(PARTS);
-    let mut square = 0.0;
-    for part in 0..parts {
-        let off = solve(&slopes, part)? - whole;
-        square += off * off;
+    let whole = solve(&slopes, |_| true)?;
+    let mut sigma = 0.0_f64;
+    for (of, parts) in [PARTS, leds.len().min(PARTS)].into_iter().enumerate() {
+        let mut square = 0.0;
+        for part in 0..parts {
+            let off = solve(&slopes, |slope| slope.parts[of] != part)? - whole;
+            square += off * off;
+        }
+        sigma = sigma.max((square * (parts - 1) as f64 / parts as f64).sqrt());
     }
-    let sigma = (square * (parts - 1) as f64 / parts as f64).sqrt();
     (0.5 * AT_DN * sigma < KNOWN).then_some(Measured { value: noise.bend + whole, sigma })
 }
 
 /// The slopes of one spot, freed of its place, light and level.
-fn gather(spot: &Spot<'_>, field: &Field, noise: &Noise, part: usize, slopes: &mut Vec<Slope>) {
+fn gather(spot: &Spot<'_>, field: &Field, noise: &Noise, parts: [usize; 2], slopes: &mut Vec<Slope>) {
     let table = field.at(spot.place_px());
     let mut shares = Shares::default();
     let (mut normal, mut right) = (SMatrix::<f64, 4, 4>::zeros(), SVector::<f64, 4>::zeros());
@@ -85,7 +90,7 @@ fn gather(spot: &Spot<'_>, field: &Field, noise: &Noise, part: usize, slopes: &m
             left: pixel.left.clamp(-most, most),
             freed: by_bend - pixel.jacobian.dot(&followed),
             light: spot.light,
-            part,
+            parts,
         });
     }
 }
@@ -99,9 +104,9 @@ fn by_bend(light: f64, bend: f64) -> f64 {
     -(libm::expm1(bend * light) - bend * light) / (bend * bend)
 }
 
-/// The bend that is missing, without the spots of one part.
-fn solve(slopes: &[Slope], without: usize) -> Option<f64> {
-    let used = || slopes.iter().filter(move |slope| slope.part != without);
+/// The bend that is missing, by the pixels that are used.
+fn solve(slopes: &[Slope], is_used: impl Fn(&Slope) -> bool) -> Option<f64> {
+    let used = || slopes.iter().filter(|slope| is_used(slope));
     // the table follows what grows with the light alone, ring by ring
     let mut rings = [(0.0, 0.0); RINGS];
     for slope in used() {

@@ -40,8 +40,7 @@ pub(super) fn learn(spots: &[Spot<'_>], field: &Field, noise: &Noise) -> Option<
 /// The own variance of a spot as its pixels have it.
 fn source(spot: &Spot<'_>, field: &Field, noise: &Noise) -> Option<Source> {
     let table = field.at(spot.place_px());
-    let around = [(0.0, 0.0), (STEP_PX, 0.0), (-STEP_PX, 0.0), (0.0, STEP_PX), (0.0, -STEP_PX)];
-    let shares = around.map(|(u, v)| {
+    let beside = [(STEP_PX, 0.0), (-STEP_PX, 0.0), (0.0, STEP_PX), (0.0, -STEP_PX)].map(|(u, v)| {
         let mut shares = Shares::default();
         table.window(spot.u + u, spot.v + v, usize::MAX, &mut shares);
         shares
@@ -49,8 +48,9 @@ fn source(spot: &Spot<'_>, field: &Field, noise: &Noise) -> Option<Source> {
     let mut normal = SMatrix::<f64, 5, 5>::zeros();
     let mut right = SVector::<f64, 5>::zeros();
     spot.each_pixel(table, noise, usize::MAX, &mut Shares::default(), |pixel| {
-        let [here, beside @ ..] = shares.each_ref().map(|shares| shares.at(pixel.column, pixel.row).value);
-        let laplacian = (beside.iter().sum::<f64>() - 4.0 * here) / (STEP_PX * STEP_PX);
+        let here = pixel.light / spot.light;
+        let around: f64 = beside.iter().map(|shares| shares.at(pixel.column, pixel.row).value).sum();
+        let laplacian = (around - 4.0 * here) / (STEP_PX * STEP_PX);
         let row = pixel.jacobian.push(0.5 * spot.light * laplacian);
         normal += row * row.transpose() * pixel.weight;
         right += row * (pixel.left * pixel.weight);

@@ -1,7 +1,8 @@
 //! What full pixels say of the light of a spot: that it is no less, not how much it is.
 //!
 //! In: a fit of a spot with full pixels. It takes those that hold the light up for pixels that tell it to their noise. Out: the same fit with
-//! the light as the other pixels have it, cut off below what the full ones allow; lights are as many as light^-5/2.
+//! the light as the other pixels have it, cut off below what the full ones allow; lights are as many as light^-5/2. Points that stood still before a
+//! known point spread only: fits of streaks, of pairs, and with the spread free keep the light that they end with.
 
 use super::fit::{self, Fitted, LIGHT, PixelNoise, Shape};
 use super::window::Window;
@@ -14,6 +15,8 @@ const NODES: usize = 32;
 /// How far it reaches, standard deviations, and logarithm of light.
 const SIGMAS: f64 = 4.0;
 const FARTHEST: f64 = 4.0;
+/// No light less than this share of that of the fit is looked at.
+const LEAST_SHARE: f64 = 0.05;
 /// Lights spread evenly in space are as many per logarithm of light as light^-3/2.
 const FALLS: f64 = 1.5;
 /// Full pixels that tell less of the light than this share do not hold it up.
@@ -57,7 +60,7 @@ fn above_limit(free: Normal, all: Normal) -> Option<Normal> {
     }
     let limit = (all.mean / all.variance - free.mean / free.variance) / information;
     let [limit_sigma, free_sigma] = [1.0 / information, free.variance].map(f64::sqrt);
-    let least = (limit - SIGMAS * limit_sigma).max(0.05 * all.mean);
+    let least = (limit - SIGMAS * limit_sigma).max(LEAST_SHARE * all.mean);
     let most = limit.max(free.mean) + SIGMAS * free_sigma.max(limit_sigma);
     let low = libm::log(least);
     let step = (libm::log(most) - low).min(FARTHEST) / NODES as f64;

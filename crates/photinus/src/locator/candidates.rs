@@ -11,7 +11,7 @@ use crate::camera::Bearing;
 #[cfg(not(feature = "std"))]
 use crate::float::Float as _;
 use crate::normal;
-use crate::pose::{LogLight, Misfit, Missed, Mode};
+use crate::pose::{LogLight, Misfit, Missed, Mode, Tilting};
 
 /// Modes that a candidate has at most, or nearly.
 const MODES_EACH: usize = 32;
@@ -35,6 +35,7 @@ pub(super) struct Candidate {
     pub(super) misfit: Misfit,
     /// Its markers that must show, and those of them that do not.
     pub(super) missed: Missed,
+    pub(super) tilting: Tilting,
     /// Largest misfit, in sigma.
     pub(super) worst_sigma: f64,
     /// Logarithm of the density of its observations as this neighbour, if it is there: per sr and per unit of the logarithm of light each, times
@@ -57,6 +58,7 @@ pub(super) struct Told {
     pub(super) orientation: Option<Orientation>,
     pub(super) misfit: Misfit,
     pub(super) missed: Missed,
+    pub(super) tilting: Tilting,
     pub(super) worst_sigma: f64,
     pub(super) log_density: f64,
     /// How far its outermost marker is from its origin, m.
@@ -239,6 +241,7 @@ impl Candidates {
             orientation,
             misfit,
             missed,
+            tilting,
             worst_sigma,
             log_density,
             reach_m,
@@ -253,6 +256,7 @@ impl Candidates {
             orientation,
             misfit,
             missed,
+            tilting,
             worst_sigma,
             log_density,
             first_member: self.members.len(),
@@ -350,6 +354,7 @@ mod tests {
             orientation: None,
             misfit: Misfit { chi_square: 0.0, degrees: 0 },
             missed: Missed::default(),
+            tilting: Tilting::default(),
             worst_sigma: 0.0,
             log_density: 0.0,
             reach_m: REACH_M,

@@ -489,7 +489,7 @@ mod tests {
     use super::*;
     use crate::camera::Bearing;
     use crate::locator::neighbour::Position;
-    use crate::pose::{Misfit, Missed};
+    use crate::pose::{Misfit, Missed, Tilting};
     use crate::ranging::Interval;
 
     /// Observations of a part that is explained at once.
@@ -515,6 +515,7 @@ mod tests {
                 orientation: None,
                 misfit,
                 missed: Missed::default(),
+                tilting: Tilting::default(),
                 worst_sigma: 0.0,
                 log_density: *log_density,
                 reach_m: ROOM_M,

@@ -33,7 +33,7 @@ use super::telling::Telling;
 use super::whereabouts::Whereabouts;
 use super::{LocatorError, Stage};
 use crate::camera::{Camera, Watched};
-use crate::pose::{LogLight, Missed};
+use crate::pose::{LogLight, Missed, Tilting};
 
 /// This many of the observations nearest to each are known, and as many as one neighbour shows.
 const FEWEST_BESIDE: usize = 16;
@@ -65,6 +65,8 @@ pub(super) struct Inference {
     budget: u32,
     /// How often a marker that must show is supposed not to.
     supposed_miss_rate: f64,
+    /// How far neighbours are supposed to tilt.
+    supposed_tilt_sigma_rad: f64,
     near: Near,
     kinds: Kinds,
     groups: Groups,
@@ -109,6 +111,7 @@ impl Inference {
             min_probability: settings.min_probability,
             budget: settings.budget,
             supposed_miss_rate: settings.pose.missed,
+            supposed_tilt_sigma_rad: settings.pose.tilt_sigma_rad,
             near: Near::default(),
             kinds: Kinds::new(kinds, settings)?,
             groups: Groups::default(),
@@ -156,6 +159,8 @@ impl Inference {
         near.sort(sightings, self.kinds.most_visible().max(FEWEST_BESIDE));
         let miss_rate = self.memory.miss_rate(self.supposed_miss_rate);
         located.miss_rate = Some(miss_rate);
+        let tilt_sigma_rad = self.memory.tilt_sigma_rad(self.supposed_tilt_sigma_rad);
+        located.tilt_sigma_rad = Some(tilt_sigma_rad);
         let context = Context {
             sightings,
             near: &near,
@@ -164,6 +169,7 @@ impl Inference {
             power: None,
             detection_limit: located.detection_limit,
             miss_rate,
+            tilt_sigma_rad,
             clutter: &[],
             log_neighbours: 0.0,
             known: None,
@@ -196,6 +202,7 @@ impl Inference {
             whereabouts: self.whereabouts.counts(),
             power,
             missed: missed(&self.candidates, &self.explanation),
+            tilting: tilting(&self.candidates, &self.explanation),
         });
         located.is_complete = work.left > 0 && besides.is_empty();
         self.telling.tell(
@@ -384,6 +391,17 @@ fn missed(candidates: &Candidates, explanation: &Explanation) -> Missed {
         let Missed { expected, missed } = candidates.get(index).missed;
         all.expected += explanation.probability(index) * expected;
         all.missed += explanation.probability(index) * missed;
+    }
+    all
+}
+
+/// How far those tilt that surely explain the frame.
+fn tilting(candidates: &Candidates, explanation: &Explanation) -> Tilting {
+    let mut all = Tilting::default();
+    for index in (0..candidates.len()).filter(|&index| explanation.probability(index) > SURE) {
+        let Tilting { degrees, squares_rad2 } = candidates.get(index).tilting;
+        all.degrees += degrees;
+        all.squares_rad2 += squares_rad2;
     }
     all
 }

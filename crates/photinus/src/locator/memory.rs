@@ -8,7 +8,7 @@ use alloc::vec::Vec;
 use super::whereabouts::PerFrame;
 #[cfg(not(feature = "std"))]
 use crate::float::Float as _;
-use crate::pose::{LogLight, Missed};
+use crate::pose::{LogLight, Missed, Tilting};
 
 /// Spread of the logarithm of light between neighbours, before any are compared: lobes, units, the lens towards its edge.
 pub(super) const LOG_POWER_SIGMA: f64 = 0.35;
@@ -22,6 +22,11 @@ const SUPPOSED_MARKERS: f64 = 50.0;
 /// ... and all frames tell no more than so many: they show the same ones again.
 const MOST_MARKERS: f64 = 200.0;
 
+/// How far neighbours are supposed to tilt is as sure as what three of them would tell, each along two axes, ...
+const SUPPOSED_TILTS: f64 = 6.0;
+/// ... and all frames tell no more than twelve: they show the same ones again.
+const MOST_TILTS: f64 = 24.0;
+
 /// What is remembered of a frame.
 #[derive(Clone, Copy)]
 pub(super) struct Frame<'a> {
@@ -33,6 +38,8 @@ pub(super) struct Frame<'a> {
     pub(super) power: Option<Told>,
     /// Of all its neighbours.
     pub(super) missed: Missed,
+    /// Of those that are sure.
+    pub(super) tilting: Tilting,
 }
 
 /// What a frame tells of the power of LEDs.
@@ -114,6 +121,7 @@ pub(super) struct Memory {
     powers: Vec<Option<Told>>,
     neighbours: Vec<f64>,
     missed: Vec<Missed>,
+    tiltings: Vec<Tilting>,
     sorted: Vec<f64>,
 }
 
@@ -131,6 +139,7 @@ impl Memory {
             powers: vec![None; Self::FRAMES],
             neighbours: vec![0.0; Self::FRAMES],
             missed: vec![Missed::default(); Self::FRAMES],
+            tiltings: vec![Tilting::default(); Self::FRAMES],
             sorted: Vec::with_capacity(Self::FRAMES),
         }
     }
@@ -175,6 +184,19 @@ impl Memory {
         (SUPPOSED_MARKERS * supposed + share * missed) / (SUPPOSED_MARKERS + share * expected)
     }
 
+    /// How far neighbours tilt, rad, where they are supposed to tilt this far: no less, for one that hovers upright now may tilt any moment.
+    pub(super) fn tilt_sigma_rad(&self, supposed_rad: f64) -> f64 {
+        let (mut degrees, mut squares_rad2) = (0.0, 0.0);
+        for frame in (0..self.frames).map(|age| self.tiltings[self.aged(age)]) {
+            degrees += frame.degrees;
+            squares_rad2 += frame.squares_rad2;
+        }
+        let share = if degrees > MOST_TILTS { MOST_TILTS / degrees } else { 1.0 };
+        let supposed_rad2 = SUPPOSED_TILTS * supposed_rad * supposed_rad;
+        let told = (supposed_rad2 + share * squares_rad2) / (SUPPOSED_TILTS + share * degrees);
+        told.sqrt().max(supposed_rad)
+    }
+
     /// The place of the frame this many frames ago.
     fn aged(&self, age: usize) -> usize {
         Self::before(self.next, age)
@@ -216,13 +238,15 @@ impl Memory {
     }
 
     /// Remembers a frame and forgets the oldest.
-    pub(super) fn remember(&mut self, Frame { clutter, neighbours, whereabouts, power, missed }: Frame<'_>) {
+    pub(super) fn remember(&mut self, frame: Frame<'_>) {
+        let Frame { clutter, neighbours, whereabouts, power, missed, tilting } = frame;
         for (counted, counts) in [(&mut self.clutter, clutter), (&mut self.whereabouts, whereabouts)] {
             counted.frames[self.next * counted.cells..][..counted.cells].copy_from_slice(counts);
         }
         self.powers[self.next] = power;
         self.neighbours[self.next] = neighbours;
         self.missed[self.next] = missed;
+        self.tiltings[self.next] = tilting;
         self.next = (self.next + 1) % Self::FRAMES;
         self.frames = (self.frames + 1).min(Self::FRAMES);
         let next = self.next;
@@ -243,7 +267,14 @@ mod tests {
     /// A frame with a neighbour.
     fn of_power(power: Told) -> Frame<'static> {
         let missed = Missed::default();
-        Frame { clutter: &[0.0], neighbours: 1.0, whereabouts: &[1.0], power: Some(power), missed }
+        Frame {
+            clutter: &[0.0],
+            neighbours: 1.0,
+            whereabouts: &[1.0],
+            power: Some(power),
+            missed,
+            tilting: Tilting::default(),
+        }
     }
 
     #[test]
@@ -270,7 +301,8 @@ mod tests {
                 let neighbours = number as f64 % 3.0;
                 let missed = Missed { expected: 3.0 * neighbours, missed: 0.1 * neighbours };
                 let whereabouts = &[0.9 * neighbours];
-                memory.remember(Frame { clutter: &clutter, neighbours, whereabouts, power, missed });
+                let tilting = Tilting { degrees: neighbours, squares_rad2: 0.03 * neighbours };
+                memory.remember(Frame { clutter: &clutter, neighbours, whereabouts, power, missed, tilting });
             }
             (
                 memory.frames(),
@@ -279,6 +311,7 @@ mod tests {
                 memory.whereabouts().sums[0].to_bits(),
                 memory.power(),
                 memory.miss_rate(0.02).to_bits(),
+                memory.tilt_sigma_rad(0.1).to_bits(),
             )
         };
         assert_eq!(after(0), after(200 - Memory::FRAMES));
@@ -327,5 +360,22 @@ mod tests {
         assert!((after(10, 1.0) - (1.0 + 10.0) / (50.0 + 40.0)).abs() < 1e-12);
         assert!((after(64, 1.0) - (1.0 + 50.0) / 250.0).abs() < 1e-12, "no more than 200 markers");
         assert!((after(64, 0.0) - 1.0 / 250.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn how_far_neighbours_tilt_is_told_by_frames_but_never_to_be_less_than_supposed() {
+        let after = |frames: usize, squares_rad2: f64| {
+            let mut memory = Memory::new(1, 1);
+            for _ in 0..frames {
+                let tilting = Tilting { degrees: 1.5, squares_rad2 };
+                memory.remember(Frame { tilting, ..of_power(told(9.0)) });
+            }
+            let sigma_rad = memory.tilt_sigma_rad(0.1);
+            sigma_rad * sigma_rad
+        };
+        assert!((after(0, 0.0) - 0.01).abs() < 1e-12);
+        assert!((after(8, 0.12) - (0.06 + 0.96) / (6.0 + 12.0)).abs() < 1e-12);
+        assert!((after(64, 0.12) - (0.06 + 24.0 * 0.08) / 30.0).abs() < 1e-12, "no more than 24 tilts");
+        assert!((after(64, 0.0) - 0.01).abs() < 1e-12);
     }
 }

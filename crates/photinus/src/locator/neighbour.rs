@@ -96,4 +96,7 @@ pub struct Located {
     pub detection_limit: Option<LogLight>,
     /// How often a marker that must show does not, as the frames before told it; `None` before a frame.
     pub miss_rate: Option<f64>,
+    /// Standard deviation of neighbours' tilts, per axis, with the error of the known gravity, rad, as the frames before told it, and no less than
+    /// [`crate::pose::Settings::tilt_sigma_rad`]; `None` before a frame.
+    pub tilt_sigma_rad: Option<f64>,
 }

@@ -146,7 +146,14 @@ impl Poser {
             lit: &self.lit,
         };
         let believed = told_apart(sightings, group, matcher.reach_m(), &bounds);
-        let known = Known { up, bounds: believed, size, power, visible };
+        let known = Known {
+            up,
+            bounds: believed,
+            size,
+            power,
+            tilt_sigma_rad: Some(context.tilt_sigma_rad),
+            visible,
+        };
         let posterior = self.estimator.estimate(&self.observations, &mut self.hypotheses, &known);
         posterior.summary.is_some().then_some(bounds)
     }
@@ -175,8 +182,17 @@ impl Poser {
         (bounds, reach_m): (Interval, f64),
         candidates: &mut Candidates,
     ) {
-        let Posterior { summary, modes, markers, log_evidence, misfit, worst_sigma, missed, log_power } =
-            self.estimator.posterior();
+        let Posterior {
+            summary,
+            modes,
+            markers,
+            log_evidence,
+            misfit,
+            worst_sigma,
+            missed,
+            tilting,
+            log_power,
+        } = self.estimator.posterior();
         let Some(summary) = *summary else { return };
         let Summary { pose, mut position_covariance_m2, mut distance, .. } = summary;
         let length_m = pose.position_m.norm();
@@ -203,6 +219,7 @@ impl Poser {
             }),
             misfit: *misfit,
             missed: *missed,
+            tilting: *tilting,
             worst_sigma: *worst_sigma,
             log_density: log_evidence - log_range(group.len())
                 + power_agreement(context, group, *log_power)

@@ -223,7 +223,7 @@ mod tests {
     use super::super::neighbour::Distance;
     use super::*;
     use crate::camera::Bearing;
-    use crate::pose::{Misfit, Missed};
+    use crate::pose::{Misfit, Missed, Tilting};
 
     const SIGMA_M: f64 = 0.1;
 
@@ -242,6 +242,7 @@ mod tests {
             orientation: None,
             misfit: Misfit { chi_square: 0.0, degrees: 0 },
             missed: Missed::default(),
+            tilting: Tilting::default(),
             worst_sigma: 0.0,
             log_density,
             reach_m: 0.1,

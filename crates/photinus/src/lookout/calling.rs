@@ -166,7 +166,14 @@ impl Calling {
             others: &[],
             lit: &self.lit,
         };
-        let known = Known { up, bounds: self.starts.reach(), size, power: before.power, visible };
+        let known = Known {
+            up,
+            bounds: self.starts.reach(),
+            size,
+            power: before.power,
+            tilt_sigma_rad: before.tilt_sigma_rad,
+            visible,
+        };
         let posterior = self.estimator.estimate(&self.observations, &mut self.hypotheses, &known);
         if posterior.summary.is_none() || posterior.worst_sigma > MOST_MISFIT_SIGMA {
             return;

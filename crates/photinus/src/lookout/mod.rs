@@ -154,6 +154,8 @@ struct Before<'a> {
     detection_limit: Option<LogLight>,
     /// How often a marker that must show does not.
     miss_rate: Option<f64>,
+    /// How far neighbours tilt, rad.
+    tilt_sigma_rad: Option<f64>,
     /// The light of an LED of intensity 1 at 1 m, where several tracks tell it.
     power: Option<LogLight>,
 }
@@ -225,8 +227,9 @@ impl Lookout {
         if let Some(blinking) = &mut self.blinking {
             let power = self.tracker.power(camera);
             let watched = self.tracker.rig().watched(camera);
-            let Located { detection_limit, miss_rate, .. } = *located;
-            let before = Before { watched, tracked: &self.tracked, detection_limit, miss_rate, power };
+            let Located { detection_limit, miss_rate, tilt_sigma_rad, .. } = *located;
+            let tracked = &self.tracked;
+            let before = Before { watched, tracked, detection_limit, miss_rate, tilt_sigma_rad, power };
             if self.tracker.is_of_another_clock(camera, time_s) {
                 blinking.followers.iter_mut().for_each(Follower::restart);
             }

@@ -14,7 +14,7 @@
 
 use core::f64::consts::TAU;
 
-use nalgebra::{Matrix3, Vector6};
+use nalgebra::{Matrix3, Vector3, Vector6};
 
 use super::known::LogDistance;
 use super::light::Light;
@@ -35,6 +35,16 @@ const ELEVATION_SIGMA: f64 = 0.6;
 const IMAGE_TILT_SIGMA: f64 = 1.0;
 /// Logarithm of the mean over all directions of what [`ELEVATION_SIGMA`] leaves of them: sqrt(pi / 2) sigma erf(1 / (sqrt(2) sigma)).
 const LOG_ELEVATION_SHARE: f64 = -0.384;
+
+/// How far "up", in the body frame, is from the body's z along its x and y, in these sigmas, with the derivatives by a step.
+fn tilted(up: &Vector3<f64>, sigma: f64) -> [(f64, Vector6<f64>); 2] {
+    // d(exp(-omega) up) = up x omega.
+    let by_turn = up.cross_matrix() / sigma;
+    [0, 1].map(|axis| {
+        let row = by_turn.row(axis);
+        (up[axis] / sigma, Vector6::new(0.0, 0.0, 0.0, row[0], row[1], row[2]))
+    })
+}
 
 impl Problem<'_> {
     /// Cost and normal equations at a pose.
@@ -125,10 +135,21 @@ impl Problem<'_> {
         }
     }
 
+    /// Standard deviation of a tilt, rad.
+    pub(super) fn tilt_sigma_rad(&self) -> f64 {
+        self.known.tilt_sigma_rad.unwrap_or(self.settings.tilt_sigma_rad)
+    }
+
+    /// Its two residuals at a pose with their derivatives by a step; `None` where gravity is not known.
+    pub(super) fn tilted(&self, pose: &Pose) -> Option<[(f64, Vector6<f64>); 2]> {
+        let up = pose.camera_from_body.inverse() * self.known.up?.into_inner();
+        Some(tilted(&up, self.tilt_sigma_rad()))
+    }
+
     fn add_attitude(&self, pose: &Pose, normal: &mut Normal) {
         let body_from_camera = pose.camera_from_body.matrix().transpose();
         let (up, sigma) = match &self.known.up {
-            Some(up) => (body_from_camera * up.into_inner(), self.settings.tilt_sigma_rad),
+            Some(up) => (body_from_camera * up.into_inner(), self.tilt_sigma_rad()),
             None => (-body_from_camera.column(1), IMAGE_TILT_SIGMA),
         };
         if self.known.up.is_some() && up.z <= 0.0 {
@@ -136,11 +157,8 @@ impl Problem<'_> {
             normal.nats += 0.5 / (sigma * sigma);
         }
         normal.nats += libm::log(TAU * sigma * sigma);
-        // d(exp(-omega) up) = up x omega.
-        let by_turn = up.cross_matrix() / sigma;
-        for axis in 0..2 {
-            let row = by_turn.row(axis);
-            normal.add(up[axis] / sigma, &Vector6::new(0.0, 0.0, 0.0, row[0], row[1], row[2]));
+        for (residual, row) in tilted(&up, sigma) {
+            normal.add(residual, &row);
         }
         if self.known.up.is_none() {
             self.add_elevation(pose, &body_from_camera, normal);

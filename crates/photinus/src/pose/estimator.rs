@@ -14,6 +14,7 @@ use super::problem::{Pose, Problem};
 use super::refine::{Held, MOST_STEPS, Refined, refine};
 use super::settings::{Settings, SettingsError};
 use super::symmetry::Symmetry;
+use super::tilting::Tilting;
 use super::visibility::Missed;
 use crate::airframe::Airframe;
 #[cfg(not(feature = "std"))]
@@ -45,6 +46,8 @@ pub struct Posterior {
     pub misfit: Misfit,
     /// The markers that must show in the best mode, and those of them that do not.
     pub missed: Missed,
+    /// How far it tilts in the best mode.
+    pub tilting: Tilting,
     /// Logarithm of the light of an LED of intensity 1 at 1 m in the best mode, where a spot has a light.
     pub log_power: Option<f64>,
 }
@@ -138,6 +141,7 @@ impl Estimator {
                 let misfit = |(spot, marker)| problem.misfit(&mode.pose, spot, marker);
                 self.posterior.misfit = problem.misfit_of_all(&mode.pose);
                 self.posterior.missed = problem.missed(&mode.pose, mode.normal.log_power);
+                self.posterior.tilting = problem.tilting(&mode);
                 self.posterior.log_power = mode.normal.log_power;
                 self.posterior.worst_sigma = problem.used().map(misfit).fold(0.0, f64::max).sqrt();
             }

@@ -17,6 +17,8 @@ pub struct Known<'a> {
     pub size: Option<LogDistance>,
     /// Light of an LED of intensity 1 at 1 m, in the units of the observations, where other neighbours tell it.
     pub power: Option<LogLight>,
+    /// Standard deviation of a neighbour's tilt, per axis, with the error of the known gravity, rad, where frames tell it; as the settings have it where that is `None`.
+    pub tilt_sigma_rad: Option<f64>,
     /// Which markers are found.
     pub visible: Visible<'a>,
 }

@@ -49,10 +49,8 @@ impl Problem<'_> {
             let lit = self.used().filter(|&(spot, _)| self.observations[spot].log_light.is_some()).count();
             residuals += if self.known.power.is_some() { lit } else { lit.saturating_sub(1) };
         }
-        if let Some(up) = &self.known.up {
-            let up = pose.camera_from_body.inverse() * up.into_inner();
-            chi_square +=
-                up.xy().norm_squared() / (self.settings.tilt_sigma_rad * self.settings.tilt_sigma_rad);
+        if let Some(tilted) = self.tilted(pose) {
+            chi_square += tilted.iter().map(|(residual, _)| residual * residual).sum::<f64>();
             residuals += 2;
         }
         Misfit { chi_square, degrees: residuals.saturating_sub(6) as u32 }

@@ -40,6 +40,7 @@ mod signals;
 mod symmetry;
 #[cfg(test)]
 mod tests;
+mod tilting;
 mod visibility;
 
 pub use crate::optics::LogLight;
@@ -61,5 +62,6 @@ pub(crate) use problem::Normal;
 pub use problem::Pose;
 pub use settings::{Settings, SettingsError};
 pub use symmetry::Symmetry;
+pub use tilting::Tilting;
 pub use visibility::Missed;
 pub(crate) use visibility::{Part, merged_into};

@@ -176,7 +176,7 @@ impl Tracker {
             turn: Turn::none(self.model.rig.mounting(state.camera).lever_m()),
             faster: None,
             up: state.up,
-            tilt_sigma_rad: self.model.pose.tilt_sigma_rad,
+            tilt_sigma_rad: self.model.tilt_sigma_rad(state.tilt_sigma_rad),
         };
         self.tracked.tell(&self.model, state, Some(&motion));
         Ok(&self.tracked)

@@ -56,6 +56,8 @@ pub(super) struct State {
     pub(super) next_id: u64,
     /// Away from the ground, camera frame, where it is known.
     pub(super) up: Option<Unit<Vector3<f64>>>,
+    /// How far vehicles tilt, where frames tell it, rad.
+    pub(super) tilt_sigma_rad: Option<f64>,
     /// How what carries the camera moves, body axes, where it is known.
     pub(super) moving: Option<Moving>,
     /// Points of clutter in a frame, on average, by camera.
@@ -80,6 +82,7 @@ impl State {
             time_s,
             next_id,
             up: None,
+            tilt_sigma_rad: None,
             moving: None,
             clutter: [CLUTTER_BEFOREHAND; Rig::MOST],
             frames_s: [f64::NEG_INFINITY; Rig::MOST],

@@ -55,6 +55,11 @@ pub(super) struct Model {
 }
 
 impl Model {
+    /// How far vehicles tilt, rad, where frames tell this much.
+    pub(super) fn tilt_sigma_rad(&self, told_rad: Option<f64>) -> f64 {
+        told_rad.unwrap_or(self.pose.tilt_sigma_rad)
+    }
+
     /// In so many frames errors of a vehicle's markers, lobes and powers are the same as in this one, whose camera had its frame before `own_interval_s` ago.
     /// Frames in which nothing of it shines repeat nothing, and of LEDs that blink words of their own each is dark in some; but what another camera saw since
     /// that frame is the same once more.
@@ -154,7 +159,7 @@ impl Stepper {
             turn: moment.turn(&model.rig, before.camera, interval_s, model.settings.turn_sigma_rad_s),
             faster: moment.faster(&model.rig, before.moving.as_ref()),
             up: moment.up,
-            tilt_sigma_rad: model.pose.tilt_sigma_rad,
+            tilt_sigma_rad: model.tilt_sigma_rad(moment.tilt_sigma_rad),
         };
         // What two cameras see at nearly one time is no more alike for that: a frame is compared with its own camera's.
         let last_s = before.frames_s[moment.camera];
@@ -201,7 +206,8 @@ impl Stepper {
         ways.try_vehicles(&scene, vehicle_at);
         self.joint.explain(&self.ways.choices, &self.ways.log_unseen, model.settings.association);
         after.clear(moment.camera, moment.time_s, before.next_id);
-        (after.up, after.moving, after.clutter) = (moment.up, moment.moving, before.clutter);
+        (after.up, after.tilt_sigma_rad) = (moment.up, moment.tilt_sigma_rad);
+        (after.moving, after.clutter) = (moment.moving, before.clutter);
         after.frames_s = before.frames_s;
         after.frames_s[moment.camera] = moment.time_s;
         self.claimed.clear();

@@ -78,6 +78,7 @@ fn compare(
         detection_limit: limit(0.01 * FAINTEST),
         clutter: &clutter,
         miss_rate: pose::Settings::default().missed,
+        tilt_sigma_rad: pose::Settings::default().tilt_sigma_rad,
         log_neighbours: 0.0,
         known: None,
     };

@@ -59,6 +59,7 @@ fn check(
             detection_limit: limit(FAINTEST),
             clutter: &density,
             miss_rate: pose::Settings::default().missed,
+            tilt_sigma_rad: pose::Settings::default().tilt_sigma_rad,
             log_neighbours: 0.0,
             known: None,
         };

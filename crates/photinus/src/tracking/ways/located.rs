@@ -95,12 +95,13 @@ impl Ways {
         if most == 0 || most == members.len() {
             return;
         }
+        let tilt_rad = model.tilt_sigma_rad(moment.tilt_sigma_rad);
         for mode in
             moment.modes(appearance).iter().take_while(|mode| mode.weight > LEAST_START).take(MOST_STARTS)
         {
             let Some(pairs) = self.pairs_of(model, members, &mode.pose) else { continue };
             let Some(spots) = self.spots_of(&pairs) else { continue };
-            let Some(prior) = Prior::of(&anew(model, mode)) else { continue };
+            let Some(prior) = Prior::of(&anew(model, tilt_rad, mode)) else { continue };
             let log_weight = self.log_shown[vehicle] + libm::log(WRONG * mode.weight);
             let anew = Candidate { from: None, pairs, spots, start: mode.pose, promise: 0.0 };
             self.try_way(scene, vehicle, log_weight, &prior, &anew);
@@ -123,10 +124,9 @@ impl Ways {
 }
 
 /// What is known of a vehicle near a pose of which nothing is known.
-fn anew(model: &Model, mode: &Mode) -> Component {
+fn anew(model: &Model, tilt_rad: f64, mode: &Mode) -> Component {
     let far_m = ANEW_SHARE * mode.pose.position_m.norm();
     let speed_m_s = model.settings.velocity_sigma_m_s;
-    let tilt_rad = model.pose.tilt_sigma_rad;
     let rate_rad_s = model.settings.yaw_rate_sigma_rad_s;
     let of_place = [far_m, far_m, far_m, speed_m_s, speed_m_s, speed_m_s];
     let of_attitude = [tilt_rad, tilt_rad, ANEW_YAW_RAD, rate_rad_s];

@@ -416,7 +416,14 @@ impl Ways {
             others: &self.others,
             lit: &self.lit,
         };
-        let known = Known { up: None, bounds: Interval::ANY, size: None, power: self.power, visible };
+        let known = Known {
+            up: None,
+            bounds: Interval::ANY,
+            size: None,
+            power: self.power,
+            tilt_sigma_rad: None,
+            visible,
+        };
         let seen = Seen {
             airframe: &model.airframe,
             settings: &model.pose,

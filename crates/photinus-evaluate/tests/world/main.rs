@@ -10,6 +10,7 @@ mod calibrated;
 mod cameras;
 mod crowds;
 mod detection_limit;
+mod gravity;
 #[path = "../../examples/world/light.rs"]
 mod light;
 #[path = "../../examples/world/priors.rs"]

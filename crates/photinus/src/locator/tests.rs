@@ -19,6 +19,7 @@ mod hot_pixels;
 mod missed;
 mod most;
 mod regions;
+mod tilting;
 
 const SIGMA_PX: f64 = 0.1;
 /// Light of an LED straight ahead at 1 m, and the least that the detector finds with its default threshold, grey levels.

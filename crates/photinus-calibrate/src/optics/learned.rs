@@ -17,6 +17,8 @@ pub enum Unseen {
     Saturation,
     /// Too few pixels were full to see what their excess does.
     Spill,
+    /// Spots that are few, or too much alike in light, to see how sources widen with it.
+    Sources,
     /// Too few spots to see how the point spread changes over the image.
     Field,
     /// No LED that moved far over the image, or none that kept its light meanwhile.
@@ -38,6 +40,7 @@ impl Unseen {
             Self::ShotNoise => "shot_noise",
             Self::Saturation => "saturation",
             Self::Spill => "spill",
+            Self::Sources => "sources",
             Self::Field => "field",
             Self::Vignetting => "vignetting",
             Self::ColumnSmear => "column_smear",

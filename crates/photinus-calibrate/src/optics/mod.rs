@@ -164,13 +164,15 @@ pub fn learn(collection: &Collection) -> Result<Learned, LearnError> {
     let [shape_error, wings_error] =
         Field::scatter(&halves).map(|scatter| light.noise.shape.max(scatter).min(1.0));
     let spread = field.spread([shape_error, wings_error.max(shape_error)])?;
-    let spread = match source_size::learn(told, &field, &light.noise) {
-        Some(size) => spread.with_source_size(size)?,
+    let sources = source_size::learn(told, &field, &light.noise);
+    let spread = match sources {
+        Some(sources) => spread.with_source_size(sources.size)?,
         None => spread,
     };
     let hot_pixels = standing.as_ref().map(|standing| hot_pixels(standing, &spread)).transpose()?;
     let (sensor, mut unseen) = sensor(&darkness, &light, pile.as_ref(), spill);
     let missing = [
+        (sources.is_none_or(|sources| !sources.is_seen), Unseen::Sources),
         (nodes == [1, 1], Unseen::Field),
         (vignetting.is_none(), Unseen::Vignetting),
         (column_smear.is_none(), Unseen::ColumnSmear),

@@ -21,6 +21,9 @@ const ROUNDS: usize = 10;
 const CLIP: f64 = 4.0;
 /// Growth that is farther from what is believed than this many sigmas is of LEDs that are larger than usual.
 const USUAL_SIGMAS: f64 = 2.5;
+/// Spots tell how sources grow where LEDs are larger than usual, or where their sigma is no more than so many times that of what is believed: they count for a
+/// fifth or more.
+const TELLING: f64 = 2.0;
 
 /// A spot's own variance, px^2, with its light, grey levels.
 #[derive(Clone, Copy, Debug)]
@@ -30,8 +33,16 @@ struct Source {
     variance: f64,
 }
 
+/// How wide sources are.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Sources {
+    pub(super) size: SourceSize,
+    /// Whether spots tell how they grow with light.
+    pub(super) is_seen: bool,
+}
+
 /// Sizes of the sources of spots; `None` where these are few.
-pub(super) fn learn(spots: &[Spot<'_>], field: &Field, noise: &Noise) -> Option<SourceSize> {
+pub(super) fn learn(spots: &[Spot<'_>], field: &Field, noise: &Noise) -> Option<Sources> {
     let used = spots.iter().filter(|spot| spot.is_used && spot.is_linear());
     let sources: Vec<Source> = used.filter_map(|spot| source(spot, field, noise)).collect();
     (sources.len() >= LEAST_SPOTS).then(|| line(&sources))
@@ -60,10 +71,14 @@ fn source(spot: &Spot<'_>, field: &Field, noise: &Noise) -> Option<Source> {
     (own.is_finite() && variance > 0.0).then_some(Source { light: spot.light, own, variance })
 }
 
-/// Growth as seen, with what is believed of LEDs where that may be so.
-fn with_belief(seen: Measured, lights: f64) -> Measured {
-    let believed = SourceSize::UNKNOWN.growth_px2;
-    let believed = Measured { value: lights * believed.value, sigma: lights * believed.sigma };
+/// Growth with so many times the light, as it is believed of LEDs.
+fn believed(lights: f64) -> Measured {
+    let Measured { value, sigma } = SourceSize::UNKNOWN.growth_px2;
+    Measured { value: lights * value, sigma: lights * sigma }
+}
+
+/// Growth as seen, with what is believed where that may be so.
+fn with_belief(seen: Measured, believed: Measured) -> Measured {
     if seen.value - believed.value > USUAL_SIGMAS * libm::hypot(seen.sigma, believed.sigma) {
         return seen;
     }
@@ -73,9 +88,9 @@ fn with_belief(seen: Measured, lights: f64) -> Measured {
 }
 
 /// The line through sources over their light, and the scatter around it.
-fn line(sources: &[Source]) -> SourceSize {
+fn line(sources: &[Source]) -> Sources {
     let mut scatter2 = 0.0;
-    let mut size = SourceSize::UNKNOWN;
+    let mut told = Sources { size: SourceSize::UNKNOWN, is_seen: false };
     for _ in 0..ROUNDS {
         let weight = |source: &Source| 1.0 / (source.variance + scatter2);
         let sum = |of: &dyn Fn(&Source) -> f64| {
@@ -91,7 +106,8 @@ fn line(sources: &[Source]) -> SourceSize {
             value: sum(&|source| from(source) * (source.own - middle)) / information,
             sigma: (1.0 / information).sqrt(),
         };
-        let growth_px2 = with_belief(seen, light_dn / SourceSize::UNKNOWN.light_dn);
+        let believed = believed(light_dn / SourceSize::UNKNOWN.light_dn);
+        let growth_px2 = with_belief(seen, believed);
         let value = growth_px2.value;
         let (mut squares, mut weights) = (0.0, 0.0);
         for source in sources {
@@ -101,9 +117,11 @@ fn line(sources: &[Source]) -> SourceSize {
             weights += weight(source) * weight(source);
         }
         scatter2 = f64::max(squares / weights, 0.0);
-        size = SourceSize { light_dn, growth_px2, scatter_px2: (scatter2 + (2.0 / weights).sqrt()).sqrt() };
+        let scatter_px2 = (scatter2 + (2.0 / weights).sqrt()).sqrt();
+        let size = SourceSize { light_dn, growth_px2, scatter_px2 };
+        told = Sources { size, is_seen: growth_px2 == seen || seen.sigma < TELLING * believed.sigma };
     }
-    size
+    told
 }
 
 #[cfg(test)]
@@ -147,7 +165,8 @@ mod tests {
     #[test]
     fn lights_that_are_all_alike_leave_the_belief() {
         let alike = [Source { light: 500.0, own: 0.01, variance: 1e-6 }; 30];
-        let size = line(&alike);
+        let Sources { size, is_seen } = line(&alike);
+        assert!(!is_seen);
         assert!((size.growth_px2.value - SourceSize::UNKNOWN.growth_px2.value).abs() < 1e-9, "{size:?}");
         assert!(size.check().is_ok(), "{size:?}");
     }
@@ -160,7 +179,8 @@ mod tests {
             choose(&mut spots);
             let field = Field::new(spread(growth_px2 * 0.8), [200, 200], [1, 1]);
             super::super::place(&mut spots, &field, &NOISE, 6);
-            let size = learn(&spots, &field, &NOISE).expect("400 spots");
+            let Sources { size, is_seen } = learn(&spots, &field, &NOISE).expect("400 spots");
+            assert_eq!(is_seen, growth_px2 > 5e-3, "400 spots tell less than what is believed of usual ones");
             let Measured { value, sigma } = size.growth_px2;
             let (value, sigma) = (value * 500.0 / size.light_dn, sigma * 500.0 / size.light_dn);
             assert!((value - growth_px2).abs() < 3.0 * sigma, "{value} +- {sigma} not {growth_px2}");

@@ -32,10 +32,11 @@ impl fmt::Display for Told<'_> {
             Measured { value: 100.0 * spread.shape_error(), sigma: 100.0 * learned.shape_error_sigma };
         let wings = format!("% of a pixel's light; beside its summit {:.1} %", 100.0 * spread.wings_error());
         line(f, "shape known to", error, &wings, "")?;
-        writeln!(f, "  {:<17} {}", "sources", crate::info::sources(spread.source_size()))?;
         let seen = |unseen: Unseen| {
             if learned.unseen.contains(&unseen) { "  (not measured: the usual value)" } else { "" }
         };
+        let sources = crate::info::sources(spread.source_size());
+        writeln!(f, "  {:<17} {sources}{}", "sources", seen(Unseen::Sources))?;
         match sensor.dark_dn {
             Some(dark) => line(f, "darkness", dark, "grey levels", "")?,
             None => writeln!(f, "  darkness          not measured: clipped at 0")?,

@@ -4,7 +4,9 @@
 //! the light as the other pixels have it, cut off below what the full ones allow; lights are as many as light^-5/2. Points that stood still before a
 //! known point spread only: fits of streaks, of pairs, and with the spread free keep the light that they end with.
 
-use super::fit::{self, Fitted, LIGHT, PixelNoise, Shape};
+use nalgebra::{SMatrix, SVector};
+
+use super::fit::{self, Fitted, FullPixel, LIGHT, PixelNoise, Shape, U, V};
 use super::window::Window;
 #[cfg(not(feature = "std"))]
 use crate::float::Float as _;
@@ -19,6 +21,10 @@ const FARTHEST: f64 = 4.0;
 const LEAST_SHARE: f64 = 0.05;
 /// Lights spread evenly in space are as many per logarithm of light as light^-3/2.
 const FALLS: f64 = 1.5;
+/// Of more full pixels the centre is left as fitted.
+const MOST_FULL: usize = 16;
+/// How often each full pixel is asked anew, with what the others told.
+const SWEEPS: usize = 4;
 /// Full pixels that tell less of the light than this share do not hold it up.
 const HOLDS: f64 = 1e-3;
 
@@ -32,7 +38,18 @@ pub(super) fn held<const N: usize>(
     if window.full_px == 0 {
         return fitted;
     }
-    let (matrix, right) = fit::of_full_pixels(window, shape, &fitted, noise);
+    let (mut matrix, mut right) = (SMatrix::<f64, N, N>::zeros(), SVector::<f64, N>::zeros());
+    let (mut full, mut count) = ([const { None }; MOST_FULL], 0);
+    fit::each_full_pixel(window, shape, &fitted, noise, |pixel| {
+        if pixel.residual > 0.0 {
+            matrix += pixel.slopes * pixel.slopes.transpose() / pixel.variance;
+            right += pixel.slopes * (pixel.residual / pixel.variance);
+        }
+        if let Some(place) = full.get_mut(count) {
+            *place = Some(Limit { pixel, precision: 0.0, shift: 0.0 });
+        }
+        count += 1;
+    });
     let others = fitted.covariance.try_inverse().and_then(|all| (all - matrix).cholesky());
     let Some(others) = others else { return fitted };
     let free = Normal {
@@ -40,10 +57,61 @@ pub(super) fn held<const N: usize>(
         variance: others.inverse()[(LIGHT, LIGHT)],
     };
     let all = Normal { mean: fitted.light(), variance: fitted.light_variance() };
-    match above_limit(free, all) {
-        Some(light) => fitted.with_light(light.mean, light.variance),
+    let Some(light) = above_limit(free, all) else { return fitted };
+    let fitted = match (count <= MOST_FULL)
+        .then(|| within(&mut full[..count.min(MOST_FULL)], -others.solve(&right), others.inverse()))
+    {
+        Some((step, covariance)) => fitted.with_centre(
+            [fitted.numbers[U] + step[U], fitted.numbers[V] + step[V]],
+            &covariance.fixed_view::<2, 2>(0, 0).into_owned(),
+        ),
         None => fitted,
+    };
+    fitted.with_light(light.mean, light.variance)
+}
+
+/// A full pixel with the normal factor that stands for it.
+struct Limit<const N: usize> {
+    pixel: FullPixel<N>,
+    precision: f64,
+    shift: f64,
+}
+
+/// Mean and covariance of a normal distribution within limits: expectation propagation (T. Minka, "Expectation Propagation for Approximate Bayesian Inference", 2001).
+fn within<const N: usize>(
+    limits: &mut [Option<Limit<N>>],
+    mut mean: SVector<f64, N>,
+    mut covariance: SMatrix<f64, N, N>,
+) -> (SVector<f64, N>, SMatrix<f64, N, N>) {
+    for _ in 0..SWEEPS {
+        for Limit { pixel, precision, shift } in limits.iter_mut().flatten() {
+            let along = covariance * pixel.slopes;
+            let (own, variance) = (pixel.slopes.dot(&mean), pixel.slopes.dot(&along));
+            // Without what it told so far.
+            let left = 1.0 / variance - *precision;
+            if left <= 0.0 {
+                continue;
+            }
+            let (own_left, variance_left) = ((own / variance - *shift) / left, 1.0 / left);
+            let all = pixel.variance + variance_left;
+            let off = (own_left - pixel.residual) / all.sqrt();
+            let below = normal::below(off);
+            if below <= 1e-12 {
+                continue;
+            }
+            let ratio = normal::density(off, 1.0) / below;
+            let mean_cut = own_left + variance_left * ratio / all.sqrt();
+            let variance_cut = variance_left * (1.0 - variance_left * ratio * (off + ratio) / all);
+            let more = 1.0 / variance_cut - left - *precision;
+            let shifted = mean_cut / variance_cut - own_left * left - *shift;
+            *precision += more;
+            *shift += shifted;
+            let share = 1.0 / (1.0 + more * variance);
+            mean += along * (share * (shifted - more * own));
+            covariance -= along * along.transpose() * (share * more);
+        }
     }
+    (mean, covariance)
 }
 
 #[derive(Clone, Copy, Debug)]

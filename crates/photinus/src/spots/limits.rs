@@ -28,8 +28,19 @@ const SWEEPS: usize = 4;
 /// Full pixels that tell less of the light than this share do not hold it up.
 const HOLDS: f64 = 1e-3;
 
+/// [`fit::fit`] with its light and centre told anew where full pixels hold them.
+pub(super) fn fit<const N: usize>(
+    window: &mut Window,
+    shape: &mut impl Shape<N>,
+    guess: (f64, f64, f64),
+    noise: PixelNoise,
+) -> Option<Fitted<N>> {
+    let fitted = fit::fit(window, shape, guess, noise)?;
+    Some(held(window, shape, fitted, noise))
+}
+
 /// A fit with its light told anew where full pixels hold it up.
-pub(super) fn held<const N: usize>(
+fn held<const N: usize>(
     window: &mut Window,
     shape: &mut impl Shape<N>,
     fitted: Fitted<N>,
@@ -156,6 +167,8 @@ fn above_limit(free: Normal, all: Normal) -> Option<Normal> {
 mod tests {
     use super::*;
     use proptest::prelude::*;
+    use rand_distr::{Distribution as _, StandardNormal};
+    use rand_pcg::rand_core::SeedableRng as _;
 
     /// Mean and variance of the logarithm of light, by a sum over light itself, a thousand times as fine.
     fn summed(free: Normal, limit: Normal) -> [f64; 2] {
@@ -198,6 +211,54 @@ mod tests {
             prop_assert!((libm::log(found.mean) - mean).abs() < 0.02 + 0.1 * variance.sqrt(), "{found:?} {mean}");
             let sigma = found.variance.sqrt() / found.mean;
             prop_assert!((sigma / variance.sqrt() - 1.0).abs() < 0.15, "{sigma} {}", variance.sqrt());
+        }
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(24))]
+        /// Against samples of the distribution without limits, each counted by how likely the limits let it be.
+        #[test]
+        fn a_distribution_within_limits_is_that_of_samples(
+            slopes in prop::collection::vec(prop::array::uniform3(-1.0..1.0_f64), 1..5),
+            residuals in prop::array::uniform4(-1.0..0.7_f64),
+            sigma in 0.02..0.5_f64,
+            roots in prop::array::uniform3(prop::array::uniform3(-1.0..1.0_f64)),
+            seed in any::<u64>(),
+        ) {
+            let root = SMatrix::<f64, 3, 3>::from_fn(|i, j| roots[i][j]) + SMatrix::identity();
+            let limit = |(slopes, residual): (&[f64; 3], &f64)| Limit {
+                pixel: FullPixel { slopes: SVector::from(*slopes), residual: *residual, variance: sigma * sigma },
+                precision: 0.0,
+                shift: 0.0,
+            };
+            let mut limits: Vec<_> = slopes.iter().zip(&residuals).map(limit).map(Some).collect();
+            let (mut sum, mut first, mut second) =
+                (0.0, SVector::<f64, 3>::zeros(), SMatrix::<f64, 3, 3>::zeros());
+            let mut rng = rand_pcg::Pcg64::seed_from_u64(seed);
+            for _ in 0..100_000 {
+                let white = SVector::<f64, 3>::from_fn(|_, _| StandardNormal.sample(&mut rng));
+                let own = root * white;
+                let within = |limit: &Limit<3>| {
+                    let FullPixel { slopes, residual, .. } = &limit.pixel;
+                    normal::below((slopes.dot(&own) - residual) / sigma)
+                };
+                let weight: f64 = limits.iter().flatten().map(within).product();
+                sum += weight;
+                first += own * weight;
+                second += own * own.transpose() * weight;
+            }
+            // few samples tell nothing
+            prop_assume!(sum > 3000.0);
+            let mean = first / sum;
+            let covariance = second / sum - mean * mean.transpose();
+            let (told, told_covariance) = within(&mut limits, SVector::zeros(), root * root.transpose());
+            for axis in 0..3 {
+                let sigma = covariance[(axis, axis)].sqrt();
+                let off = (told[axis] - mean[axis]) / sigma;
+                prop_assert!(off.abs() < 0.15, "{told} not {mean}");
+                let ratio = told_covariance[(axis, axis)].sqrt() / sigma;
+                prop_assert!((ratio - 1.0).abs() < 0.12, "{told_covariance} not {covariance}");
+            }
         }
     }
 

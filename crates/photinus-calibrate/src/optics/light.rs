@@ -65,13 +65,8 @@ pub(super) fn free_residuals(
     halves: [&Field; 2],
     noise: &Noise,
 ) -> Vec<Residual> {
-    let mut shares = Shares::default();
     residuals_by(spots, |number, spot| {
-        let within = of_spot(spot, field, noise);
-        let other = halves[(number + 1) % 2];
-        let mut aside = spot.clone();
-        aside.fit(other.at(spot.place_px()), noise, super::PLACE_REACH, PLACE_STEPS, &mut shares);
-        let aside = of_spot(&aside, other, noise);
+        let [within, aside] = [field, halves[(number + 1) % 2]].map(|table| of_spot(spot, table, noise));
         if aside.len() != within.len() {
             return Vec::new();
         }
@@ -107,16 +102,24 @@ fn residuals_by(spots: &[Spot<'_>], mut left: impl FnMut(usize, &Spot<'_>) -> Ve
     residuals
 }
 
+/// What is left of a spot's pixels by a table. What a fit takes of their noise is as told where each pixel counts by its noise alone: if bright ones counted for
+/// less, by the error of the table, dim ones would be left with less than is put back, and shot noise would be too low.
 fn of_spot(spot: &Spot<'_>, field: &Field, noise: &Noise) -> Vec<Left> {
     let mut shares = Shares::default();
     let table = field.at(spot.place_px());
-    let taken = spot.leverages(table, noise, usize::MAX, &mut shares);
+    let alone = Noise { shape: 0.0, ..*noise };
+    let mut spot = spot.clone();
+    spot.fit(table, &alone, super::PLACE_REACH, PLACE_STEPS, &mut shares);
+    let taken = spot.leverages(table, &alone, usize::MAX, &mut shares);
     let mut taken = taken.iter();
     let mut left = Vec::with_capacity(taken.len());
-    spot.each_pixel(table, noise, usize::MAX, &mut shares, |pixel| {
+    spot.each_pixel(table, &alone, usize::MAX, &mut shares, |pixel| {
         let taken = taken.next().copied().unwrap_or(1.0);
-        let own = pixel.left / (1.0 - taken.min(MOST_TAKEN)).sqrt();
-        let variance = 1.0 / pixel.weight;
+        // A pixel that is cut off at 0 varies by another amount than its light has it.
+        let variance = alone.variance(pixel.light);
+        let times = (variance * pixel.weight).sqrt();
+        let own = times * pixel.left / (1.0 - taken.min(MOST_TAKEN)).sqrt();
+        let variance = noise.variance(pixel.light);
         left.push(Left { light: pixel.light, left: own, square: own * own, taken, variance });
     });
     left
@@ -233,4 +236,66 @@ fn non_negative(normal: &SMatrix<f64, 3, 3>, right: &SVector<f64, 3>) -> SVector
         }
     }
     best.1
+}
+
+#[cfg(test)]
+mod tests {
+    use photinus::optics::Gaussian;
+    use rand_distr::{Distribution as _, StandardNormal};
+    use rand_pcg::Pcg64;
+
+    use super::super::table::{Share, Table};
+    use super::super::window::{REACH, SIDE, Seen, Window};
+    use super::super::{place, spot};
+    use super::*;
+
+    const SHOT: f64 = 0.025;
+
+    fn table() -> Table {
+        Table::gaussians(&[Gaussian { share: 1.0, sigma_px: 0.5 }])
+    }
+
+    /// Spots on a level, in noise.
+    fn windows(level: f64, seed: u64) -> Vec<Window> {
+        let mut random = Pcg64::new(u128::from(seed), 1);
+        let mut shares = Shares::default();
+        let window = |number: usize| {
+            let light = 25.0 + 22.0 * (number % 20) as f64;
+            let at = |step: f64| (step * number as f64).fract() - 0.5;
+            table().window(at(0.618), at(0.414), REACH, &mut shares);
+            let read = |share: &Share| {
+                let light = light * share.value;
+                let noise: f64 = StandardNormal.sample(&mut random);
+                (level + light + noise * (0.36 + SHOT * light.max(0.0)).sqrt()).round().clamp(0.0, 255.0)
+                    as u8
+            };
+            let pixels: Box<[u8]> = shares.of_pixels.iter().map(read).collect();
+            assert_eq!(pixels.len(), SIDE * SIDE);
+            Window { column: 100, row: 100, reach: REACH, seen: Seen::default(), pixels }
+        };
+        (0..250).map(window).collect()
+    }
+
+    /// Shot noise of spots whose table is right but is not taken to be.
+    fn shot(level: f64, shape: f64) -> f64 {
+        let noise = Noise { dark: 0.36 + ROUNDING, shot: SHOT, shape, bend: 0.0, is_dark_seen: true };
+        let dark_dn = Some(Measured { value: 0.6, sigma: 0.003 });
+        let field = Field::new(table(), [200, 200], [1, 1]);
+        let of_seed = |seed: u64| {
+            let windows = windows(level, seed);
+            let mut spots = spot::of(&windows, 255);
+            place(&mut spots, &field, &noise, 6);
+            explain(&residuals(&spots, &field, &noise), dark_dn, &noise).noise.shot
+        };
+        let seeds = 4;
+        (0..seeds).map(of_seed).sum::<f64>() / seeds as f64
+    }
+
+    #[test]
+    fn shot_noise_is_told_however_wrong_a_table_is_taken_to_be() {
+        for (level, shape) in [(6.0, 0.05), (6.0, 0.2), (0.3, 0.05)] {
+            let told = shot(level, shape);
+            assert!((told / SHOT - 1.0).abs() < 0.15, "{told} not {SHOT}, on {level}, shape {shape}");
+        }
+    }
 }

@@ -36,17 +36,18 @@ const PHASES: usize = 10;
 const CORE_PX: f64 = 1.5;
 
 /// Noise against light.
-pub(super) fn noise(residuals: &[Residual]) -> Vec<NoiseBin> {
+pub(super) fn noise(residuals: &[Residual], noise: &Noise) -> Vec<NoiseBin> {
     let mut sorted: Vec<&Residual> = residuals.iter().collect();
     sorted.sort_by(|a, b| a.light.total_cmp(&b.light));
     let octave = |residual: &Residual| (PER_OCTAVE * libm::log2(residual.light.max(0.5))).floor() as i64;
     let bins = sorted.chunk_by(|a, b| octave(a) == octave(b)).filter(|bin| bin.len() >= LEAST_PIXELS);
     bins.map(|bin| {
         let count = bin.len() as f64;
-        let mean = |of: fn(&Residual) -> f64| bin.iter().map(|residual| of(residual)).sum::<f64>() / count;
-        let variance_dn2 = mean(|residual| residual.square);
+        let mean =
+            |of: &dyn Fn(&Residual) -> f64| bin.iter().map(|residual| of(residual)).sum::<f64>() / count;
+        let variance_dn2 = mean(&|residual| residual.put_back(noise));
         let sigma_dn2 = variance_dn2 * (2.0 / count).sqrt();
-        NoiseBin { light_dn: mean(|residual| residual.light), variance_dn2, sigma_dn2 }
+        NoiseBin { light_dn: mean(&|residual| residual.light), variance_dn2, sigma_dn2 }
     })
     .collect()
 }

@@ -11,16 +11,25 @@ use photinus::optics::Measured;
 
 use super::field::Field;
 use super::noise::{Noise, ROUNDING};
-use super::spot::Spot;
+use super::spot::{Pixel, Spot};
 use super::table::Shares;
 
-/// A pixel of a spot: its light and what is left of it, squared, what its fit took away put back.
+/// A pixel of a spot: its light and what is left of it, squared.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Residual {
     pub(super) light: f64,
     pub(super) square: f64,
+    /// What it is on average, by darkness, shot noise and the square of the table's error.
+    row: SVector<f64, 3>,
     /// Which tenth of the spots it is of.
     part: usize,
+}
+
+impl Residual {
+    /// The square that it would have if no fit had taken anything, of noise as told.
+    pub(super) fn put_back(&self, noise: &Noise) -> f64 {
+        self.square * noise.variance(self.light) / self.row.dot(&noise.by_light())
+    }
 }
 
 /// Noise with how sure it is.
@@ -52,9 +61,15 @@ const PLACE_STEPS: usize = 3;
 /// Pixels with less light say no more than patches without, and round alike, grey levels.
 const LEAST_DN: f64 = 0.7;
 
-/// What is left of the pixels of spots by a table that was made of them.
+/// What is left of the pixels of spots by a table that was made of them, put back as if fits weighed pixels by their own variances: while the table is learnt, and
+/// of few spots, its error is no chance share of the light in each pixel, as it must be for what fits leave of it to be told pixel by pixel.
 pub(super) fn residuals(spots: &[Spot<'_>], field: &Field, noise: &Noise) -> Vec<Residual> {
-    residuals_by(spots, |_, spot| of_spot(spot, field, noise))
+    let square = |left: Left| {
+        let Left { light, taken, .. } = left;
+        let row = SVector::from([1.0, light, light * light]) * (1.0 - taken);
+        (Left { row, ..left }, left.left * left.left)
+    };
+    residuals_by(spots, noise, |_, spot| of_spot(spot, field, noise).into_iter().map(square).collect())
 }
 
 /// What is left of them by a table that was made of them times what is left by one of the other half of the spots, so that the error of
@@ -65,64 +80,82 @@ pub(super) fn free_residuals(
     halves: [&Field; 2],
     noise: &Noise,
 ) -> Vec<Residual> {
-    residuals_by(spots, |number, spot| {
-        let [within, aside] = [field, halves[(number + 1) % 2]].map(|table| of_spot(spot, table, noise));
+    let mut shares = Shares::default();
+    residuals_by(spots, noise, |number, spot| {
+        let within = of_spot(spot, field, noise);
+        let other = halves[(number + 1) % 2];
+        let mut aside = spot.clone();
+        aside.fit(other.at(spot.place_px()), noise, super::PLACE_REACH, PLACE_STEPS, &mut shares);
+        let aside = of_spot(&aside, other, noise);
         if aside.len() != within.len() {
             return Vec::new();
         }
-        let both = |(within, aside): (&Left, &Left)| Left { square: within.left * aside.left, ..*within };
-        within.iter().zip(&aside).map(both).collect()
+        let both = |(within, aside): (Left, Left)| {
+            let row = (within.row + aside.row) * 0.5;
+            (Left { row, ..within }, within.left * aside.left)
+        };
+        within.into_iter().zip(aside).map(both).collect()
     })
 }
 
-/// What is left of a pixel, what its own fit took of it put back.
+/// What is left of a pixel.
 #[derive(Clone, Copy)]
 struct Left {
     light: f64,
     left: f64,
-    /// Its square, or what it is times what another table leaves.
-    square: f64,
+    /// What is left of a unit of darkness, of shot noise, and of the error of the table in all pixels of the spot.
+    row: SVector<f64, 3>,
     /// Share of its noise that the fit took.
     taken: f64,
-    variance: f64,
 }
 
-fn residuals_by(spots: &[Spot<'_>], mut left: impl FnMut(usize, &Spot<'_>) -> Vec<Left>) -> Vec<Residual> {
+fn residuals_by(
+    spots: &[Spot<'_>],
+    noise: &Noise,
+    mut squares: impl FnMut(usize, &Spot<'_>) -> Vec<(Left, f64)>,
+) -> Vec<Residual> {
     let mut residuals = Vec::new();
     for (number, spot) in spots.iter().enumerate().filter(|(_, spot)| spot.is_used && spot.is_linear()) {
-        let tells = |left: &&Left| {
-            left.taken < MOST_TAKEN
-                && left.light > LEAST_DN
-                && left.square.abs() < CLIP * CLIP * left.variance
-        };
         let part = number % PARTS;
-        let of = |left: &Left| Residual { light: left.light, square: left.square, part };
-        residuals.extend(left(number, spot).iter().filter(tells).map(of));
+        for (Left { light, row, taken, .. }, square) in squares(number, spot) {
+            let is_odd = square.abs() >= CLIP * CLIP * row.dot(&noise.by_light());
+            if taken < MOST_TAKEN && light > LEAST_DN && !is_odd {
+                residuals.push(Residual { light, square, row, part });
+            }
+        }
     }
     residuals
 }
 
-/// What is left of a spot's pixels by a table. What a fit takes of their noise is as told where each pixel counts by its noise alone: if bright ones counted for
-/// less, by the error of the table, dim ones would be left with less than is put back, and shot noise would be too low.
+/// What a fit H leaves of independent pixels, which it weighs by variances that need not be theirs: of a pixel j the sum over all pixels k of
+/// ([j = k] - H_jk)^2 of their own. Bright pixels count for less in a fit, by the error of the table; were that forgotten, dim ones would be left with less than is
+/// put back, and shot noise would be a sixth too low behind sharp lenses.
 fn of_spot(spot: &Spot<'_>, field: &Field, noise: &Noise) -> Vec<Left> {
-    let mut shares = Shares::default();
-    let table = field.at(spot.place_px());
-    let alone = Noise { shape: 0.0, ..*noise };
-    let mut spot = spot.clone();
-    spot.fit(table, &alone, super::PLACE_REACH, PLACE_STEPS, &mut shares);
-    let taken = spot.leverages(table, &alone, usize::MAX, &mut shares);
-    let mut taken = taken.iter();
-    let mut left = Vec::with_capacity(taken.len());
-    spot.each_pixel(table, &alone, usize::MAX, &mut shares, |pixel| {
-        let taken = taken.next().copied().unwrap_or(1.0);
-        // A pixel that is cut off at 0 varies by another amount than its light has it.
-        let variance = alone.variance(pixel.light);
-        let times = (variance * pixel.weight).sqrt();
-        let own = times * pixel.left / (1.0 - taken.min(MOST_TAKEN)).sqrt();
-        let variance = noise.variance(pixel.light);
-        left.push(Left { light: pixel.light, left: own, square: own * own, taken, variance });
+    let mut pixels = Vec::new();
+    let mut normal = SMatrix::<f64, 4, 4>::zeros();
+    spot.each_pixel(field.at(spot.place_px()), noise, usize::MAX, &mut Shares::default(), |pixel: &Pixel| {
+        normal += pixel.jacobian * pixel.jacobian.transpose() * pixel.weight;
+        pixels.push(*pixel);
     });
-    left
+    let Some(inverse) = normal.try_inverse() else { return Vec::new() };
+    let own = |pixel: &Pixel| {
+        // One that is cut off at 0 varies by another amount than its light has it.
+        let times = 1.0 / (pixel.weight * noise.variance(pixel.light));
+        SVector::from([1.0, pixel.light, pixel.light * pixel.light]) * times
+    };
+    let mut through = [SMatrix::<f64, 4, 4>::zeros(); 3];
+    for pixel in &pixels {
+        let product = pixel.jacobian * pixel.jacobian.transpose() * (pixel.weight * pixel.weight);
+        through.iter_mut().zip(own(pixel).iter()).for_each(|(sum, own)| *sum += product * *own);
+    }
+    let through = through.map(|sum| inverse * sum * inverse);
+    let of_pixel = |pixel: &Pixel| {
+        let along = |matrix: &SMatrix<f64, 4, 4>| (pixel.jacobian.transpose() * matrix * pixel.jacobian)[0];
+        let taken = pixel.weight * along(&inverse);
+        let row = own(pixel) * (1.0 - 2.0 * taken) + SVector::from(through.each_ref().map(along));
+        Left { light: pixel.light, left: pixel.left, row, taken }
+    };
+    pixels.iter().map(of_pixel).collect()
 }
 
 /// Explains residuals, by what was believed `before` where there are too few; `dark_dn` is the noise of patches without light, where it is known.
@@ -167,7 +200,7 @@ fn split(residuals: &[Residual], dark: Option<Measured>, shot: Option<f64>, befo
     LightNoise { noise: whole, dark_sigma, shot_sigma, shape_sigma, is_shot_seen: true }
 }
 
-/// Least squares of squared residuals on 1, light and its square; a normal residual's square has twice its variance squared.
+/// Least squares of squared residuals on what makes them; a normal residual's square has twice its variance squared.
 fn solve(
     residuals: &[Residual],
     (dark, shot): (Option<Measured>, Option<f64>),
@@ -183,11 +216,13 @@ fn solve(
             right[0] = value / (sigma * sigma);
         }
         for residual in residuals.iter().filter(|residual| is_used(residual)) {
-            let variance = noise.variance(residual.light);
+            let variance = residual.row.dot(&noise.by_light());
             let weight = 0.5 / (variance * variance);
-            let linear = if shot.is_some() { 0.0 } else { residual.light };
-            let row = SVector::from([1.0, linear, residual.light * residual.light]);
-            let known = shot.unwrap_or(0.0) * residual.light;
+            let mut row = residual.row;
+            let known = shot.unwrap_or(0.0) * row[1];
+            if shot.is_some() {
+                row[1] = 0.0;
+            }
             normal += row * row.transpose() * weight;
             right += row * ((residual.square - known) * weight);
         }
@@ -285,7 +320,7 @@ mod tests {
             let windows = windows(level, seed);
             let mut spots = spot::of(&windows, 255);
             place(&mut spots, &field, &noise, 6);
-            explain(&residuals(&spots, &field, &noise), dark_dn, &noise).noise.shot
+            explain(&free_residuals(&spots, &field, [&field; 2], &noise), dark_dn, &noise).noise.shot
         };
         let seeds = 4;
         (0..seeds).map(of_seed).sum::<f64>() / seeds as f64

@@ -193,7 +193,7 @@ pub fn learn(collection: &Collection) -> Result<Learned, LearnError> {
         spots: used,
         evidence: Evidence {
             summits,
-            noise: evidence::noise(&residuals),
+            noise: evidence::noise(&residuals, &light.noise),
             phases: evidence::phases(&spots, &field, &light.noise),
         },
     })

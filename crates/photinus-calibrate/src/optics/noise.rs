@@ -3,6 +3,7 @@
 //! A pixel that is rounded and clipped says only between which levels it was: with normal noise a patch of one level has a
 //! likelihood in closed form, also where rounding hides most of the noise or black is clipped at 0.
 
+use nalgebra::SVector;
 use photinus::optics::{Measured, Response};
 
 use super::window::Patch;
@@ -38,6 +39,11 @@ impl Noise {
     pub(super) fn variance(&self, light: f64) -> f64 {
         let light = light.max(0.0);
         self.dark + self.shot * light + self.shape * self.shape * light * light
+    }
+
+    /// What variance has of 1, of light, and of its square.
+    pub(super) fn by_light(&self) -> SVector<f64, 3> {
+        SVector::from([self.dark, self.shot, self.shape * self.shape])
     }
 
     /// The light that a level above darkness stands for, and how it grows with that.

@@ -1,8 +1,8 @@
-//! What full pixels say of the light of a spot: that it is no less, not how much it is.
+//! What full pixels say of a spot: that there is no less light in them, not how much there is.
 //!
-//! In: a fit of a spot with full pixels. It takes those that hold the light up for pixels that tell it to their noise. Out: the same fit with
-//! the light as the other pixels have it, cut off below what the full ones allow; lights are as many as light^-5/2. Points that stood still before a
-//! known point spread only: fits of streaks, of pairs, and with the spread free keep the light that they end with.
+//! In: a fit of a spot with full pixels. It takes those that hold it for pixels that tell their light to its noise. Out: the same fit with the light as the
+//! other pixels have it, cut off below what the full ones allow, lights being as many as light^-5/2, and with the centre anywhere that they allow. Where they do
+//! not hold the light up, and in pairs, which are fitted together, the fit is as it was.
 
 use nalgebra::{SMatrix, SVector};
 
@@ -39,7 +39,7 @@ pub(super) fn fit<const N: usize>(
     Some(held(window, shape, fitted, noise))
 }
 
-/// A fit with its light told anew where full pixels hold it up.
+/// A fit with its light and centre told anew where full pixels hold its light up.
 fn held<const N: usize>(
     window: &mut Window,
     shape: &mut impl Shape<N>,
@@ -63,22 +63,15 @@ fn held<const N: usize>(
     });
     let others = fitted.covariance.try_inverse().and_then(|all| (all - matrix).cholesky());
     let Some(others) = others else { return fitted };
-    let free = Normal {
-        mean: fitted.light() - others.solve(&right)[LIGHT],
-        variance: others.inverse()[(LIGHT, LIGHT)],
-    };
+    let (step, covariance) = (-others.solve(&right), others.inverse());
+    let free = Normal { mean: fitted.light() + step[LIGHT], variance: covariance[(LIGHT, LIGHT)] };
     let all = Normal { mean: fitted.light(), variance: fitted.light_variance() };
     let Some(light) = above_limit(free, all) else { return fitted };
-    let fitted = match (count <= MOST_FULL)
-        .then(|| within(&mut full[..count.min(MOST_FULL)], -others.solve(&right), others.inverse()))
-    {
-        Some((step, covariance)) => fitted.with_centre(
-            [fitted.numbers[U] + step[U], fitted.numbers[V] + step[V]],
-            &covariance.fixed_view::<2, 2>(0, 0).into_owned(),
-        ),
-        None => fitted,
-    };
-    fitted.with_light(light.mean, light.variance)
+    let told = fitted.with_light(light.mean, light.variance);
+    let Some(limits) = full.get_mut(..count) else { return told };
+    let (step, covariance) = within(limits, step, covariance);
+    let centre = [U, V].map(|axis| fitted.numbers[axis] + step[axis]);
+    told.with_centre(centre, &covariance.fixed_view::<2, 2>(0, 0).into_owned())
 }
 
 /// A full pixel with the normal factor that stands for it.

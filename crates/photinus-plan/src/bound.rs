@@ -77,6 +77,7 @@ impl<'a> Bound<'a> {
             bounds: Interval::new(0.1 * distance_m, 10.0 * distance_m)?,
             size: None,
             power: Some(LogLight { value: 0.0, sigma: LOG_POWER_SIGMA }),
+            tilt_sigma_rad: None,
             visible: Visible { detection_limit: Some(self.detection_limit), ..Visible::default() },
         };
         let Posterior { summary, .. } = self.estimator.estimate(&observations, &mut self.hypotheses, &known);

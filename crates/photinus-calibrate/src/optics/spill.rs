@@ -283,7 +283,12 @@ impl Model<'_> {
             of(Tried { share, well })
         };
         let well = if found.well > 1.05 {
-            measured(found.well, times(0.95), times(1.05), 0.05 * found.well)
+            let of_spots = measured(found.well, times(0.95), times(1.05), 0.05 * found.well);
+            // Without a tenth of the spots the share is not searched anew: what it leaves open of the well comes on top.
+            let aside = found.share + if found.share > 0.5 { -spill.sigma } else { spill.sigma };
+            let share = aside.clamp(0.0, 1.0);
+            let of_share = self.with_best_well(fulls, Tried { share, ..found }).1.well - found.well;
+            Measured { sigma: libm::hypot(of_spots.sigma, of_share), ..of_spots }
         } else {
             Measured { value: found.well, sigma: 0.05 }
         };

@@ -10,7 +10,7 @@ use crate::number;
 #[derive(Debug, clap::Args)]
 pub(crate) struct PoseArgs {
     /// Standard deviation of a neighbour's tilt against the vertical, per axis, where gravity is known; it includes the error of
-    /// gravity
+    /// gravity. It is what is believed before frames tell more
     #[arg(long, value_name = "DEG", default_value_t = 5.0, value_parser = tilt_sigma)]
     tilt_sigma: f64,
     /// Standard deviation of an LED's place about that in the airframe's file, per axis, in metres

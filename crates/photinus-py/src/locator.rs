@@ -29,7 +29,7 @@ use crate::recording::Dataset;
 /// Options: `contrast`, `threshold`, `reflection_ratio` and `mask` as for Detector; `mounting`, a TOML file that says how the camera sits on
 /// its vehicle: neighbours are told in the body frame, too; `spot_curve`, a TOML file, or "paper";
 /// `max_tilt`, deg, that the bounds allow for where gravity is known; `min_probability`, neighbours less likely are left out; `budget`,
-/// most looks at a handful of spots per frame; `tilt_sigma`, deg, how far neighbours tilt; `marker_sigma`, m, how far LEDs are from
+/// most looks at a handful of spots per frame; `tilt_sigma`, deg, how far neighbours tilt at least; `marker_sigma`, m, how far LEDs are from
 /// where the airframe says (what its file says, else 0.003); `power_spread`, a share, of the power of LEDs (what the file says, else
 /// 0.2); `scale_sigma`, a share, of the size of the airframe; `miss_rate`, how often a marker does not show, before frames tell it; `no_brightness`, leave
 /// brightness out of the pose; `no_time`, every frame by itself: no tracks, no velocities, no ids. Raises SettingError, FileError, ImageError.

@@ -4,7 +4,6 @@ use super::field::Field;
 use super::light::Residual;
 use super::noise::Noise;
 use super::spot::Spot;
-use super::table::Shares;
 
 /// What was seen, beside what was made of it.
 #[derive(Clone, Debug)]
@@ -55,14 +54,11 @@ pub(super) fn noise(residuals: &[Residual], noise: &Noise) -> Vec<NoiseBin> {
 /// How well spots are explained, by their place within a pixel.
 pub(super) fn phases(spots: &[Spot<'_>], field: &Field, noise: &Noise) -> [Vec<f64>; 2] {
     let mut sums = [[(0.0, 0.0); PHASES]; 2];
-    let mut shares = Shares::default();
     for spot in spots.iter().filter(|spot| spot.is_used && spot.is_linear()) {
         let bins = spot.place_px().map(|px| ((px - px.floor()) * PHASES as f64) as usize % PHASES);
-        let table = field.at(spot.place_px());
-        let taken = spot.leverages(table, noise, 3, &mut shares);
-        let mut taken = taken.iter();
-        spot.each_pixel(table, noise, 3, &mut shares, |pixel| {
-            let free = 1.0 - taken.next().copied().unwrap_or(1.0);
+        let Some(told) = spot.told(field.at(spot.place_px()), noise, 3) else { continue };
+        for pixel in &told.pixels {
+            let free = 1.0 - told.taken(pixel);
             let off = [pixel.column as f64 - spot.u, pixel.row as f64 - spot.v];
             if off.iter().all(|px| px.abs() <= CORE_PX) && free > 0.0 {
                 for (axis, bin) in bins.into_iter().enumerate() {
@@ -70,7 +66,7 @@ pub(super) fn phases(spots: &[Spot<'_>], field: &Field, noise: &Noise) -> [Vec<f
                     (*squares, *count) = (*squares + pixel.left * pixel.left * pixel.weight, *count + free);
                 }
             }
-        });
+        }
     }
     sums.map(|axis| axis.iter().map(|(squares, count)| squares / f64::max(*count, 1e-9)).collect())
 }

@@ -28,7 +28,7 @@ pub(super) struct Residual {
 impl Residual {
     /// The square that it would have if no fit had taken anything, of noise as told.
     pub(super) fn put_back(&self, noise: &Noise) -> f64 {
-        self.square * noise.variance(self.light) / self.row.dot(&noise.by_light())
+        self.square * noise.variance(self.light) / self.row.dot(&noise.terms())
     }
 }
 
@@ -64,12 +64,15 @@ const LEAST_DN: f64 = 0.7;
 /// What is left of the pixels of spots by a table that was made of them, put back as if fits weighed pixels by their own variances: while the table is learnt, and
 /// of few spots, its error is no chance share of the light in each pixel, as it must be for what fits leave of it to be told pixel by pixel.
 pub(super) fn residuals(spots: &[Spot<'_>], field: &Field, noise: &Noise) -> Vec<Residual> {
-    let square = |left: Left| {
-        let Left { light, taken, .. } = left;
-        let row = SVector::from([1.0, light, light * light]) * (1.0 - taken);
-        (Left { row, ..left }, left.left * left.left)
-    };
-    residuals_by(spots, noise, |_, spot| of_spot(spot, field, noise).into_iter().map(square).collect())
+    residuals_by(spots, noise, |_, spot| {
+        let Some(told) = spot.told(field.at(spot.place_px()), noise, usize::MAX) else { return Vec::new() };
+        let square = |pixel: &Pixel| {
+            let &Pixel { light, left, .. } = pixel;
+            let taken = told.taken(pixel);
+            (Left { light, left, row: by_light(light) * (1.0 - taken), taken }, left * left)
+        };
+        told.pixels.iter().map(square).collect()
+    })
 }
 
 /// What is left of them by a table that was made of them times what is left by one of the other half of the spots, so that the error of
@@ -82,11 +85,11 @@ pub(super) fn free_residuals(
 ) -> Vec<Residual> {
     let mut shares = Shares::default();
     residuals_by(spots, noise, |number, spot| {
-        let within = of_spot(spot, field, noise);
+        let within = left_by_pixel(spot, field, noise);
         let other = halves[(number + 1) % 2];
         let mut aside = spot.clone();
         aside.fit(other.at(spot.place_px()), noise, super::PLACE_REACH, PLACE_STEPS, &mut shares);
-        let aside = of_spot(&aside, other, noise);
+        let aside = left_by_pixel(&aside, other, noise);
         if aside.len() != within.len() {
             return Vec::new();
         }
@@ -118,7 +121,7 @@ fn residuals_by(
     for (number, spot) in spots.iter().enumerate().filter(|(_, spot)| spot.is_used && spot.is_linear()) {
         let part = number % PARTS;
         for (Left { light, row, taken, .. }, square) in squares(number, spot) {
-            let is_odd = square.abs() >= CLIP * CLIP * row.dot(&noise.by_light());
+            let is_odd = square.abs() >= CLIP * CLIP * row.dot(&noise.terms());
             if taken < MOST_TAKEN && light > LEAST_DN && !is_odd {
                 residuals.push(Residual { light, square, row, part });
             }
@@ -130,32 +133,28 @@ fn residuals_by(
 /// What a fit H leaves of independent pixels, which it weighs by variances that need not be theirs: of a pixel j the sum over all pixels k of
 /// ([j = k] - H_jk)^2 of their own. Bright pixels count for less in a fit, by the error of the table; were that forgotten, dim ones would be left with less than is
 /// put back, and shot noise would be a sixth too low behind sharp lenses.
-fn of_spot(spot: &Spot<'_>, field: &Field, noise: &Noise) -> Vec<Left> {
-    let mut pixels = Vec::new();
-    let mut normal = SMatrix::<f64, 4, 4>::zeros();
-    spot.each_pixel(field.at(spot.place_px()), noise, usize::MAX, &mut Shares::default(), |pixel: &Pixel| {
-        normal += pixel.jacobian * pixel.jacobian.transpose() * pixel.weight;
-        pixels.push(*pixel);
-    });
-    let Some(inverse) = normal.try_inverse() else { return Vec::new() };
-    let own = |pixel: &Pixel| {
-        // One that is cut off at 0 varies by another amount than its light has it.
-        let times = 1.0 / (pixel.weight * noise.variance(pixel.light));
-        SVector::from([1.0, pixel.light, pixel.light * pixel.light]) * times
-    };
+fn left_by_pixel(spot: &Spot<'_>, field: &Field, noise: &Noise) -> Vec<Left> {
+    let Some(told) = spot.told(field.at(spot.place_px()), noise, usize::MAX) else { return Vec::new() };
+    // One that is cut off at 0 varies by another amount than its light has it.
+    let own = |pixel: &Pixel| by_light(pixel.light) / (pixel.weight * noise.variance(pixel.light));
     let mut through = [SMatrix::<f64, 4, 4>::zeros(); 3];
-    for pixel in &pixels {
+    for pixel in &told.pixels {
         let product = pixel.jacobian * pixel.jacobian.transpose() * (pixel.weight * pixel.weight);
         through.iter_mut().zip(own(pixel).iter()).for_each(|(sum, own)| *sum += product * *own);
     }
-    let through = through.map(|sum| inverse * sum * inverse);
+    let through = through.map(|sum| told.covariance * sum * told.covariance);
     let of_pixel = |pixel: &Pixel| {
         let along = |matrix: &SMatrix<f64, 4, 4>| (pixel.jacobian.transpose() * matrix * pixel.jacobian)[0];
-        let taken = pixel.weight * along(&inverse);
+        let taken = told.taken(pixel);
         let row = own(pixel) * (1.0 - 2.0 * taken) + SVector::from(through.each_ref().map(along));
         Left { light: pixel.light, left: pixel.left, row, taken }
     };
-    pixels.iter().map(of_pixel).collect()
+    told.pixels.iter().map(of_pixel).collect()
+}
+
+/// What variance has of darkness, of shot noise and of the square of the table's error, where there is this much light.
+fn by_light(light: f64) -> SVector<f64, 3> {
+    SVector::from([1.0, light, light * light])
 }
 
 /// Explains residuals, by what was believed `before` where there are too few; `dark_dn` is the noise of patches without light, where it is known.
@@ -216,7 +215,7 @@ fn solve(
             right[0] = value / (sigma * sigma);
         }
         for residual in residuals.iter().filter(|residual| is_used(residual)) {
-            let variance = residual.row.dot(&noise.by_light());
+            let variance = residual.row.dot(&noise.terms());
             let weight = 0.5 / (variance * variance);
             let mut row = residual.row;
             let known = shot.unwrap_or(0.0) * row[1];
@@ -276,11 +275,10 @@ fn non_negative(normal: &SMatrix<f64, 3, 3>, right: &SVector<f64, 3>) -> SVector
 #[cfg(test)]
 mod tests {
     use photinus::optics::Gaussian;
-    use rand_distr::{Distribution as _, StandardNormal};
     use rand_pcg::Pcg64;
 
-    use super::super::table::{Share, Table};
-    use super::super::window::{REACH, SIDE, Seen, Window};
+    use super::super::table::Table;
+    use super::super::window::Window;
     use super::super::{place, spot};
     use super::*;
 
@@ -293,22 +291,10 @@ mod tests {
     /// Spots on a level, in noise.
     fn windows(level: f64, seed: u64) -> Vec<Window> {
         let mut random = Pcg64::new(u128::from(seed), 1);
-        let mut shares = Shares::default();
-        let window = |number: usize| {
-            let light = 25.0 + 22.0 * (number % 20) as f64;
-            let at = |step: f64| (step * number as f64).fract() - 0.5;
-            table().window(at(0.618), at(0.414), REACH, &mut shares);
-            let read = |share: &Share| {
-                let light = light * share.value;
-                let noise: f64 = StandardNormal.sample(&mut random);
-                (level + light + noise * (0.36 + SHOT * light.max(0.0)).sqrt()).round().clamp(0.0, 255.0)
-                    as u8
-            };
-            let pixels: Box<[u8]> = shares.of_pixels.iter().map(read).collect();
-            assert_eq!(pixels.len(), SIDE * SIDE);
-            Window { column: 100, row: 100, reach: REACH, seen: Seen::default(), pixels }
-        };
-        (0..250).map(window).collect()
+        let light = |number: usize| 25.0 + 22.0 * (number % 20) as f64;
+        (0..250)
+            .map(|number| Window::drawn(number, &table(), light(number), (level, SHOT), &mut random))
+            .collect()
     }
 
     /// Shot noise of spots whose table is right but is not taken to be.

@@ -42,7 +42,7 @@ impl Noise {
     }
 
     /// What variance has of 1, of light, and of its square.
-    pub(super) fn by_light(&self) -> SVector<f64, 3> {
+    pub(super) fn terms(&self) -> SVector<f64, 3> {
         SVector::from([self.dark, self.shot, self.shape * self.shape])
     }
 

@@ -127,13 +127,12 @@ fn line(sources: &[Source]) -> Sources {
 #[cfg(test)]
 mod tests {
     use photinus::optics::Gaussian;
-    use rand_distr::{Distribution as _, StandardNormal};
     use rand_pcg::Pcg64;
 
     use super::super::choice::choose;
     use super::super::spot;
     use super::super::table::Table;
-    use super::super::window::{REACH, SIDE, Seen, Window};
+    use super::super::window::Window;
     use super::*;
 
     const NOISE: Noise = Noise { dark: 0.44, shot: 0.02, shape: 0.0, bend: 0.0, is_dark_seen: true };
@@ -145,19 +144,9 @@ mod tests {
     /// Spots of LEDs whose own variance grows with their light, in noise.
     fn windows(growth_px2: f64, seed: u64) -> Vec<Window> {
         let mut random = Pcg64::new(u128::from(seed), 1);
-        let mut shares = Shares::default();
         let window = |number: usize| {
             let light = 100.0 + 500.0 * (number % 20) as f64 / 20.0;
-            let at = |step: f64| (step * number as f64).fract() - 0.5;
-            spread(growth_px2 * light / 500.0).window(at(0.618), at(0.414), REACH, &mut shares);
-            let read = |share: &super::super::table::Share| {
-                let noise: f64 = StandardNormal.sample(&mut random);
-                let light = light * share.value;
-                (6.0 + light + noise * (0.36 + 0.02 * light.max(0.0)).sqrt()).round().clamp(0.0, 255.0) as u8
-            };
-            let pixels: Box<[u8]> = shares.of_pixels.iter().map(read).collect();
-            assert_eq!(pixels.len(), SIDE * SIDE);
-            Window { column: 100, row: 100, reach: REACH, seen: Seen::default(), pixels }
+            Window::drawn(number, &spread(growth_px2 * light / 500.0), light, (6.0, 0.02), &mut random)
         };
         (0..400).map(window).collect()
     }

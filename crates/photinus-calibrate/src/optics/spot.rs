@@ -176,31 +176,35 @@ impl<'a> Spot<'a> {
         }
     }
 
-    /// Standard deviation of its light, grey levels; `None` where pixels do not tell all that is fitted.
-    pub(super) fn light_sigma(&self, table: &Table, noise: &Noise) -> Option<f64> {
+    /// Its pixels, and how well they tell place, light and level; `None` where they do not tell all of these.
+    pub(super) fn told(&self, table: &Table, noise: &Noise, reach: usize) -> Option<Told> {
+        let mut pixels = Vec::new();
         let mut normal = SMatrix::<f64, 4, 4>::zeros();
-        self.each_pixel(table, noise, usize::MAX, &mut Shares::default(), |pixel| {
+        self.each_pixel(table, noise, reach, &mut Shares::default(), |pixel| {
             normal += pixel.jacobian * pixel.jacobian.transpose() * pixel.weight;
+            pixels.push(*pixel);
         });
-        Some(normal.try_inverse()?[(2, 2)].max(0.0).sqrt())
+        Some(Told { pixels, covariance: normal.try_inverse()? })
+    }
+}
+
+/// What the pixels of a spot tell of it.
+#[derive(Clone, Debug)]
+pub(super) struct Told {
+    pub(super) pixels: Vec<Pixel>,
+    /// Of place, light and level.
+    pub(super) covariance: SMatrix<f64, 4, 4>,
+}
+
+impl Told {
+    /// Standard deviation of the light, grey levels.
+    pub(super) fn light_sigma(&self) -> f64 {
+        self.covariance[(2, 2)].max(0.0).sqrt()
     }
 
-    /// The share of each pixel's noise that the fit of this spot takes away, by the order of [`Self::each_pixel`].
-    pub(super) fn leverages(
-        &self,
-        table: &Table,
-        noise: &Noise,
-        reach: usize,
-        shares: &mut Shares,
-    ) -> Vec<f64> {
-        let mut normal = SMatrix::<f64, 4, 4>::zeros();
-        let mut rows = Vec::new();
-        self.each_pixel(table, noise, reach, shares, |pixel| {
-            normal += pixel.jacobian * pixel.jacobian.transpose() * pixel.weight;
-            rows.push((pixel.jacobian, pixel.weight));
-        });
-        let Some(inverse) = normal.try_inverse() else { return vec![1.0; rows.len()] };
-        rows.iter().map(|(row, weight)| weight * (row.transpose() * inverse * row)[0]).collect()
+    /// The share of a pixel's noise that the fit of this spot takes away.
+    pub(super) fn taken(&self, pixel: &Pixel) -> f64 {
+        pixel.weight * (pixel.jacobian.transpose() * self.covariance * pixel.jacobian)[0]
     }
 }
 

@@ -102,7 +102,7 @@ impl Trails {
             .filter_map(|spot| {
                 let [u, v] = spot.place_px();
                 let bearing = camera.bearing(Pixel::new(u, v))?;
-                let sigma = spot.light_sigma(field.at([u, v]), noise)? / spot.light;
+                let sigma = spot.told(field.at([u, v]), noise, usize::MAX)?.light_sigma() / spot.light;
                 let seen = spot.window.seen;
                 let variance = sigma * sigma + 0.25 * noise.shape * noise.shape;
                 let (off_axis_rad, log_light) = (bearing.off_axis_rad(), libm::log(spot.light));

@@ -91,3 +91,36 @@ pub(super) struct Patch {
     /// Row by row.
     pub(super) pixels: [u8; PATCH_SIDE * PATCH_SIDE],
 }
+
+#[cfg(test)]
+mod tests {
+    use rand_distr::{Distribution as _, StandardNormal};
+    use rand_pcg::Pcg64;
+
+    use super::super::table::{Share, Shares, Table};
+    use super::*;
+
+    impl Window {
+        /// One of many spots of a point spread, each elsewhere within a pixel, in read noise of 0.6 grey levels, on a level and in shot noise as told.
+        pub(in super::super) fn drawn(
+            number: usize,
+            table: &Table,
+            light: f64,
+            (level, shot): (f64, f64),
+            random: &mut Pcg64,
+        ) -> Self {
+            let mut shares = Shares::default();
+            let at = |step: f64| (step * number as f64).fract() - 0.5;
+            table.window(at(0.618), at(0.414), REACH, &mut shares);
+            let mut read = |share: &Share| {
+                let noise: f64 = StandardNormal.sample(random);
+                let light = light * share.value;
+                (level + light + noise * (0.36 + shot * light.max(0.0)).sqrt()).round().clamp(0.0, 255.0)
+                    as u8
+            };
+            let pixels: Box<[u8]> = shares.of_pixels.iter().map(&mut read).collect();
+            assert_eq!(pixels.len(), SIDE * SIDE);
+            Self { column: 100, row: 100, reach: REACH, seen: Seen::default(), pixels }
+        }
+    }
+}

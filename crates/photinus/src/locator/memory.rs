@@ -1,6 +1,7 @@
 //! What the frames before told: how bright the LEDs are, where clutter is, and how many neighbours there are, and where.
 //!
-//! In: of each frame its clutter, how many neighbours it has, where, the power of their LEDs, and which of these do not show. Out: the same over the last [`Memory::FRAMES`] frames.
+//! In: of each frame its clutter, how many neighbours it has, where, the power of their LEDs, which of these do not show, and how far
+//! they tilt. Out: the same over the last [`Memory::FRAMES`] frames.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -175,26 +176,27 @@ impl Memory {
 
     /// How often a marker that must show does not, where it is supposed to this often.
     pub(super) fn miss_rate(&self, supposed: f64) -> f64 {
-        let (mut expected, mut missed) = (0.0, 0.0);
-        for frame in (0..self.frames).map(|age| self.missed[self.aged(age)]) {
-            expected += frame.expected;
-            missed += frame.missed;
-        }
-        let share = if expected > MOST_MARKERS { MOST_MARKERS / expected } else { 1.0 };
-        (SUPPOSED_MARKERS * supposed + share * missed) / (SUPPOSED_MARKERS + share * expected)
+        let told = |place: usize| (self.missed[place].missed, self.missed[place].expected);
+        self.mean((supposed, SUPPOSED_MARKERS), MOST_MARKERS, told)
     }
 
     /// How far neighbours tilt, rad, where they are supposed to tilt this far: no less, for one that hovers upright now may tilt any moment.
     pub(super) fn tilt_sigma_rad(&self, supposed_rad: f64) -> f64 {
-        let (mut degrees, mut squares_rad2) = (0.0, 0.0);
-        for frame in (0..self.frames).map(|age| self.tiltings[self.aged(age)]) {
-            degrees += frame.degrees;
-            squares_rad2 += frame.squares_rad2;
+        let told = |place: usize| (self.tiltings[place].squares_rad2, self.tiltings[place].degrees);
+        let mean_rad2 = self.mean((supposed_rad * supposed_rad, SUPPOSED_TILTS), MOST_TILTS, told);
+        mean_rad2.sqrt().max(supposed_rad)
+    }
+
+    /// The mean of what frames tell, by place each a sum and of how many, where a mean is supposed beforehand as surely as so many would tell it, and all frames
+    /// tell no more than `most`.
+    fn mean(&self, (supposed, as_many): (f64, f64), most: f64, told: impl Fn(usize) -> (f64, f64)) -> f64 {
+        let (mut sum, mut count) = (0.0, 0.0);
+        for (of_frame, many) in (0..self.frames).map(|age| told(self.aged(age))) {
+            sum += of_frame;
+            count += many;
         }
-        let share = if degrees > MOST_TILTS { MOST_TILTS / degrees } else { 1.0 };
-        let supposed_rad2 = SUPPOSED_TILTS * supposed_rad * supposed_rad;
-        let told = (supposed_rad2 + share * squares_rad2) / (SUPPOSED_TILTS + share * degrees);
-        told.sqrt().max(supposed_rad)
+        let share = if count > most { most / count } else { 1.0 };
+        (as_many * supposed + share * sum) / (as_many + share * count)
     }
 
     /// The place of the frame this many frames ago.

@@ -4,7 +4,7 @@
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
     /// Standard deviation of a neighbour's tilt against the vertical, per axis, with the error of the known gravity, rad.
-    /// Default 5 deg.
+    /// What is believed before frames tell it ([`crate::pose::Known::tilt_sigma_rad`]). Default 5 deg.
     pub tilt_sigma_rad: f64,
     /// How far markers are from where the airframe's file says, m, per axis. Default 3 mm, a hand-built airframe measured with a ruler.
     pub marker_sigma_m: f64,

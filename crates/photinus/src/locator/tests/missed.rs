@@ -4,24 +4,10 @@ use super::*;
 
 /// The mean of what a locator believes of how often markers are missed, where so many are, over the frames after the first hundred.
 fn learned(missed: f64) -> f64 {
-    let (airframe, down) = (hexarotor(), level());
-    let mut locator = locator(&airframe);
-    let mut rng = Pcg64::new(29, 31);
-    let (mut sum, mut count) = (0.0, 0.0);
-    for frame in 0..400 {
-        let mut uniform = |low: f64, high: f64| Uniform::new(low, high).unwrap().sample(&mut rng);
-        let place_m = ahead(uniform(2.0, 6.0), uniform(-0.8, 0.8), uniform(-0.3, 0.3));
-        let tilt = Vector3::new(uniform(-0.1, 0.1), 0.0, uniform(-0.1, 0.1));
-        let placed = Placed::new(place_m, uniform(0.0, TAU), tilt);
-        let mut spots = placed.spots(&airframe, &camera(), &mut rng);
-        spots.retain(|_| Uniform::new(0.0, 1.0).unwrap().sample(&mut rng) >= missed);
-        let rate = locator.locate(Input::spots(&spots).gravity(Some(&down))).unwrap().miss_rate.unwrap();
-        if frame >= 100 {
-            sum += rate;
-            count += 1.0;
-        }
-    }
-    sum / count
+    let uniform = |rng: &mut Pcg64, low: f64, high: f64| Uniform::new(low, high).unwrap().sample(rng);
+    let tilt = |rng: &mut Pcg64| Vector3::new(uniform(rng, -0.1, 0.1), 0.0, uniform(rng, -0.1, 0.1));
+    let is_seen = |rng: &mut Pcg64| uniform(rng, 0.0, 1.0) >= missed;
+    mean_told(&level(), Pcg64::new(29, 31), tilt, is_seen, |located| located.miss_rate.unwrap())
 }
 
 #[test]

@@ -5,25 +5,12 @@ use super::*;
 /// The mean of what a locator believes of tilts, rad, over the frames after the first hundred, where vehicles tilt so far along each axis and gravity is so far
 /// from what it is told to be.
 fn learned(tilt_sigma_rad: f64, gravity_off_rad: f64) -> f64 {
-    let airframe = hexarotor();
     let down = Rotation3::from_axis_angle(&Vector3::z_axis(), gravity_off_rad) * level();
-    let mut locator = locator(&airframe);
-    let mut rng = Pcg64::new(37, 41);
-    let (mut told_rad, mut count) = (0.0, 0.0);
-    for frame in 0..400 {
-        let mut uniform = |low: f64, high: f64| Uniform::new(low, high).unwrap().sample(&mut rng);
-        let place_m = ahead(uniform(2.0, 6.0), uniform(-0.8, 0.8), uniform(-0.3, 0.3));
-        let yaw_rad = uniform(0.0, TAU);
-        let [x, z] = [(); 2].map(|()| -> f64 { StandardNormal.sample(&mut rng) });
-        let placed = Placed::new(place_m, yaw_rad, Vector3::new(x, 0.0, z) * tilt_sigma_rad);
-        let spots = placed.spots(&airframe, &camera(), &mut rng);
-        let located = locator.locate(Input::spots(&spots).gravity(Some(&down))).unwrap();
-        if frame >= 100 {
-            told_rad += located.tilt_sigma_rad.unwrap();
-            count += 1.0;
-        }
-    }
-    told_rad / count
+    let tilt = |rng: &mut Pcg64| {
+        let [x, z] = [(); 2].map(|()| -> f64 { StandardNormal.sample(rng) });
+        Vector3::new(x, 0.0, z) * tilt_sigma_rad
+    };
+    mean_told(&down, Pcg64::new(37, 41), tilt, |_| true, |located| located.tilt_sigma_rad.unwrap())
 }
 
 #[test]

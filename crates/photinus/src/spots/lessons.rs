@@ -192,6 +192,9 @@ impl Fitter {
         full_from: u8,
     ) {
         let mut telling = MOST_TELLING;
+        // What was left by a spread that frames had told less of says little of today's: frame k counts as k of the first.
+        let frames = f64::from(self.frames);
+        self.belief.noise_bins().fade(frames / (frames + 1.0));
         for (index, part) in parts.iter().enumerate() {
             if telling == 0 || !tells(index, part) {
                 continue;

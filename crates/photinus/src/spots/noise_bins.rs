@@ -45,6 +45,17 @@ impl NoiseBins {
         Self { noise, believed, bins: [Bin::default(); BINS], pixels: 0.0, solved_at: 0.0 }
     }
 
+    /// Lets each pixel so far count for so much of one.
+    pub(super) fn fade(&mut self, share: f64) {
+        for bin in &mut self.bins {
+            let Bin { count, squares, light, light2, known } = bin;
+            for sum in [count, squares, light, light2, known] {
+                *sum *= share;
+            }
+        }
+        self.pixels *= share;
+    }
+
     /// Adds a pixel with this much of a spot's light and this squared residual, of which so much is noise of its frame beyond the
     /// camera's.
     pub(super) fn add(&mut self, light: f32, square: f32, known: f32) {

@@ -25,6 +25,8 @@ const SAME_LEVEL_DN: u8 = 4;
 const LEAST_AROUND: f32 = 0.12;
 /// Share of spilled charge in a spot from which its residuals say nothing of noise.
 pub(super) const LEAST_SPILT: f64 = 0.02;
+/// What spots leave scatters as Student's distribution of so many degrees of freedom: two points taken for one are no noise.
+const MISFITS: f64 = 4.0;
 /// Spots of a frame that are learnt from, at most.
 const MOST_TELLING: usize = 40;
 /// Rounds in which a frame's spots and the point spread are fitted to each other.
@@ -210,7 +212,7 @@ impl Fitter {
             let known = (noise.dark - self.belief.noise().dark).max(0.0);
             let mut bins = *self.belief.noise_bins();
             let mut shape = PointSource::new(self.belief.spread(), UNLEARNT, self.belief.spill());
-            let mut add = |light, square| bins.add(light, square, known);
+            let mut add = |weight, light, square| bins.add(weight, light, square, known);
             match self.motion {
                 None => tell_noise::<5>(&mut self.window, &mut shape, guess, noise, &mut add),
                 Some(motion) => {
@@ -237,11 +239,13 @@ fn tell_noise<const N: usize>(
     shape: &mut impl Shape<N>,
     guess: (f64, f64, f64),
     noise: PixelNoise,
-    with: impl FnMut(f32, f32),
+    mut with: impl FnMut(f64, f32, f32),
 ) {
     let Some(fitted) = fit::fit(window, shape, guess, noise) else { return };
     let spills = window.full_px > 0 && window.spilled_share() > LEAST_SPILT;
-    if fitted.chi2 / fitted.freedom < NO_POINT && !spills {
-        fit::residuals(window, shape, &fitted, noise, with);
+    let misfit = fitted.chi2 / fitted.freedom;
+    if misfit < NO_POINT && !spills {
+        let weight = (MISFITS + 1.0) / (MISFITS + misfit);
+        fit::residuals(window, shape, &fitted, noise, |light, square| with(weight, light, square));
     }
 }

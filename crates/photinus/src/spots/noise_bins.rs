@@ -56,18 +56,18 @@ impl NoiseBins {
         self.pixels *= share;
     }
 
-    /// Adds a pixel with this much of a spot's light and this squared residual, of which so much is noise of its frame beyond the
-    /// camera's.
-    pub(super) fn add(&mut self, light: f32, square: f32, known: f32) {
+    /// Adds a pixel of so much weight with this much of a spot's light and this squared residual, of which so much is noise of its frame
+    /// beyond the camera's.
+    pub(super) fn add(&mut self, weight: f64, light: f32, square: f32, known: f32) {
         let light = f64::from(light.max(0.0));
         let octave = (light as u32 + 1).ilog2() as usize;
         let bin = &mut self.bins[octave.min(BINS - 1)];
-        bin.count += 1.0;
-        bin.squares += f64::from(square);
-        bin.light += light;
-        bin.light2 += light * light;
-        bin.known += f64::from(known);
-        self.pixels += 1.0;
+        bin.count += weight;
+        bin.squares += weight * f64::from(square);
+        bin.light += weight * light;
+        bin.light2 += weight * light * light;
+        bin.known += weight * f64::from(known);
+        self.pixels += weight;
     }
 
     /// Solves for the three parts of the noise, once a tenth more pixels are known: Fisher's scoring on their logarithms.

@@ -134,6 +134,14 @@ impl<const N: usize> Fitted<N> {
         self.numbers[LIGHT]
     }
 
+    /// The same with another centre and its covariance, as seen from the middle of the window.
+    pub(super) fn with_centre(self, [u, v]: [f64; 2], covariance_px2: &Matrix2<f64>) -> Self {
+        let Self { mut numbers, mut covariance, .. } = self;
+        (numbers[U], numbers[V]) = (u, v);
+        covariance.fixed_view_mut::<2, 2>(0, 0).copy_from(covariance_px2);
+        Self { numbers, covariance, ..self }
+    }
+
     /// The same with another light and its variance.
     pub(super) fn with_light(self, light: f64, variance: f64) -> Self {
         let Self { mut numbers, mut covariance, .. } = self;
@@ -384,6 +392,19 @@ struct PixelModel<'a> {
 #[inline(always)]
 fn weighed<const N: usize>(
     four: &Four,
+    shares: (Lanes, [Lanes; N]),
+    model: &PixelModel<'_>,
+) -> ([Lanes; N], Lanes, Lanes) {
+    let (columns, residual, variance) = modelled(four, shares, model);
+    // A full pixel counts where the model has less than it reads.
+    let tells = Lanes::ONE - four.full * lanes::less(residual, Lanes::ZERO);
+    (columns, residual, four.counts * tells / variance)
+}
+
+/// Slopes, residual and variance of four pixels.
+#[inline(always)]
+fn modelled<const N: usize>(
+    four: &Four,
     (share, mut columns): (Lanes, [Lanes; N]),
     &PixelModel { light, level, noise, spilling, window }: &PixelModel<'_>,
 ) -> ([Lanes; N], Lanes, Lanes) {
@@ -414,37 +435,44 @@ fn weighed<const N: usize>(
             *column *= read.slope;
         }
     }
-    let residual = four.signal - model;
-    // A full pixel counts where the model has less than it reads.
-    let tells = Lanes::ONE - four.full * lanes::less(residual, Lanes::ZERO);
-    (columns, residual, four.counts * tells / variance)
+    (columns, four.signal - model, variance)
 }
 
-/// What full pixels add to the normal equations at the answer of a fit: the matrix, and the right side.
-pub(super) fn of_full_pixels<const N: usize>(
+/// A full pixel near the answer of a fit: model + `slopes` step is no less than what it reads, but for noise.
+pub(super) struct FullPixel<const N: usize> {
+    pub(super) slopes: SVector<f64, N>,
+    /// What it reads less what the model has.
+    pub(super) residual: f64,
+    pub(super) variance: f64,
+}
+
+/// Tells of the full pixels at the answer of a fit.
+pub(super) fn each_full_pixel<const N: usize>(
     window: &mut Window,
     shape: &mut impl Shape<N>,
     fitted: &Fitted<N>,
     noise: PixelNoise,
-) -> (SMatrix<f64, N, N>, SVector<f64, N>) {
+    mut with: impl FnMut(FullPixel<N>),
+) {
     let numbers = &fitted.numbers;
     shape.place(numbers, window.reach);
     overflow(window, shape, numbers);
     let (light, level) = (Lanes::splat(numbers[LIGHT] as f32), Lanes::splat(numbers[LEVEL] as f32));
     let model = PixelModel { light, level, noise, spilling: shape.spill(numbers).numbers, window };
-    let (mut matrix, mut right) = (SMatrix::zeros(), SVector::zeros());
     for (place, four) in window.fours.iter().enumerate().filter(|(_, four)| four.full != Lanes::ZERO) {
         let Some(shares) = window.kept::<N>(place) else { continue };
-        let (columns, residual, weight) = weighed(four, shares, &model);
+        let (columns, residual, variance) = modelled(four, shares, &model);
         let columns = columns.map(Lanes::to_array);
-        let (residual, weight) = (residual.to_array(), (weight * four.full).to_array());
-        for lane in (0..lanes::LANES).filter(|&lane| weight[lane] > 0.0) {
-            let slopes = SVector::<f64, N>::from_fn(|i, _| f64::from(columns[i][lane]));
-            matrix += slopes * slopes.transpose() * f64::from(weight[lane]);
-            right += slopes * f64::from(weight[lane] * residual[lane]);
+        let (residual, variance) = (residual.to_array(), variance.to_array());
+        let full = (four.full * four.counts).to_array();
+        for lane in (0..lanes::LANES).filter(|&lane| full[lane] > 0.0) {
+            with(FullPixel {
+                slopes: SVector::from_fn(|i, _| f64::from(columns[i][lane])),
+                residual: f64::from(residual[lane]),
+                variance: f64::from(variance[lane]),
+            });
         }
     }
-    (matrix, right)
 }
 
 /// Tells of each pixel that counts and is not full the own light of a spot that is fitted, and its squared residual, over 1 less the share of

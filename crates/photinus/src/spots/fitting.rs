@@ -387,6 +387,11 @@ impl Fitter {
         self.optics.as_ref().map_or(SourceSize::UNKNOWN, |optics| *optics.spread.source_size())
     }
 
+    /// Width (sigma) of the core of the point spread as frames told it, px.
+    pub(super) fn core_px(&self) -> f64 {
+        self.belief.core_px()
+    }
+
     /// What becomes of charge above a full well.
     pub(super) fn spill(&self) -> Spill {
         self.optics.as_ref().map_or_else(|| self.belief.spill(), |optics| measured_spill(&optics.sensor))

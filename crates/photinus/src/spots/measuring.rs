@@ -92,6 +92,17 @@ struct Look<'a> {
     around: Surroundings,
 }
 
+impl Look<'_> {
+    fn width_px(&self) -> f64 {
+        self.part.width_px(self.around.level)
+    }
+
+    /// Whether another spot cuts its light short.
+    fn is_crowded(&self) -> bool {
+        self.room_px < self.part.most_room_px().min(3.5 * self.width_px())
+    }
+}
+
 /// Measures the light of the parts of one frame after the other.
 #[derive(Debug)]
 pub(super) struct Meter {
@@ -232,11 +243,12 @@ impl Meter {
     fn surer(&self, look: &Look<'_>, model: &Model) -> (Pixel, Matrix2<f64>) {
         let by_fit = (model.centre, model.covariance_px2);
         let is_alone = !look.part.outline.cut && look.room_px >= look.part.most_room_px();
-        // Charge that spills keeps its middle, by whatever law.
         if !is_alone || model.spilt < LEAST_SPILT || self.fitter.motion.is_some() {
             return by_fit;
         }
-        let by_window = self.shapeless(look);
+        // Of a core narrower than this pixels show no parabola.
+        let is_narrow = self.fitter.core_px() < NARROW_PX;
+        let by_window = if is_narrow { self.balanced(look) } else { self.shapeless(look) };
         if by_window.1.trace() < by_fit.1.trace() { by_window } else { by_fit }
     }
 
@@ -256,18 +268,14 @@ impl Meter {
 
     /// What is no point's light: by the parabola through the logarithm of the light that shows, or by a balanced window.
     fn shapeless(&self, look: &Look<'_>) -> (Pixel, Matrix2<f64>) {
-        let &Look { part, full, room_px, window_px, around } = look;
-        let variance = self.fitter.told_noise(around);
-        let outline = &part.outline;
-        let blur_px2 = full.blur_px2();
-        let width_px = part.width_px(around.level);
-        let is_crowded = room_px < part.most_room_px().min(3.5 * width_px);
+        let (outline, full) = (&look.part.outline, look.full);
+        let is_crowded = look.is_crowded();
         let has_wings = outline.cut || full.px > 0 || is_crowded;
         let by_wings = has_wings.then(|| self.wings(look));
         let tells = |fit: &Fit| {
             outline.cut
                 || full.px == 0
-                || (fit.misfit < LARGEST_MISFIT && fit.covariance_px2.trace() < 2.0 * blur_px2)
+                || (fit.misfit < LARGEST_MISFIT && fit.covariance_px2.trace() < 2.0 * full.blur_px2())
         };
         let by_wings = by_wings.flatten().filter(tells);
         let shapeless = Matrix2::from_diagonal_element(SHAPELESS_PX * SHAPELESS_PX);
@@ -275,13 +283,21 @@ impl Meter {
             let is_sure = outline.cut || full.px > 0;
             return (fit.centre, if is_sure { fit.covariance_px2 } else { fit.covariance_px2 + shapeless });
         }
+        self.balanced(look)
+    }
+
+    /// By a balanced window: charge that spills keeps its middle, by whatever law.
+    fn balanced(&self, look: &Look<'_>) -> (Pixel, Matrix2<f64>) {
+        let &Look { part, full, window_px, around, .. } = look;
+        let outline = &part.outline;
+        let variance = self.fitter.told_noise(around);
         let anywhere = Matrix2::from_diagonal_element(WITHIN_A_PIXEL * WITHIN_A_PIXEL);
         let balanced = centroid::balance(&self.patch, part.guess, window_px as f32, variance);
         let (centre, covariance) = balanced.unwrap_or((part.guess, anywhere));
-        let unclear = is_crowded || width_px < NARROW_PX;
+        let unclear = look.is_crowded() || look.width_px() < NARROW_PX;
         let missing_px2 = match (outline.cut, full.px > 0) {
             (true, _) => part.radius_px * part.radius_px / 4.0,
-            (false, true) => blur_px2 + full.flankless_px2(outline),
+            (false, true) => full.blur_px2() + full.flankless_px2(outline),
             (false, false) if unclear => SHAPELESS_PX * SHAPELESS_PX,
             (false, false) => 0.0,
         };

@@ -194,9 +194,9 @@ impl Fitter {
         full_from: u8,
     ) {
         let mut telling = MOST_TELLING;
-        // What was left by a spread that frames had told less of says little of today's: frame k counts as k of the first.
+        // What was left by a spread that frames had told less of says little of today's: frame k counts as k^2 of the first.
         let frames = f64::from(self.frames);
-        self.belief.noise_bins().fade(frames / (frames + 1.0));
+        self.belief.noise_bins().fade((frames / (frames + 1.0)).powi(2));
         for (index, part) in parts.iter().enumerate() {
             if telling == 0 || !tells(index, part) {
                 continue;

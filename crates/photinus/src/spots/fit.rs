@@ -39,6 +39,8 @@ const SETTLED_PX: f64 = 0.05;
 const LIGHT_STEP: f64 = 3.0;
 /// Share of a pixel's noise that must not be cut off for what it leaves to tell of noise.
 const WHOLLY_SEEN: f32 = 0.98;
+/// Of what a fit took more than this share of a pixel's noise tells little of it.
+const MOST_TAKEN: f64 = 0.7;
 /// No source's own variance is known better than this, px^2.
 const LEAST_SIZE_PX2: f64 = 1e-4;
 /// How far the level of the background is known beforehand, grey levels.
@@ -475,17 +477,65 @@ pub(super) fn each_full_pixel<const N: usize>(
     }
 }
 
-/// Tells of each pixel that counts and is not full the own light of a spot that is fitted, and its squared residual, over 1 less the share of
-/// it that the fit took away.
+/// What a fit left of a pixel.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Left {
+    /// The own light of the spot there.
+    pub(super) light: f64,
+    pub(super) square: f64,
+    /// What noise of 1, of the light and of its square in each pixel leaves there on average, whatever weights the fit had.
+    pub(super) of: [f64; 3],
+}
+
+/// A pixel that counts in a fit.
+struct Counted<const N: usize> {
+    slopes: SVector<f64, N>,
+    residual: f64,
+    weight: f64,
+    light: f64,
+    /// Neither full nor cut off: what is tells of less noise than there is.
+    tells_noise: bool,
+}
+
+/// Tells what a fit left of each pixel that tells of noise: residuals are noise less what of it the fit took away, r = (1 - J C J' W) n.
 pub(super) fn residuals<const N: usize>(
     window: &Window,
     shape: &mut impl Shape<N>,
     fitted: &Fitted<N>,
     noise: PixelNoise,
-    mut with: impl FnMut(f32, f32),
+    mut with: impl FnMut(Left),
+) {
+    shape.place(&fitted.numbers, window.reach);
+    let powers = |light: f64| [1.0, light, light * light];
+    let mut taken_by_all = [SMatrix::<f64, N, N>::zeros(); 3];
+    each_counted(window, shape, fitted, noise, |pixel| {
+        let outer = pixel.slopes * pixel.slopes.transpose() * (pixel.weight * pixel.weight);
+        for (sum, power) in taken_by_all.iter_mut().zip(powers(pixel.light)) {
+            *sum += outer * power;
+        }
+    });
+    each_counted(window, shape, fitted, noise, |pixel| {
+        let along = fitted.covariance * pixel.slopes;
+        let taken = pixel.slopes.dot(&along) * pixel.weight;
+        if !pixel.tells_noise || taken > MOST_TAKEN {
+            return;
+        }
+        let powers = powers(pixel.light);
+        let of = core::array::from_fn(|part| {
+            powers[part] * (1.0 - 2.0 * taken) + along.dot(&(taken_by_all[part] * along))
+        });
+        with(Left { light: pixel.light, square: pixel.residual * pixel.residual, of });
+    });
+}
+
+fn each_counted<const N: usize>(
+    window: &Window,
+    shape: &impl Shape<N>,
+    fitted: &Fitted<N>,
+    noise: PixelNoise,
+    mut with: impl FnMut(Counted<N>),
 ) {
     let numbers = &fitted.numbers;
-    shape.place(numbers, window.reach);
     let (light, level) = (Lanes::splat(numbers[LIGHT] as f32), Lanes::splat(numbers[LEVEL] as f32));
     let model = PixelModel { light, level, noise, spilling: shape.spill(numbers).numbers, window };
     for four in &window.fours {
@@ -494,18 +544,15 @@ pub(super) fn residuals<const N: usize>(
         let own = (light * columns[LIGHT]).to_array();
         let seen = columns[LEVEL].to_array();
         let columns = columns.map(Lanes::to_array);
-        let (residual, weight) = (residual.to_array(), weight.to_array());
-        let full = four.full.to_array();
-        for lane in 0..lanes::LANES {
-            // What is cut off tells of less noise than there is.
-            if weight[lane] <= 0.0 || full[lane] > 0.0 || seen[lane] < WHOLLY_SEEN {
-                continue;
-            }
-            let slopes = SVector::<f64, N>::from_fn(|i, _| f64::from(columns[i][lane]));
-            let taken = (slopes.transpose() * fitted.covariance * slopes)[0] * f64::from(weight[lane]);
-            if taken < 0.7 {
-                with(own[lane], (f64::from(residual[lane] * residual[lane]) / (1.0 - taken)) as f32);
-            }
+        let (residual, weight, full) = (residual.to_array(), weight.to_array(), four.full.to_array());
+        for lane in (0..lanes::LANES).filter(|&lane| weight[lane] > 0.0) {
+            with(Counted {
+                slopes: SVector::from_fn(|i, _| f64::from(columns[i][lane])),
+                residual: f64::from(residual[lane]),
+                weight: f64::from(weight[lane]),
+                light: f64::from(own[lane].max(0.0)),
+                tells_noise: full[lane] <= 0.0 && seen[lane] >= WHOLLY_SEEN,
+            });
         }
     }
 }

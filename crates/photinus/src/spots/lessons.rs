@@ -6,7 +6,7 @@
 
 use nalgebra::SVector;
 
-use super::fit::{self, Fitted, PixelNoise, PointSource, Shape, WIDTH};
+use super::fit::{self, Fitted, Left, PixelNoise, PointSource, Shape, WIDTH};
 use super::fitting::{Fitter, NO_POINT, WIDEST_POINT_PX};
 use super::learning::{Belief, Information, NUMBERS, Told, UNKNOWNS};
 use super::neighbourhood::Neighbourhood;
@@ -194,9 +194,9 @@ impl Fitter {
         full_from: u8,
     ) {
         let mut telling = MOST_TELLING;
-        // What was left by a spread that frames had told less of says little of today's: frame k counts as k^2 of the first.
+        // What was left by a spread that frames had told less of says little of today's: frame k counts as k of the first.
         let frames = f64::from(self.frames);
-        self.belief.noise_bins().fade((frames / (frames + 1.0)).powi(2));
+        self.belief.noise_bins().fade(frames / (frames + 1.0));
         for (index, part) in parts.iter().enumerate() {
             if telling == 0 || !tells(index, part) {
                 continue;
@@ -209,10 +209,10 @@ impl Fitter {
             // Wings beside a spot make its frame no noisier: what is cut off does.
             let noise = if around.is_cut_off { self.pixel_noise(around) } else { self.belief.noise() };
             let guess = self.guess(part);
-            let known = (noise.dark - self.belief.noise().dark).max(0.0);
+            let known = f64::from((noise.dark - self.belief.noise().dark).max(0.0));
             let mut bins = *self.belief.noise_bins();
             let mut shape = PointSource::new(self.belief.spread(), UNLEARNT, self.belief.spill());
-            let mut add = |weight, light, square| bins.add(weight, light, square, known);
+            let mut add = |trust, left: &_| bins.add(trust, left, known);
             match self.motion {
                 None => tell_noise::<5>(&mut self.window, &mut shape, guess, noise, &mut add),
                 Some(motion) => {
@@ -239,13 +239,13 @@ fn tell_noise<const N: usize>(
     shape: &mut impl Shape<N>,
     guess: (f64, f64, f64),
     noise: PixelNoise,
-    mut with: impl FnMut(f64, f32, f32),
+    mut with: impl FnMut(f64, &Left),
 ) {
     let Some(fitted) = fit::fit(window, shape, guess, noise) else { return };
     let spills = window.full_px > 0 && window.spilled_share() > LEAST_SPILT;
     let misfit = fitted.chi2 / fitted.freedom;
     if misfit < NO_POINT && !spills {
-        let weight = (MISFITS + 1.0) / (MISFITS + misfit);
-        fit::residuals(window, shape, &fitted, noise, |light, square| with(weight, light, square));
+        let trust = (MISFITS + 1.0) / (MISFITS + misfit);
+        fit::residuals(window, shape, &fitted, noise, |left| with(trust, &left));
     }
 }

@@ -5,7 +5,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::fit::PixelNoise;
+use super::fit::{Left, PixelNoise};
 use super::settings::Noise;
 #[cfg(not(feature = "std"))]
 use crate::float::Float as _;
@@ -31,8 +31,8 @@ pub(super) struct NoiseBins {
 struct Bin {
     count: f64,
     squares: f64,
-    light: f64,
-    light2: f64,
+    /// What of noise of 1, of the light and of its square is left.
+    of: [f64; 3],
     /// Variance that is known by itself.
     known: f64,
 }
@@ -48,26 +48,25 @@ impl NoiseBins {
     /// Lets each pixel so far count for so much of one.
     pub(super) fn fade(&mut self, share: f64) {
         for bin in &mut self.bins {
-            let Bin { count, squares, light, light2, known } = bin;
-            for sum in [count, squares, light, light2, known] {
+            let Bin { count, squares, of: [one, light, light2], known } = bin;
+            for sum in [count, squares, one, light, light2, known] {
                 *sum *= share;
             }
         }
         self.pixels *= share;
     }
 
-    /// Adds a pixel of so much weight with this much of a spot's light and this squared residual, of which so much is noise of its frame
-    /// beyond the camera's.
-    pub(super) fn add(&mut self, weight: f64, light: f32, square: f32, known: f32) {
-        let light = f64::from(light.max(0.0));
-        let octave = (light as u32 + 1).ilog2() as usize;
+    /// Adds what a fit left of a pixel, trusted so far, in a frame that has so much noise beyond the camera's.
+    pub(super) fn add(&mut self, trust: f64, left: &Left, known: f64) {
+        let octave = (left.light as u32 + 1).ilog2() as usize;
         let bin = &mut self.bins[octave.min(BINS - 1)];
-        bin.count += weight;
-        bin.squares += weight * f64::from(square);
-        bin.light += weight * light;
-        bin.light2 += weight * light * light;
-        bin.known += weight * f64::from(known);
-        self.pixels += weight;
+        bin.count += trust;
+        bin.squares += trust * left.square;
+        for (sum, of) in bin.of.iter_mut().zip(left.of) {
+            *sum += trust * of;
+        }
+        bin.known += trust * left.of[0] * known;
+        self.pixels += trust;
     }
 
     /// Solves for the three parts of the noise, once a tenth more pixels are known: Fisher's scoring on their logarithms.
@@ -90,8 +89,7 @@ impl NoiseBins {
                 right[i] += weight * (believed[i] - logs[i]);
             }
             for bin in self.bins.iter().filter(|bin| bin.count > 0.0) {
-                let by =
-                    Vector3::new(1.0, bin.light / bin.count, bin.light2 / bin.count).component_mul(&parts);
+                let by = Vector3::from(bin.of).component_mul(&parts) / bin.count;
                 let variance = by.sum() + bin.known / bin.count;
                 let slope = by / variance;
                 let ratio = bin.squares / (bin.count * variance);

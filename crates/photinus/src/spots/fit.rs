@@ -485,6 +485,8 @@ pub(super) struct Left {
     pub(super) square: f64,
     /// What noise of 1, of the light and of its square in each pixel leaves there on average, whatever weights the fit had.
     pub(super) of: [f64; 3],
+    /// The same of what others' light and spilled charge are not known.
+    pub(super) known: f64,
 }
 
 /// A pixel that counts in a fit.
@@ -493,6 +495,8 @@ struct Counted<const N: usize> {
     residual: f64,
     weight: f64,
     light: f64,
+    /// Variance of others' light and of spilled charge.
+    known: f64,
     /// Neither full nor cut off: what is tells of less noise than there is.
     tells_noise: bool,
 }
@@ -506,12 +510,12 @@ pub(super) fn residuals<const N: usize>(
     mut with: impl FnMut(Left),
 ) {
     shape.place(&fitted.numbers, window.reach);
-    let powers = |light: f64| [1.0, light, light * light];
-    let mut taken_by_all = [SMatrix::<f64, N, N>::zeros(); 3];
+    let parts = |pixel: &Counted<N>| [1.0, pixel.light, pixel.light * pixel.light, pixel.known];
+    let mut taken_by_all = [SMatrix::<f64, N, N>::zeros(); 4];
     each_counted(window, shape, fitted, noise, |pixel| {
         let outer = pixel.slopes * pixel.slopes.transpose() * (pixel.weight * pixel.weight);
-        for (sum, power) in taken_by_all.iter_mut().zip(powers(pixel.light)) {
-            *sum += outer * power;
+        for (sum, part) in taken_by_all.iter_mut().zip(parts(&pixel)) {
+            *sum += outer * part;
         }
     });
     each_counted(window, shape, fitted, noise, |pixel| {
@@ -520,11 +524,12 @@ pub(super) fn residuals<const N: usize>(
         if !pixel.tells_noise || taken > MOST_TAKEN {
             return;
         }
-        let powers = powers(pixel.light);
-        let of = core::array::from_fn(|part| {
-            powers[part] * (1.0 - 2.0 * taken) + along.dot(&(taken_by_all[part] * along))
+        let parts = parts(&pixel);
+        let [one, light, light2, known] = core::array::from_fn(|part| {
+            parts[part] * (1.0 - 2.0 * taken) + along.dot(&(taken_by_all[part] * along))
         });
-        with(Left { light: pixel.light, square: pixel.residual * pixel.residual, of });
+        let square = pixel.residual * pixel.residual;
+        with(Left { light: pixel.light, square, of: [one, light, light2], known });
     });
 }
 
@@ -543,6 +548,7 @@ fn each_counted<const N: usize>(
         let (columns, residual, weight) = weighed(four, shares, &model);
         let own = (light * columns[LIGHT]).to_array();
         let seen = columns[LEVEL].to_array();
+        let known = (four.others_variance + four.spilled_variance).to_array();
         let columns = columns.map(Lanes::to_array);
         let (residual, weight, full) = (residual.to_array(), weight.to_array(), four.full.to_array());
         for lane in (0..lanes::LANES).filter(|&lane| weight[lane] > 0.0) {
@@ -551,6 +557,7 @@ fn each_counted<const N: usize>(
                 residual: f64::from(residual[lane]),
                 weight: f64::from(weight[lane]),
                 light: f64::from(own[lane].max(0.0)),
+                known: f64::from(known[lane]),
                 tells_noise: full[lane] <= 0.0 && seen[lane] >= WHOLLY_SEEN,
             });
         }

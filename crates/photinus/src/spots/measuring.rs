@@ -7,7 +7,7 @@
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 
-use nalgebra::Matrix2;
+use nalgebra::{Matrix2, Vector2};
 
 use super::Spot;
 use super::centroid::{self, PixelVariance};
@@ -39,6 +39,10 @@ const UNIFORM: f64 = 0.288_675_134_594_812_9;
 /// whose window is cut short by another spot, px.
 const SHAPELESS_PX: f64 = 0.07;
 const NARROW_PX: f64 = 0.7;
+/// Wings that fit as well as this (squared misfit over degrees of freedom) are those of a Gaussian ...
+const GAUSSIAN_MISFIT: f64 = 1.5;
+/// ... unless their summit is farther than this from where the fit has it, sigmas of both.
+const CONTRADICTS: f64 = 3.0;
 /// Wings that fit no better than this are not those of a Gaussian: their summit says less than its formal covariance.
 const LARGEST_MISFIT: f64 = 5.0;
 /// Radius around the summit of a spot that the border cuts, or that stands in the light of another, in which its light tells, px.
@@ -239,10 +243,23 @@ impl Meter {
         self.fitter.hot_pixel_odds(part.middle, self.patch.lone(part.middle, Sides::of(part.middle, size)))
     }
 
-    /// A point's light by its fit; where much spills, nobody knows how, by its wings or its window if they are surer.
+    /// A point's light by its fit, or by its wings where those are surer and do not contradict it: of a Gaussian that is full in the middle they tell all
+    /// that there is, whatever spills there. Where much spills, nobody knows how, and neither is as sure, by its window.
     fn surer(&self, look: &Look<'_>, model: &Model) -> (Pixel, Matrix2<f64>) {
         let by_fit = (model.centre, model.covariance_px2);
         let is_alone = !look.part.outline.cut && look.room_px >= look.part.most_room_px();
+        let has_wings = is_alone && look.full.px > 0;
+        let by_wings = if has_wings { self.wings(look) } else { None };
+        let is_surer = |fit: &Fit| {
+            let off = Vector2::new(fit.centre.u - model.centre.u, fit.centre.v - model.centre.v);
+            let both = (fit.covariance_px2 + model.covariance_px2).try_inverse();
+            fit.misfit < GAUSSIAN_MISFIT
+                && fit.covariance_px2.trace() < model.covariance_px2.trace()
+                && both.is_some_and(|inverse| off.dot(&(inverse * off)) < CONTRADICTS * CONTRADICTS)
+        };
+        if let Some(fit) = by_wings.filter(is_surer) {
+            return (fit.centre, fit.covariance_px2);
+        }
         if !is_alone || model.spilt < LEAST_SPILT || self.fitter.motion.is_some() {
             return by_fit;
         }

@@ -65,7 +65,7 @@ impl NoiseBins {
         for (sum, of) in bin.of.iter_mut().zip(left.of) {
             *sum += trust * of;
         }
-        bin.known += trust * left.of[0] * known;
+        bin.known += trust * (left.of[0] * known + left.known);
         self.pixels += trust;
     }
 

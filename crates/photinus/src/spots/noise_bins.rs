@@ -13,7 +13,7 @@ use crate::float::Float as _;
 /// What is believed of the variance of a pixel: the share of its light by which the point spread is wrong ...
 const SHAPE: f64 = 0.08;
 /// ... and the sigma of the logarithm of each of its parts.
-const PARTS_KNOWN: [f64; 3] = [1.0, 1.0, 1.5];
+const PARTS_KNOWN: [f64; 3] = [1.0, 1.0, 2.0];
 /// Bins of pixels by their light: from 1 grey level on, an octave each.
 const BINS: usize = 9;
 

@@ -19,6 +19,7 @@ use super::learning::{Belief, UNKNOWNS};
 use super::lessons::LEARNT_FRAMES;
 use super::limits;
 use super::neighbourhood::Neighbourhood;
+use super::noise_bins::SpotNoise;
 use super::part::Part;
 use super::patch::{self, Dark, Surroundings};
 use super::settings::{Brightness, Noise, Settings};
@@ -102,6 +103,8 @@ pub(super) struct Fitter {
     pub(super) unsaturated: u32,
     pub(super) window: Window,
     pub(super) widths: Vec<f64>,
+    /// What this frame's spots tell of noise.
+    pub(super) told: Vec<SpotNoise>,
     models: Vec<Option<Model>>,
     /// Whether light moved in this frame while the shutter was open.
     pub(super) is_smeared: bool,
@@ -126,6 +129,7 @@ impl Fitter {
             unsaturated: 0,
             window: Window::default(),
             widths: Vec::new(),
+            told: Vec::new(),
             models: Vec::new(),
             is_smeared: false,
             motion: None,

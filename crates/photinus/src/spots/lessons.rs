@@ -6,10 +6,11 @@
 
 use nalgebra::SVector;
 
-use super::fit::{self, Fitted, Left, PixelNoise, PointSource, Shape, WIDTH};
+use super::fit::{self, Fitted, PixelNoise, PointSource, Shape, WIDTH};
 use super::fitting::{Fitter, NO_POINT, WIDEST_POINT_PX};
 use super::learning::{Belief, Information, NUMBERS, Told, UNKNOWNS};
 use super::neighbourhood::Neighbourhood;
+use super::noise_bins::SpotNoise;
 use super::part::Part;
 use super::patch::NOISY_DN;
 use super::smear::Smeared;
@@ -25,8 +26,6 @@ const SAME_LEVEL_DN: u8 = 4;
 const LEAST_AROUND: f32 = 0.12;
 /// Share of spilled charge in a spot from which its residuals say nothing of noise.
 pub(super) const LEAST_SPILT: f64 = 0.02;
-/// What spots leave scatters as Student's distribution of so many degrees of freedom: two points taken for one are no noise.
-const MISFITS: f64 = 4.0;
 /// Spots of a frame that are learnt from, at most.
 const MOST_TELLING: usize = 40;
 /// Rounds in which a frame's spots and the point spread are fitted to each other.
@@ -197,6 +196,7 @@ impl Fitter {
         // What was left by a spread that frames had told less of says little of today's: frame k counts as k of the first.
         let frames = f64::from(self.frames);
         self.belief.noise_bins().fade(frames / (frames + 1.0));
+        self.told.clear();
         for (index, part) in parts.iter().enumerate() {
             if telling == 0 || !tells(index, part) {
                 continue;
@@ -210,18 +210,17 @@ impl Fitter {
             let noise = if around.is_cut_off { self.pixel_noise(around) } else { self.belief.noise() };
             let guess = self.guess(part);
             let known = f64::from((noise.dark - self.belief.noise().dark).max(0.0));
-            let mut bins = *self.belief.noise_bins();
             let mut shape = PointSource::new(self.belief.spread(), UNLEARNT, self.belief.spill());
-            let mut add = |trust, left: &_| bins.add(trust, left, known);
-            match self.motion {
-                None => tell_noise::<5>(&mut self.window, &mut shape, guess, noise, &mut add),
+            let told = match self.motion {
+                None => noise_of::<5>(&mut self.window, &mut shape, guess, noise, known),
                 Some(motion) => {
                     let mut streak = Smeared::new(shape, motion);
-                    tell_noise::<7>(&mut self.window, &mut streak, guess, noise, &mut add);
+                    noise_of::<7>(&mut self.window, &mut streak, guess, noise, known)
                 }
-            }
-            *self.belief.noise_bins() = bins;
+            };
+            self.told.extend(told);
         }
+        self.belief.noise_bins().take(&mut self.told);
         self.belief.noise_bins().solve();
     }
 }
@@ -233,19 +232,21 @@ fn lesson<const N: usize>(fitted: &Fitted<N>) -> Option<(SVector<f64, NUMBERS>, 
     (misfit < NO_POINT).then_some((numbers, covariance, 1.0 / misfit.max(1.0)))
 }
 
-/// Tells what a spot leaves, unless it is no point or its charge spills.
-fn tell_noise<const N: usize>(
+/// What a spot leaves, in a frame that has so much noise beyond the camera's; nothing of what is no point, or whose charge spills.
+fn noise_of<const N: usize>(
     window: &mut Window,
     shape: &mut impl Shape<N>,
     guess: (f64, f64, f64),
     noise: PixelNoise,
-    mut with: impl FnMut(f64, &Left),
-) {
-    let Some(fitted) = fit::fit(window, shape, guess, noise) else { return };
+    known: f64,
+) -> Option<SpotNoise> {
+    let fitted = fit::fit(window, shape, guess, noise)?;
     let spills = window.full_px > 0 && window.spilled_share() > LEAST_SPILT;
     let misfit = fitted.chi2 / fitted.freedom;
-    if misfit < NO_POINT && !spills {
-        let trust = (MISFITS + 1.0) / (MISFITS + misfit);
-        fit::residuals(window, shape, &fitted, noise, |left| with(trust, &left));
+    if misfit >= NO_POINT || spills {
+        return None;
     }
+    let mut told = SpotNoise::new(misfit);
+    fit::residuals(window, shape, &fitted, noise, |left| told.add(&left, known));
+    Some(told)
 }

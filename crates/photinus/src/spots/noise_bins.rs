@@ -14,6 +14,8 @@ use crate::float::Float as _;
 const SHAPE: f64 = 0.08;
 /// ... and the sigma of the logarithm of each of its parts.
 const PARTS_KNOWN: [f64; 3] = [1.0, 1.0, 2.0];
+/// Degrees of freedom of what spots leave over what the middle one does.
+const FREEDOM: f64 = 4.0;
 /// Bins of pixels by their light: from 1 grey level on, an octave each.
 const BINS: usize = 9;
 
@@ -37,6 +39,31 @@ struct Bin {
     known: f64,
 }
 
+/// What a fit left of the pixels of one spot.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct SpotNoise {
+    misfit: f64,
+    bins: [Bin; BINS],
+}
+
+impl SpotNoise {
+    pub(super) fn new(misfit: f64) -> Self {
+        Self { misfit, bins: [Bin::default(); BINS] }
+    }
+
+    /// Adds a pixel, in a frame that has so much noise beyond the camera's.
+    pub(super) fn add(&mut self, left: &Left, known: f64) {
+        let octave = (left.light as u32 + 1).ilog2() as usize;
+        let bin = &mut self.bins[octave.min(BINS - 1)];
+        bin.count += 1.0;
+        bin.squares += left.square;
+        for (sum, of) in bin.of.iter_mut().zip(left.of) {
+            *sum += of;
+        }
+        bin.known += left.of[0] * known + left.known;
+    }
+}
+
 impl NoiseBins {
     pub(super) fn new(noise: Noise) -> Self {
         let dark = noise.read_dn * noise.read_dn + 1.0 / 12.0;
@@ -56,17 +83,24 @@ impl NoiseBins {
         self.pixels *= share;
     }
 
-    /// Adds what a fit left of a pixel, trusted so far, in a frame that has so much noise beyond the camera's.
-    pub(super) fn add(&mut self, trust: f64, left: &Left, known: f64) {
-        let octave = (left.light as u32 + 1).ilog2() as usize;
-        let bin = &mut self.bins[octave.min(BINS - 1)];
-        bin.count += trust;
-        bin.squares += trust * left.square;
-        for (sum, of) in bin.of.iter_mut().zip(left.of) {
-            *sum += trust * of;
+    /// Takes in a frame's spots: what they leave scatters about the middle one's misfit as Student's distribution, for two points taken for one are no
+    /// noise, and where most misfit it is the noise that is more than was believed.
+    pub(super) fn take(&mut self, spots: &mut [SpotNoise]) {
+        spots.sort_unstable_by(|a, b| a.misfit.total_cmp(&b.misfit));
+        let Some(middle) = spots.get(spots.len().saturating_sub(1) / 2) else { return };
+        let typical = middle.misfit.max(1.0);
+        for spot in spots {
+            let trust = (FREEDOM + 1.0) / (FREEDOM + spot.misfit / typical);
+            for (sum, bin) in self.bins.iter_mut().zip(&spot.bins) {
+                sum.count += trust * bin.count;
+                sum.squares += trust * bin.squares;
+                for (sum, of) in sum.of.iter_mut().zip(bin.of) {
+                    *sum += trust * of;
+                }
+                sum.known += trust * bin.known;
+                self.pixels += trust * bin.count;
+            }
         }
-        bin.known += trust * (left.of[0] * known + left.known);
-        self.pixels += trust;
     }
 
     /// Solves for the three parts of the noise, once a tenth more pixels are known: Fisher's scoring on their logarithms.

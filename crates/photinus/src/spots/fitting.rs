@@ -19,7 +19,6 @@ use super::learning::{Belief, UNKNOWNS};
 use super::lessons::LEARNT_FRAMES;
 use super::limits;
 use super::neighbourhood::Neighbourhood;
-use super::noise_bins::SpotNoise;
 use super::part::Part;
 use super::patch::{self, Dark, Surroundings};
 use super::settings::{Brightness, Noise, Settings};
@@ -103,8 +102,6 @@ pub(super) struct Fitter {
     pub(super) unsaturated: u32,
     pub(super) window: Window,
     pub(super) widths: Vec<f64>,
-    /// What this frame's spots tell of noise.
-    pub(super) told: Vec<SpotNoise>,
     models: Vec<Option<Model>>,
     /// Whether light moved in this frame while the shutter was open.
     pub(super) is_smeared: bool,
@@ -129,7 +126,6 @@ impl Fitter {
             unsaturated: 0,
             window: Window::default(),
             widths: Vec::new(),
-            told: Vec::new(),
             models: Vec::new(),
             is_smeared: false,
             motion: None,
@@ -391,11 +387,6 @@ impl Fitter {
         self.optics.as_ref().map_or(SourceSize::UNKNOWN, |optics| *optics.spread.source_size())
     }
 
-    /// Width (sigma) of the core of the point spread as frames told it, px.
-    pub(super) fn core_px(&self) -> f64 {
-        self.belief.core_px()
-    }
-
     /// What becomes of charge above a full well.
     pub(super) fn spill(&self) -> Spill {
         self.optics.as_ref().map_or_else(|| self.belief.spill(), |optics| measured_spill(&optics.sensor))
@@ -414,11 +405,11 @@ impl Fitter {
             let mut point = PointSource::new(spread, self.source_size(), self.spill());
             if let Some(motion) = self.motion {
                 let streak: Option<Fitted<7>> =
-                    limits::fit(&mut self.window, &mut Smeared::new(point, motion), guess, noise);
+                    fit::fit(&mut self.window, &mut Smeared::new(point, motion), guess, noise);
                 if let Some(streak) = streak.filter(Fitted::fits) {
                     return self.told_streak(&streak, noise, part);
                 }
-                let still = limits::fit(&mut self.window, &mut point, guess, noise);
+                let still = fit::fit(&mut self.window, &mut point, guess, noise);
                 return match (streak, still) {
                     (Some(streak), still) if still.is_none_or(|still| still.chi2 > streak.chi2) => {
                         self.told_streak(&streak, noise, part)
@@ -426,15 +417,16 @@ impl Fitter {
                     (_, still) => self.told(&still?, noise, part),
                 };
             }
-            let fitted = limits::fit(&mut self.window, &mut point, guess, noise)?;
+            let fitted = fit::fit(&mut self.window, &mut point, guess, noise)?;
+            let fitted = limits::held(&mut self.window, &mut point, fitted, noise);
             self.told(&fitted, noise, part)
         } else if let Some(motion) = self.motion {
             let mut streak = Smeared::new(self.belief.free(), motion);
             let fitted: Option<Fitted<{ UNKNOWNS + 2 }>> =
-                limits::fit(&mut self.window, &mut streak, guess, noise);
+                fit::fit(&mut self.window, &mut streak, guess, noise);
             self.told_streak(&fitted?, noise, part)
         } else {
-            let fitted = limits::fit(&mut self.window, &mut self.belief.free(), guess, noise)?;
+            let fitted = fit::fit(&mut self.window, &mut self.belief.free(), guess, noise)?;
             self.told(&fitted, noise, part)
         }
     }

@@ -10,7 +10,6 @@ use super::fit::{self, Fitted, PixelNoise, PointSource, Shape, WIDTH};
 use super::fitting::{Fitter, NO_POINT, WIDEST_POINT_PX};
 use super::learning::{Belief, Information, NUMBERS, Told, UNKNOWNS};
 use super::neighbourhood::Neighbourhood;
-use super::noise_bins::SpotNoise;
 use super::part::Part;
 use super::patch::NOISY_DN;
 use super::smear::Smeared;
@@ -193,10 +192,6 @@ impl Fitter {
         full_from: u8,
     ) {
         let mut telling = MOST_TELLING;
-        // What was left by a spread that frames had told less of says little of today's: frame k counts as k of the first.
-        let frames = f64::from(self.frames);
-        self.belief.noise_bins().fade(frames / (frames + 1.0));
-        self.told.clear();
         for (index, part) in parts.iter().enumerate() {
             if telling == 0 || !tells(index, part) {
                 continue;
@@ -209,18 +204,19 @@ impl Fitter {
             // Wings beside a spot make its frame no noisier: what is cut off does.
             let noise = if around.is_cut_off { self.pixel_noise(around) } else { self.belief.noise() };
             let guess = self.guess(part);
-            let known = f64::from((noise.dark - self.belief.noise().dark).max(0.0));
+            let known = (noise.dark - self.belief.noise().dark).max(0.0);
+            let mut bins = *self.belief.noise_bins();
             let mut shape = PointSource::new(self.belief.spread(), UNLEARNT, self.belief.spill());
-            let told = match self.motion {
-                None => noise_of::<5>(&mut self.window, &mut shape, guess, noise, known),
+            let mut add = |light, square| bins.add(light, square, known);
+            match self.motion {
+                None => tell_noise::<5>(&mut self.window, &mut shape, guess, noise, &mut add),
                 Some(motion) => {
                     let mut streak = Smeared::new(shape, motion);
-                    noise_of::<7>(&mut self.window, &mut streak, guess, noise, known)
+                    tell_noise::<7>(&mut self.window, &mut streak, guess, noise, &mut add);
                 }
-            };
-            self.told.extend(told);
+            }
+            *self.belief.noise_bins() = bins;
         }
-        self.belief.noise_bins().take(&mut self.told);
         self.belief.noise_bins().solve();
     }
 }
@@ -232,21 +228,17 @@ fn lesson<const N: usize>(fitted: &Fitted<N>) -> Option<(SVector<f64, NUMBERS>, 
     (misfit < NO_POINT).then_some((numbers, covariance, 1.0 / misfit.max(1.0)))
 }
 
-/// What a spot leaves, in a frame that has so much noise beyond the camera's; nothing of what is no point, or whose charge spills.
-fn noise_of<const N: usize>(
+/// Tells what a spot leaves, unless it is no point or its charge spills.
+fn tell_noise<const N: usize>(
     window: &mut Window,
     shape: &mut impl Shape<N>,
     guess: (f64, f64, f64),
     noise: PixelNoise,
-    known: f64,
-) -> Option<SpotNoise> {
-    let fitted = fit::fit(window, shape, guess, noise)?;
+    with: impl FnMut(f32, f32),
+) {
+    let Some(fitted) = fit::fit(window, shape, guess, noise) else { return };
     let spills = window.full_px > 0 && window.spilled_share() > LEAST_SPILT;
-    let misfit = fitted.chi2 / fitted.freedom;
-    if misfit >= NO_POINT || spills {
-        return None;
+    if fitted.chi2 / fitted.freedom < NO_POINT && !spills {
+        fit::residuals(window, shape, &fitted, noise, with);
     }
-    let mut told = SpotNoise::new(misfit);
-    fit::residuals(window, shape, &fitted, noise, |left| told.add(&left, known));
-    Some(told)
 }

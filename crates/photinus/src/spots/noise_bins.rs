@@ -5,7 +5,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::fit::{Left, PixelNoise};
+use super::fit::PixelNoise;
 use super::settings::Noise;
 #[cfg(not(feature = "std"))]
 use crate::float::Float as _;
@@ -13,9 +13,7 @@ use crate::float::Float as _;
 /// What is believed of the variance of a pixel: the share of its light by which the point spread is wrong ...
 const SHAPE: f64 = 0.08;
 /// ... and the sigma of the logarithm of each of its parts.
-const PARTS_KNOWN: [f64; 3] = [1.0, 1.0, 2.0];
-/// Degrees of freedom of what spots leave over what the middle one does.
-const FREEDOM: f64 = 4.0;
+const PARTS_KNOWN: [f64; 3] = [1.0, 1.0, 1.5];
 /// Bins of pixels by their light: from 1 grey level on, an octave each.
 const BINS: usize = 9;
 
@@ -33,35 +31,10 @@ pub(super) struct NoiseBins {
 struct Bin {
     count: f64,
     squares: f64,
-    /// What of noise of 1, of the light and of its square is left.
-    of: [f64; 3],
+    light: f64,
+    light2: f64,
     /// Variance that is known by itself.
     known: f64,
-}
-
-/// What a fit left of the pixels of one spot.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct SpotNoise {
-    misfit: f64,
-    bins: [Bin; BINS],
-}
-
-impl SpotNoise {
-    pub(super) fn new(misfit: f64) -> Self {
-        Self { misfit, bins: [Bin::default(); BINS] }
-    }
-
-    /// Adds a pixel, in a frame that has so much noise beyond the camera's.
-    pub(super) fn add(&mut self, left: &Left, known: f64) {
-        let octave = (left.light as u32 + 1).ilog2() as usize;
-        let bin = &mut self.bins[octave.min(BINS - 1)];
-        bin.count += 1.0;
-        bin.squares += left.square;
-        for (sum, of) in bin.of.iter_mut().zip(left.of) {
-            *sum += of;
-        }
-        bin.known += left.of[0] * known + left.known;
-    }
 }
 
 impl NoiseBins {
@@ -72,35 +45,18 @@ impl NoiseBins {
         Self { noise, believed, bins: [Bin::default(); BINS], pixels: 0.0, solved_at: 0.0 }
     }
 
-    /// Lets each pixel so far count for so much of one.
-    pub(super) fn fade(&mut self, share: f64) {
-        for bin in &mut self.bins {
-            let Bin { count, squares, of: [one, light, light2], known } = bin;
-            for sum in [count, squares, one, light, light2, known] {
-                *sum *= share;
-            }
-        }
-        self.pixels *= share;
-    }
-
-    /// Takes in a frame's spots: what they leave scatters about the middle one's misfit as Student's distribution, for two points taken for one are no
-    /// noise, and where most misfit it is the noise that is more than was believed.
-    pub(super) fn take(&mut self, spots: &mut [SpotNoise]) {
-        spots.sort_unstable_by(|a, b| a.misfit.total_cmp(&b.misfit));
-        let Some(middle) = spots.get(spots.len().saturating_sub(1) / 2) else { return };
-        let typical = middle.misfit.max(1.0);
-        for spot in spots {
-            let trust = (FREEDOM + 1.0) / (FREEDOM + spot.misfit / typical);
-            for (sum, bin) in self.bins.iter_mut().zip(&spot.bins) {
-                sum.count += trust * bin.count;
-                sum.squares += trust * bin.squares;
-                for (sum, of) in sum.of.iter_mut().zip(bin.of) {
-                    *sum += trust * of;
-                }
-                sum.known += trust * bin.known;
-                self.pixels += trust * bin.count;
-            }
-        }
+    /// Adds a pixel with this much of a spot's light and this squared residual, of which so much is noise of its frame beyond the
+    /// camera's.
+    pub(super) fn add(&mut self, light: f32, square: f32, known: f32) {
+        let light = f64::from(light.max(0.0));
+        let octave = (light as u32 + 1).ilog2() as usize;
+        let bin = &mut self.bins[octave.min(BINS - 1)];
+        bin.count += 1.0;
+        bin.squares += f64::from(square);
+        bin.light += light;
+        bin.light2 += light * light;
+        bin.known += f64::from(known);
+        self.pixels += 1.0;
     }
 
     /// Solves for the three parts of the noise, once a tenth more pixels are known: Fisher's scoring on their logarithms.
@@ -123,7 +79,8 @@ impl NoiseBins {
                 right[i] += weight * (believed[i] - logs[i]);
             }
             for bin in self.bins.iter().filter(|bin| bin.count > 0.0) {
-                let by = Vector3::from(bin.of).component_mul(&parts) / bin.count;
+                let by =
+                    Vector3::new(1.0, bin.light / bin.count, bin.light2 / bin.count).component_mul(&parts);
                 let variance = by.sum() + bin.known / bin.count;
                 let slope = by / variance;
                 let ratio = bin.squares / (bin.count * variance);

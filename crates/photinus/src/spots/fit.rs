@@ -39,6 +39,8 @@ const SETTLED_PX: f64 = 0.05;
 const LIGHT_STEP: f64 = 3.0;
 /// Share of a pixel's noise that must not be cut off for what it leaves to tell of noise.
 const WHOLLY_SEEN: f32 = 0.98;
+/// Of what a fit took more than this share of a pixel's noise tells little of it.
+const MOST_TAKEN: f64 = 0.7;
 /// No source's own variance is known better than this, px^2.
 const LEAST_SIZE_PX2: f64 = 1e-4;
 /// How far the level of the background is known beforehand, grey levels.
@@ -132,6 +134,14 @@ impl<const N: usize> Fitted<N> {
 
     pub(super) fn light(&self) -> f64 {
         self.numbers[LIGHT]
+    }
+
+    /// The same with another centre and its covariance, as seen from the middle of the window.
+    pub(super) fn with_centre(self, [u, v]: [f64; 2], covariance_px2: &Matrix2<f64>) -> Self {
+        let Self { mut numbers, mut covariance, .. } = self;
+        (numbers[U], numbers[V]) = (u, v);
+        covariance.fixed_view_mut::<2, 2>(0, 0).copy_from(covariance_px2);
+        Self { numbers, covariance, ..self }
     }
 
     /// The same with another light and its variance.
@@ -384,6 +394,19 @@ struct PixelModel<'a> {
 #[inline(always)]
 fn weighed<const N: usize>(
     four: &Four,
+    shares: (Lanes, [Lanes; N]),
+    model: &PixelModel<'_>,
+) -> ([Lanes; N], Lanes, Lanes) {
+    let (columns, residual, variance) = modelled(four, shares, model);
+    // A full pixel counts where the model has less than it reads.
+    let tells = Lanes::ONE - four.full * lanes::less(residual, Lanes::ZERO);
+    (columns, residual, four.counts * tells / variance)
+}
+
+/// Slopes, residual and variance of four pixels.
+#[inline(always)]
+fn modelled<const N: usize>(
+    four: &Four,
     (share, mut columns): (Lanes, [Lanes; N]),
     &PixelModel { light, level, noise, spilling, window }: &PixelModel<'_>,
 ) -> ([Lanes; N], Lanes, Lanes) {
@@ -414,50 +437,110 @@ fn weighed<const N: usize>(
             *column *= read.slope;
         }
     }
-    let residual = four.signal - model;
-    // A full pixel counts where the model has less than it reads.
-    let tells = Lanes::ONE - four.full * lanes::less(residual, Lanes::ZERO);
-    (columns, residual, four.counts * tells / variance)
+    (columns, four.signal - model, variance)
 }
 
-/// What full pixels add to the normal equations at the answer of a fit: the matrix, and the right side.
-pub(super) fn of_full_pixels<const N: usize>(
+/// A full pixel near the answer of a fit: model + `slopes` step is no less than what it reads, but for noise.
+pub(super) struct FullPixel<const N: usize> {
+    pub(super) slopes: SVector<f64, N>,
+    /// What it reads less what the model has.
+    pub(super) residual: f64,
+    pub(super) variance: f64,
+}
+
+/// Tells of the full pixels at the answer of a fit.
+pub(super) fn each_full_pixel<const N: usize>(
     window: &mut Window,
     shape: &mut impl Shape<N>,
     fitted: &Fitted<N>,
     noise: PixelNoise,
-) -> (SMatrix<f64, N, N>, SVector<f64, N>) {
+    mut with: impl FnMut(FullPixel<N>),
+) {
     let numbers = &fitted.numbers;
     shape.place(numbers, window.reach);
     overflow(window, shape, numbers);
     let (light, level) = (Lanes::splat(numbers[LIGHT] as f32), Lanes::splat(numbers[LEVEL] as f32));
     let model = PixelModel { light, level, noise, spilling: shape.spill(numbers).numbers, window };
-    let (mut matrix, mut right) = (SMatrix::zeros(), SVector::zeros());
     for (place, four) in window.fours.iter().enumerate().filter(|(_, four)| four.full != Lanes::ZERO) {
         let Some(shares) = window.kept::<N>(place) else { continue };
-        let (columns, residual, weight) = weighed(four, shares, &model);
+        let (columns, residual, variance) = modelled(four, shares, &model);
         let columns = columns.map(Lanes::to_array);
-        let (residual, weight) = (residual.to_array(), (weight * four.full).to_array());
-        for lane in (0..lanes::LANES).filter(|&lane| weight[lane] > 0.0) {
-            let slopes = SVector::<f64, N>::from_fn(|i, _| f64::from(columns[i][lane]));
-            matrix += slopes * slopes.transpose() * f64::from(weight[lane]);
-            right += slopes * f64::from(weight[lane] * residual[lane]);
+        let (residual, variance) = (residual.to_array(), variance.to_array());
+        let full = (four.full * four.counts).to_array();
+        for lane in (0..lanes::LANES).filter(|&lane| full[lane] > 0.0) {
+            with(FullPixel {
+                slopes: SVector::from_fn(|i, _| f64::from(columns[i][lane])),
+                residual: f64::from(residual[lane]),
+                variance: f64::from(variance[lane]),
+            });
         }
     }
-    (matrix, right)
 }
 
-/// Tells of each pixel that counts and is not full the own light of a spot that is fitted, and its squared residual, over 1 less the share of
-/// it that the fit took away.
+/// What a fit left of a pixel.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Left {
+    /// The own light of the spot there.
+    pub(super) light: f64,
+    pub(super) square: f64,
+    /// What noise of 1, of the light and of its square in each pixel leaves there on average, whatever weights the fit had.
+    pub(super) of: [f64; 3],
+    /// The same of what others' light and spilled charge are not known.
+    pub(super) known: f64,
+}
+
+/// A pixel that counts in a fit.
+struct Counted<const N: usize> {
+    slopes: SVector<f64, N>,
+    residual: f64,
+    weight: f64,
+    light: f64,
+    /// Variance of others' light and of spilled charge.
+    known: f64,
+    /// Neither full nor cut off: what is tells of less noise than there is.
+    tells_noise: bool,
+}
+
+/// Tells what a fit left of each pixel that tells of noise: residuals are noise less what of it the fit took away, r = (1 - J C J' W) n.
 pub(super) fn residuals<const N: usize>(
     window: &Window,
     shape: &mut impl Shape<N>,
     fitted: &Fitted<N>,
     noise: PixelNoise,
-    mut with: impl FnMut(f32, f32),
+    mut with: impl FnMut(Left),
+) {
+    shape.place(&fitted.numbers, window.reach);
+    let parts = |pixel: &Counted<N>| [1.0, pixel.light, pixel.light * pixel.light, pixel.known];
+    let mut taken_by_all = [SMatrix::<f64, N, N>::zeros(); 4];
+    each_counted(window, shape, fitted, noise, |pixel| {
+        let outer = pixel.slopes * pixel.slopes.transpose() * (pixel.weight * pixel.weight);
+        for (sum, part) in taken_by_all.iter_mut().zip(parts(&pixel)) {
+            *sum += outer * part;
+        }
+    });
+    each_counted(window, shape, fitted, noise, |pixel| {
+        let along = fitted.covariance * pixel.slopes;
+        let taken = pixel.slopes.dot(&along) * pixel.weight;
+        if !pixel.tells_noise || taken > MOST_TAKEN {
+            return;
+        }
+        let parts = parts(&pixel);
+        let [one, light, light2, known] = core::array::from_fn(|part| {
+            parts[part] * (1.0 - 2.0 * taken) + along.dot(&(taken_by_all[part] * along))
+        });
+        let square = pixel.residual * pixel.residual;
+        with(Left { light: pixel.light, square, of: [one, light, light2], known });
+    });
+}
+
+fn each_counted<const N: usize>(
+    window: &Window,
+    shape: &impl Shape<N>,
+    fitted: &Fitted<N>,
+    noise: PixelNoise,
+    mut with: impl FnMut(Counted<N>),
 ) {
     let numbers = &fitted.numbers;
-    shape.place(numbers, window.reach);
     let (light, level) = (Lanes::splat(numbers[LIGHT] as f32), Lanes::splat(numbers[LEVEL] as f32));
     let model = PixelModel { light, level, noise, spilling: shape.spill(numbers).numbers, window };
     for four in &window.fours {
@@ -465,19 +548,18 @@ pub(super) fn residuals<const N: usize>(
         let (columns, residual, weight) = weighed(four, shares, &model);
         let own = (light * columns[LIGHT]).to_array();
         let seen = columns[LEVEL].to_array();
+        let known = (four.others_variance + four.spilled_variance).to_array();
         let columns = columns.map(Lanes::to_array);
-        let (residual, weight) = (residual.to_array(), weight.to_array());
-        let full = four.full.to_array();
-        for lane in 0..lanes::LANES {
-            // What is cut off tells of less noise than there is.
-            if weight[lane] <= 0.0 || full[lane] > 0.0 || seen[lane] < WHOLLY_SEEN {
-                continue;
-            }
-            let slopes = SVector::<f64, N>::from_fn(|i, _| f64::from(columns[i][lane]));
-            let taken = (slopes.transpose() * fitted.covariance * slopes)[0] * f64::from(weight[lane]);
-            if taken < 0.7 {
-                with(own[lane], (f64::from(residual[lane] * residual[lane]) / (1.0 - taken)) as f32);
-            }
+        let (residual, weight, full) = (residual.to_array(), weight.to_array(), four.full.to_array());
+        for lane in (0..lanes::LANES).filter(|&lane| weight[lane] > 0.0) {
+            with(Counted {
+                slopes: SVector::from_fn(|i, _| f64::from(columns[i][lane])),
+                residual: f64::from(residual[lane]),
+                weight: f64::from(weight[lane]),
+                light: f64::from(own[lane].max(0.0)),
+                known: f64::from(known[lane]),
+                tells_noise: full[lane] <= 0.0 && seen[lane] >= WHOLLY_SEEN,
+            });
         }
     }
 }

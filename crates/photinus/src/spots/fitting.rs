@@ -387,6 +387,11 @@ impl Fitter {
         self.optics.as_ref().map_or(SourceSize::UNKNOWN, |optics| *optics.spread.source_size())
     }
 
+    /// Width (sigma) of the core of the point spread as frames told it, px.
+    pub(super) fn core_px(&self) -> f64 {
+        self.belief.core_px()
+    }
+
     /// What becomes of charge above a full well.
     pub(super) fn spill(&self) -> Spill {
         self.optics.as_ref().map_or_else(|| self.belief.spill(), |optics| measured_spill(&optics.sensor))
@@ -405,11 +410,11 @@ impl Fitter {
             let mut point = PointSource::new(spread, self.source_size(), self.spill());
             if let Some(motion) = self.motion {
                 let streak: Option<Fitted<7>> =
-                    fit::fit(&mut self.window, &mut Smeared::new(point, motion), guess, noise);
+                    limits::fit(&mut self.window, &mut Smeared::new(point, motion), guess, noise);
                 if let Some(streak) = streak.filter(Fitted::fits) {
                     return self.told_streak(&streak, noise, part);
                 }
-                let still = fit::fit(&mut self.window, &mut point, guess, noise);
+                let still = limits::fit(&mut self.window, &mut point, guess, noise);
                 return match (streak, still) {
                     (Some(streak), still) if still.is_none_or(|still| still.chi2 > streak.chi2) => {
                         self.told_streak(&streak, noise, part)
@@ -417,16 +422,15 @@ impl Fitter {
                     (_, still) => self.told(&still?, noise, part),
                 };
             }
-            let fitted = fit::fit(&mut self.window, &mut point, guess, noise)?;
-            let fitted = limits::held(&mut self.window, &mut point, fitted, noise);
+            let fitted = limits::fit(&mut self.window, &mut point, guess, noise)?;
             self.told(&fitted, noise, part)
         } else if let Some(motion) = self.motion {
             let mut streak = Smeared::new(self.belief.free(), motion);
             let fitted: Option<Fitted<{ UNKNOWNS + 2 }>> =
-                fit::fit(&mut self.window, &mut streak, guess, noise);
+                limits::fit(&mut self.window, &mut streak, guess, noise);
             self.told_streak(&fitted?, noise, part)
         } else {
-            let fitted = fit::fit(&mut self.window, &mut self.belief.free(), guess, noise)?;
+            let fitted = limits::fit(&mut self.window, &mut self.belief.free(), guess, noise)?;
             self.told(&fitted, noise, part)
         }
     }

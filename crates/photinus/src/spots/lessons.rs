@@ -6,7 +6,7 @@
 
 use nalgebra::SVector;
 
-use super::fit::{self, Fitted, PixelNoise, PointSource, Shape, WIDTH};
+use super::fit::{self, Fitted, Left, PixelNoise, PointSource, Shape, WIDTH};
 use super::fitting::{Fitter, NO_POINT, WIDEST_POINT_PX};
 use super::learning::{Belief, Information, NUMBERS, Told, UNKNOWNS};
 use super::neighbourhood::Neighbourhood;
@@ -116,9 +116,11 @@ impl Fitter {
                 && near.room_px(index, 9.0) >= 9.0
         };
         if self.frames == 0 {
-            let widths = parts.iter().enumerate().filter(|(index, part)| tells(*index, part));
+            // What is full is wider than the point spread: where all spots are, it begins at what is believed of any lens.
+            let telling = parts.iter().enumerate().filter(|(index, part)| tells(*index, part));
+            let unsaturated = telling.filter(|(_, part)| part.outline.peak < full_from);
             self.widths.clear();
-            self.widths.extend(widths.map(|(_, part)| part.width_px(f32::from(part.level))));
+            self.widths.extend(unsaturated.map(|(_, part)| part.width_px(f32::from(part.level))));
             self.widths.sort_unstable_by(f64::total_cmp);
             if let Some(&width_px) = self.widths.get(self.widths.len() / 2) {
                 self.belief.begin(width_px);
@@ -192,6 +194,10 @@ impl Fitter {
         full_from: u8,
     ) {
         let mut telling = MOST_TELLING;
+        // What was left by a spread that frames had told less of says little of today's: frame k counts as k of the first.
+        let frames = f64::from(self.frames);
+        let mut bins = *self.belief.noise_bins();
+        bins.fade(frames / (frames + 1.0));
         for (index, part) in parts.iter().enumerate() {
             if telling == 0 || !tells(index, part) {
                 continue;
@@ -204,10 +210,9 @@ impl Fitter {
             // Wings beside a spot make its frame no noisier: what is cut off does.
             let noise = if around.is_cut_off { self.pixel_noise(around) } else { self.belief.noise() };
             let guess = self.guess(part);
-            let known = (noise.dark - self.belief.noise().dark).max(0.0);
-            let mut bins = *self.belief.noise_bins();
+            let known = f64::from((noise.dark - self.belief.noise().dark).max(0.0));
             let mut shape = PointSource::new(self.belief.spread(), UNLEARNT, self.belief.spill());
-            let mut add = |light, square| bins.add(light, square, known);
+            let mut add = |left: &Left| bins.add(left, known);
             match self.motion {
                 None => tell_noise::<5>(&mut self.window, &mut shape, guess, noise, &mut add),
                 Some(motion) => {
@@ -215,11 +220,12 @@ impl Fitter {
                     tell_noise::<7>(&mut self.window, &mut streak, guess, noise, &mut add);
                 }
             }
-            *self.belief.noise_bins() = bins;
         }
-        self.belief.noise_bins().solve();
+        bins.solve();
+        *self.belief.noise_bins() = bins;
     }
 }
+
 /// What a spot that was fitted with the spread's numbers free says of them: the numbers, their covariance, how far it is to be trusted.
 fn lesson<const N: usize>(fitted: &Fitted<N>) -> Option<(SVector<f64, NUMBERS>, Information, f64)> {
     let misfit = fitted.chi2 / fitted.freedom;
@@ -228,17 +234,17 @@ fn lesson<const N: usize>(fitted: &Fitted<N>) -> Option<(SVector<f64, NUMBERS>, 
     (misfit < NO_POINT).then_some((numbers, covariance, 1.0 / misfit.max(1.0)))
 }
 
-/// Tells what a spot leaves, unless it is no point or its charge spills.
+/// Tells what a spot leaves of each pixel, unless it is no point or its charge spills.
 fn tell_noise<const N: usize>(
     window: &mut Window,
     shape: &mut impl Shape<N>,
     guess: (f64, f64, f64),
     noise: PixelNoise,
-    with: impl FnMut(f32, f32),
+    mut with: impl FnMut(&Left),
 ) {
     let Some(fitted) = fit::fit(window, shape, guess, noise) else { return };
     let spills = window.full_px > 0 && window.spilled_share() > LEAST_SPILT;
     if fitted.chi2 / fitted.freedom < NO_POINT && !spills {
-        fit::residuals(window, shape, &fitted, noise, with);
+        fit::residuals(window, shape, &fitted, noise, |left| with(&left));
     }
 }

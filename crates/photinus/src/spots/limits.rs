@@ -1,10 +1,12 @@
-//! What full pixels say of the light of a spot: that it is no less, not how much it is.
+//! What full pixels say of a spot: that there is no less light in them, not how much there is.
 //!
-//! In: a fit of a spot with full pixels. It takes those that hold the light up for pixels that tell it to their noise. Out: the same fit with
-//! the light as the other pixels have it, cut off below what the full ones allow; lights are as many as light^-5/2. Points that stood still before a
-//! known point spread only: fits of streaks, of pairs, and with the spread free keep the light that they end with.
+//! In: a fit of a spot with full pixels. It takes those that hold it for pixels that tell their light to its noise. Out: the same fit with the light as the
+//! other pixels have it, cut off below what the full ones allow, lights being as many as light^-5/2, and with the centre anywhere that they allow. Where they do
+//! not hold the light up, and in pairs, which are fitted together, the fit is as it was.
 
-use super::fit::{self, Fitted, LIGHT, PixelNoise, Shape};
+use nalgebra::{SMatrix, SVector};
+
+use super::fit::{self, Fitted, FullPixel, LIGHT, PixelNoise, Shape, U, V};
 use super::window::Window;
 #[cfg(not(feature = "std"))]
 use crate::float::Float as _;
@@ -19,11 +21,26 @@ const FARTHEST: f64 = 4.0;
 const LEAST_SHARE: f64 = 0.05;
 /// Lights spread evenly in space are as many per logarithm of light as light^-3/2.
 const FALLS: f64 = 1.5;
+/// Of more full pixels the centre is left as fitted.
+const MOST_FULL: usize = 16;
+/// How often each full pixel is asked anew, with what the others told.
+const SWEEPS: usize = 4;
 /// Full pixels that tell less of the light than this share do not hold it up.
 const HOLDS: f64 = 1e-3;
 
-/// A fit with its light told anew where full pixels hold it up.
-pub(super) fn held<const N: usize>(
+/// [`fit::fit`] with its light and centre told anew where full pixels hold them.
+pub(super) fn fit<const N: usize>(
+    window: &mut Window,
+    shape: &mut impl Shape<N>,
+    guess: (f64, f64, f64),
+    noise: PixelNoise,
+) -> Option<Fitted<N>> {
+    let fitted = fit::fit(window, shape, guess, noise)?;
+    Some(held(window, shape, fitted, noise))
+}
+
+/// A fit with its light and centre told anew where full pixels hold its light up.
+fn held<const N: usize>(
     window: &mut Window,
     shape: &mut impl Shape<N>,
     fitted: Fitted<N>,
@@ -32,18 +49,73 @@ pub(super) fn held<const N: usize>(
     if window.full_px == 0 {
         return fitted;
     }
-    let (matrix, right) = fit::of_full_pixels(window, shape, &fitted, noise);
+    let (mut matrix, mut right) = (SMatrix::<f64, N, N>::zeros(), SVector::<f64, N>::zeros());
+    let (mut full, mut count) = ([const { None }; MOST_FULL], 0);
+    fit::each_full_pixel(window, shape, &fitted, noise, |pixel| {
+        if pixel.residual > 0.0 {
+            matrix += pixel.slopes * pixel.slopes.transpose() / pixel.variance;
+            right += pixel.slopes * (pixel.residual / pixel.variance);
+        }
+        if let Some(place) = full.get_mut(count) {
+            *place = Some(Limit { pixel, precision: 0.0, shift: 0.0 });
+        }
+        count += 1;
+    });
     let others = fitted.covariance.try_inverse().and_then(|all| (all - matrix).cholesky());
     let Some(others) = others else { return fitted };
-    let free = Normal {
-        mean: fitted.light() - others.solve(&right)[LIGHT],
-        variance: others.inverse()[(LIGHT, LIGHT)],
-    };
+    let (step, covariance) = (-others.solve(&right), others.inverse());
+    let free = Normal { mean: fitted.light() + step[LIGHT], variance: covariance[(LIGHT, LIGHT)] };
     let all = Normal { mean: fitted.light(), variance: fitted.light_variance() };
-    match above_limit(free, all) {
-        Some(light) => fitted.with_light(light.mean, light.variance),
-        None => fitted,
+    let Some(light) = above_limit(free, all) else { return fitted };
+    let told = fitted.with_light(light.mean, light.variance);
+    let Some(limits) = full.get_mut(..count) else { return told };
+    let (step, covariance) = within(limits, step, covariance);
+    let centre = [U, V].map(|axis| fitted.numbers[axis] + step[axis]);
+    told.with_centre(centre, &covariance.fixed_view::<2, 2>(0, 0).into_owned())
+}
+
+/// A full pixel with the normal factor that stands for it.
+struct Limit<const N: usize> {
+    pixel: FullPixel<N>,
+    precision: f64,
+    shift: f64,
+}
+
+/// Mean and covariance of a normal distribution within limits: expectation propagation (T. Minka, "Expectation Propagation for Approximate Bayesian Inference", 2001).
+fn within<const N: usize>(
+    limits: &mut [Option<Limit<N>>],
+    mut mean: SVector<f64, N>,
+    mut covariance: SMatrix<f64, N, N>,
+) -> (SVector<f64, N>, SMatrix<f64, N, N>) {
+    for _ in 0..SWEEPS {
+        for Limit { pixel, precision, shift } in limits.iter_mut().flatten() {
+            let along = covariance * pixel.slopes;
+            let (own, variance) = (pixel.slopes.dot(&mean), pixel.slopes.dot(&along));
+            // Without what it told so far.
+            let left = 1.0 / variance - *precision;
+            if left <= 0.0 {
+                continue;
+            }
+            let (own_left, variance_left) = ((own / variance - *shift) / left, 1.0 / left);
+            let all = pixel.variance + variance_left;
+            let off = (own_left - pixel.residual) / all.sqrt();
+            let below = normal::below(off);
+            if below <= 1e-12 {
+                continue;
+            }
+            let ratio = normal::density(off, 1.0) / below;
+            let mean_cut = own_left + variance_left * ratio / all.sqrt();
+            let variance_cut = variance_left * (1.0 - variance_left * ratio * (off + ratio) / all);
+            let more = 1.0 / variance_cut - left - *precision;
+            let shifted = mean_cut / variance_cut - own_left * left - *shift;
+            *precision += more;
+            *shift += shifted;
+            let share = 1.0 / (1.0 + more * variance);
+            mean += along * (share * (shifted - more * own));
+            covariance -= along * along.transpose() * (share * more);
+        }
     }
+    (mean, covariance)
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -88,6 +160,8 @@ fn above_limit(free: Normal, all: Normal) -> Option<Normal> {
 mod tests {
     use super::*;
     use proptest::prelude::*;
+    use rand_distr::{Distribution as _, StandardNormal};
+    use rand_pcg::rand_core::SeedableRng as _;
 
     /// Mean and variance of the logarithm of light, by a sum over light itself, a thousand times as fine.
     fn summed(free: Normal, limit: Normal) -> [f64; 2] {
@@ -130,6 +204,54 @@ mod tests {
             prop_assert!((libm::log(found.mean) - mean).abs() < 0.02 + 0.1 * variance.sqrt(), "{found:?} {mean}");
             let sigma = found.variance.sqrt() / found.mean;
             prop_assert!((sigma / variance.sqrt() - 1.0).abs() < 0.15, "{sigma} {}", variance.sqrt());
+        }
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(24))]
+        /// Against samples of the distribution without limits, each counted by how likely the limits let it be.
+        #[test]
+        fn a_distribution_within_limits_is_that_of_samples(
+            slopes in prop::collection::vec(prop::array::uniform3(-1.0..1.0_f64), 1..5),
+            residuals in prop::array::uniform4(-1.0..0.7_f64),
+            sigma in 0.02..0.5_f64,
+            roots in prop::array::uniform3(prop::array::uniform3(-1.0..1.0_f64)),
+            seed in any::<u64>(),
+        ) {
+            let root = SMatrix::<f64, 3, 3>::from_fn(|i, j| roots[i][j]) + SMatrix::identity();
+            let limit = |(slopes, residual): (&[f64; 3], &f64)| Limit {
+                pixel: FullPixel { slopes: SVector::from(*slopes), residual: *residual, variance: sigma * sigma },
+                precision: 0.0,
+                shift: 0.0,
+            };
+            let mut limits: Vec<_> = slopes.iter().zip(&residuals).map(limit).map(Some).collect();
+            let (mut sum, mut first, mut second) =
+                (0.0, SVector::<f64, 3>::zeros(), SMatrix::<f64, 3, 3>::zeros());
+            let mut rng = rand_pcg::Pcg64::seed_from_u64(seed);
+            for _ in 0..100_000 {
+                let white = SVector::<f64, 3>::from_fn(|_, _| StandardNormal.sample(&mut rng));
+                let own = root * white;
+                let within = |limit: &Limit<3>| {
+                    let FullPixel { slopes, residual, .. } = &limit.pixel;
+                    normal::below((slopes.dot(&own) - residual) / sigma)
+                };
+                let weight: f64 = limits.iter().flatten().map(within).product();
+                sum += weight;
+                first += own * weight;
+                second += own * own.transpose() * weight;
+            }
+            // few samples tell nothing
+            prop_assume!(sum > 3000.0);
+            let mean = first / sum;
+            let covariance = second / sum - mean * mean.transpose();
+            let (told, told_covariance) = within(&mut limits, SVector::zeros(), root * root.transpose());
+            for axis in 0..3 {
+                let sigma = covariance[(axis, axis)].sqrt();
+                let off = (told[axis] - mean[axis]) / sigma;
+                prop_assert!(off.abs() < 0.15, "{told} not {mean}");
+                let ratio = told_covariance[(axis, axis)].sqrt() / sigma;
+                prop_assert!((ratio - 1.0).abs() < 0.12, "{told_covariance} not {covariance}");
+            }
         }
     }
 

@@ -7,7 +7,7 @@
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 
-use nalgebra::Matrix2;
+use nalgebra::{Matrix2, Vector2};
 
 use super::Spot;
 use super::centroid::{self, PixelVariance};
@@ -39,8 +39,10 @@ const UNIFORM: f64 = 0.288_675_134_594_812_9;
 /// whose window is cut short by another spot, px.
 const SHAPELESS_PX: f64 = 0.07;
 const NARROW_PX: f64 = 0.7;
-/// Wings that fit as well as this (squared misfit over degrees of freedom) are those of a Gaussian.
+/// Wings that fit as well as this (squared misfit over degrees of freedom) are those of a Gaussian ...
 const GAUSSIAN_MISFIT: f64 = 1.5;
+/// ... unless their summit is farther than this from where the fit has it, sigmas of both.
+const CONTRADICTS: f64 = 3.0;
 /// Wings that fit no better than this are not those of a Gaussian: their summit says less than its formal covariance.
 const LARGEST_MISFIT: f64 = 5.0;
 /// Radius around the summit of a spot that the border cuts, or that stands in the light of another, in which its light tells, px.
@@ -52,6 +54,58 @@ pub(crate) const HIDDEN_LOG: f64 = 0.3;
 pub(crate) const HIDDEN_SIGMA: f64 = 0.6;
 /// The centre of a light of its own is no farther than this from its pixels, px.
 const FARTHEST_ASIDE_PX: f64 = 1.0;
+
+/// The pixels of a part that may be full: those that read as much as the lowest full one may.
+#[derive(Clone, Copy)]
+struct Full {
+    from: u8,
+    px: u32,
+}
+
+impl Full {
+    fn of(frame: &FrameView<'_>, outline: &Outline, from: u8) -> Self {
+        let columns = outline.extent.left as usize..=outline.extent.right as usize;
+        let rows = outline.extent.top as usize..=outline.extent.bottom as usize;
+        let in_row = |v| frame.row(v)[columns.clone()].iter().filter(|&&pixel| pixel >= from).count();
+        let px = if outline.peak < from { 0 } else { rows.map(in_row).sum::<usize>() as u32 };
+        Self { from, px }
+    }
+
+    /// Variance of the centre of what is full in the middle, px^2.
+    fn blur_px2(self) -> f64 {
+        SATURATION_BLUR_PX * SATURATION_BLUR_PX / (f64::from(self.px.max(5)) + 4.0)
+    }
+
+    /// Variance of where in a pixel the light fell of what is full in the middle, px^2: where all that is bright is full, no flank tells it; each
+    /// pixel of a flank says on which side, and halves what is left.
+    fn flankless_px2(self, outline: &Outline) -> f64 {
+        let flank = outline.area_px.saturating_sub(self.px);
+        let sigma_px = libm::scalbn(WITHIN_A_PIXEL, -(flank.min(100) as i32));
+        sigma_px * sigma_px
+    }
+}
+
+/// A part with what is around it.
+struct Look<'a> {
+    part: &'a Part,
+    full: Full,
+    /// Its light is its own as far as this.
+    room_px: f64,
+    /// How far it is measured.
+    window_px: f64,
+    around: Surroundings,
+}
+
+impl Look<'_> {
+    fn width_px(&self) -> f64 {
+        self.part.width_px(self.around.level)
+    }
+
+    /// Whether another spot cuts its light short.
+    fn is_crowded(&self) -> bool {
+        self.room_px < self.part.most_room_px().min(3.5 * self.width_px())
+    }
+}
 
 /// Measures the light of the parts of one frame after the other.
 #[derive(Debug)]
@@ -102,7 +156,8 @@ impl Meter {
         settings: &Settings,
     ) -> Result<Spot, Reason> {
         let outline = &part.outline;
-        let (window_px, around) = open_window(frame, part, room_px, &self.fitter.window.cut_off);
+        let full = Full::of(frame, outline, self.fitter.lowest_full(part.noise_dn));
+        let (window_px, around) = open_window(frame, part, full, room_px, &self.fitter.window.cut_off);
         let height = f64::from(outline.peak) - f64::from(around.level);
         if let Brightness::Contrast(step) = settings.brightness
             && 2.0 * height < f64::from(step)
@@ -112,13 +167,14 @@ impl Meter {
         self.patch.read(frame, nearest_pixel(part.guess), reach_px(window_px), &around);
         let (flux, flux_sigma) = self.flux(part, window_px, around);
         let model = self.fitter.fitted(index).copied();
+        let look = Look { part, full, room_px, window_px, around };
         let (centre, covariance_px2) = match model {
-            Some(model) => self.surer(part, room_px, window_px, around, &model),
-            None => self.shapeless(part, room_px, window_px, around),
+            Some(model) => self.surer(&look, &model),
+            None => self.shapeless(&look),
         };
         self.is_step = model.is_none()
             && !outline.cut
-            && outline.saturated_px == 0
+            && full.px == 0
             && outline.extent.gap_px(centre) > FARTHEST_ASIDE_PX;
         let (centre, covariance_px2) = match self.is_step {
             true => (part.guess, Matrix2::from_diagonal_element(part.radius_px * part.radius_px)),
@@ -135,7 +191,7 @@ impl Meter {
             light: match model {
                 Some(model) => Some(model.light),
                 None if !self.fitter.fits || outline.saturated_px > 0 => None,
-                None if outline.peak >= self.fitter.lowest_full(part.noise_dn) => Some(hidden(flux)),
+                None if full.px > 0 => Some(hidden(flux)),
                 // There is no less light than its brightest pixel shows.
                 None => Some(Measured { value: flux.max(height).max(1.0), sigma: flux_sigma }),
             },
@@ -187,44 +243,39 @@ impl Meter {
         self.fitter.hot_pixel_odds(part.middle, self.patch.lone(part.middle, Sides::of(part.middle, size)))
     }
 
-    /// A point's light by its fit, or by its wings where that is surer: of a Gaussian that is full in the middle it tells all that there is,
-    /// whatever spills there. Where much spills, nobody knows how, and neither is as sure, by its window.
-    fn surer(
-        &self,
-        part: &Part,
-        room_px: f64,
-        window_px: f64,
-        around: Surroundings,
-        model: &Model,
-    ) -> (Pixel, Matrix2<f64>) {
+    /// A point's light by its fit, or by its wings where those are surer and do not contradict it: of a Gaussian that is full in the middle they tell all
+    /// that there is, whatever spills there. Where much spills, nobody knows how, and neither is as sure, by its window.
+    fn surer(&self, look: &Look<'_>, model: &Model) -> (Pixel, Matrix2<f64>) {
         let by_fit = (model.centre, model.covariance_px2);
-        let is_alone = !part.outline.cut && room_px >= part.most_room_px();
-        let has_wings = is_alone && part.outline.saturated_px > 0;
-        let by_wings = if has_wings { self.wings(part, window_px, around) } else { None };
+        let is_alone = !look.part.outline.cut && look.room_px >= look.part.most_room_px();
+        let has_wings = is_alone && look.full.px > 0;
+        let by_wings = if has_wings { self.wings(look) } else { None };
         let is_surer = |fit: &Fit| {
-            fit.misfit < GAUSSIAN_MISFIT && fit.covariance_px2.trace() < model.covariance_px2.trace()
+            let off = Vector2::new(fit.centre.u - model.centre.u, fit.centre.v - model.centre.v);
+            let both = (fit.covariance_px2 + model.covariance_px2).try_inverse();
+            fit.misfit < GAUSSIAN_MISFIT
+                && fit.covariance_px2.trace() < model.covariance_px2.trace()
+                && both.is_some_and(|inverse| off.dot(&(inverse * off)) < CONTRADICTS * CONTRADICTS)
         };
         if let Some(fit) = by_wings.filter(is_surer) {
             return (fit.centre, fit.covariance_px2);
         }
-        // Charge that spills keeps its middle, by whatever law.
         if !is_alone || model.spilt < LEAST_SPILT || self.fitter.motion.is_some() {
             return by_fit;
         }
-        let mut by_window = self.shapeless(part, room_px, window_px, around);
-        if part.outline.saturated_px == 0 {
-            by_window.1 += Matrix2::from_diagonal_element(blur_px2(part));
-        }
+        // Of a core narrower than this pixels show no parabola.
+        let is_narrow = self.fitter.core_px() < NARROW_PX;
+        let by_window = if is_narrow { self.balanced(look) } else { self.shapeless(look) };
         if by_window.1.trace() < by_fit.1.trace() { by_window } else { by_fit }
     }
 
     /// By the parabola through the logarithm of the light that shows, of a spot that is full in the middle or cut by the border.
-    fn wings(&self, part: &Part, window_px: f64, around: Surroundings) -> Option<Fit> {
+    fn wings(&self, &Look { part, full, window_px, around, .. }: &Look<'_>) -> Option<Fit> {
         let variance = self.fitter.told_noise(around);
-        // The lowest signal that a pixel at 255 can have anywhere in the window.
+        // The lowest signal that a full pixel can have anywhere in the window.
         let tilt = around.slope[0].abs() + around.slope[1].abs();
-        let full_dn = f32::from(u8::MAX) - around.level - tilt * reach_px(window_px) as f32;
-        let radius_px = match (part.outline.cut, part.outline.saturated_px > 0) {
+        let full_dn = f32::from(full.from) - around.level - tilt * reach_px(window_px) as f32;
+        let radius_px = match (part.outline.cut, full.px > 0) {
             (true, _) => SUMMIT_PX.max(part.radius_px),
             (false, true) => (part.radius_px + 2.5).min(window_px + 1.0),
             (false, false) => SUMMIT_PX,
@@ -233,51 +284,42 @@ impl Meter {
     }
 
     /// What is no point's light: by the parabola through the logarithm of the light that shows, or by a balanced window.
-    fn shapeless(
-        &self,
-        part: &Part,
-        room_px: f64,
-        window_px: f64,
-        around: Surroundings,
-    ) -> (Pixel, Matrix2<f64>) {
-        let variance = self.fitter.told_noise(around);
-        let outline = &part.outline;
-        let blur_px2 = blur_px2(part);
-        let width_px = part.width_px(around.level);
-        let is_crowded = room_px < part.most_room_px().min(3.5 * width_px);
-        let has_wings = outline.cut || outline.saturated_px > 0 || is_crowded;
-        let by_wings = has_wings.then(|| self.wings(part, window_px, around));
+    fn shapeless(&self, look: &Look<'_>) -> (Pixel, Matrix2<f64>) {
+        let (outline, full) = (&look.part.outline, look.full);
+        let is_crowded = look.is_crowded();
+        let has_wings = outline.cut || full.px > 0 || is_crowded;
+        let by_wings = has_wings.then(|| self.wings(look));
         let tells = |fit: &Fit| {
             outline.cut
-                || outline.saturated_px == 0
-                || (fit.misfit < LARGEST_MISFIT && fit.covariance_px2.trace() < 2.0 * blur_px2)
+                || full.px == 0
+                || (fit.misfit < LARGEST_MISFIT && fit.covariance_px2.trace() < 2.0 * full.blur_px2())
         };
         let by_wings = by_wings.flatten().filter(tells);
         let shapeless = Matrix2::from_diagonal_element(SHAPELESS_PX * SHAPELESS_PX);
         if let Some(fit) = by_wings {
-            let is_sure = outline.cut || outline.saturated_px > 0;
+            let is_sure = outline.cut || full.px > 0;
             return (fit.centre, if is_sure { fit.covariance_px2 } else { fit.covariance_px2 + shapeless });
         }
+        self.balanced(look)
+    }
+
+    /// By a balanced window: charge that spills keeps its middle, by whatever law.
+    fn balanced(&self, look: &Look<'_>) -> (Pixel, Matrix2<f64>) {
+        let &Look { part, full, window_px, around, .. } = look;
+        let outline = &part.outline;
+        let variance = self.fitter.told_noise(around);
         let anywhere = Matrix2::from_diagonal_element(WITHIN_A_PIXEL * WITHIN_A_PIXEL);
         let balanced = centroid::balance(&self.patch, part.guess, window_px as f32, variance);
         let (centre, covariance) = balanced.unwrap_or((part.guess, anywhere));
-        let unclear = is_crowded || width_px < NARROW_PX;
-        let missing_px2 = match (outline.cut, outline.saturated_px > 0) {
+        let unclear = look.is_crowded() || look.width_px() < NARROW_PX;
+        let missing_px2 = match (outline.cut, full.px > 0) {
             (true, _) => part.radius_px * part.radius_px / 4.0,
-            (false, true) => blur_px2 + flankless_px2(outline),
+            (false, true) => full.blur_px2() + full.flankless_px2(outline),
             (false, false) if unclear => SHAPELESS_PX * SHAPELESS_PX,
             (false, false) => 0.0,
         };
         (centre, covariance + Matrix2::from_diagonal_element(missing_px2))
     }
-}
-
-/// Variance of where in a pixel the light fell of what is full in the middle, px^2: where all that is bright is full, no flank tells it; each
-/// pixel of a flank says on which side, and halves what is left.
-fn flankless_px2(outline: &Outline) -> f64 {
-    let flank = outline.area_px - outline.saturated_px;
-    let sigma_px = libm::scalbn(WITHIN_A_PIXEL, -(flank.min(100) as i32));
-    sigma_px * sigma_px
 }
 
 /// All light of what is full, where no point spread tells it.
@@ -286,17 +328,18 @@ fn hidden(flux: f64) -> Measured {
     Measured { value, sigma: HIDDEN_SIGMA * value }
 }
 
-/// Variance of the centre of what is full in the middle, px^2.
-fn blur_px2(part: &Part) -> f64 {
-    SATURATION_BLUR_PX * SATURATION_BLUR_PX / (f64::from(part.outline.saturated_px.max(5)) + 4.0)
-}
-
 /// A window as wide as the spot is, or as its wings where it is saturated, with the background around it.
-fn open_window(frame: &FrameView<'_>, part: &Part, room_px: f64, cut_off: &CutOff) -> (f64, Surroundings) {
+fn open_window(
+    frame: &FrameView<'_>,
+    part: &Part,
+    full: Full,
+    room_px: f64,
+    cut_off: &CutOff,
+) -> (f64, Surroundings) {
     let room_px = room_px.max(part.radius_px + 0.8).max(1.9);
     let narrow_px = (part.radius_px + 2.5).min(room_px);
     let around = surroundings(frame, part, narrow_px, cut_off);
-    if part.outline.saturated_px > 0 {
+    if full.px > 0 {
         return (narrow_px, around);
     }
     let whole_px = (3.5 * part.width_px(around.level) + 1.0).min(room_px);

@@ -5,7 +5,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::fit::PixelNoise;
+use super::fit::{Left, PixelNoise};
 use super::settings::Noise;
 #[cfg(not(feature = "std"))]
 use crate::float::Float as _;
@@ -13,7 +13,7 @@ use crate::float::Float as _;
 /// What is believed of the variance of a pixel: the share of its light by which the point spread is wrong ...
 const SHAPE: f64 = 0.08;
 /// ... and the sigma of the logarithm of each of its parts.
-const PARTS_KNOWN: [f64; 3] = [1.0, 1.0, 1.5];
+const PARTS_KNOWN: [f64; 3] = [1.0, 1.0, 2.0];
 /// Bins of pixels by their light: from 1 grey level on, an octave each.
 const BINS: usize = 9;
 
@@ -31,8 +31,8 @@ pub(super) struct NoiseBins {
 struct Bin {
     count: f64,
     squares: f64,
-    light: f64,
-    light2: f64,
+    /// What of noise of 1, of the light and of its square is left.
+    of: [f64; 3],
     /// Variance that is known by itself.
     known: f64,
 }
@@ -45,17 +45,27 @@ impl NoiseBins {
         Self { noise, believed, bins: [Bin::default(); BINS], pixels: 0.0, solved_at: 0.0 }
     }
 
-    /// Adds a pixel with this much of a spot's light and this squared residual, of which so much is noise of its frame beyond the
-    /// camera's.
-    pub(super) fn add(&mut self, light: f32, square: f32, known: f32) {
-        let light = f64::from(light.max(0.0));
-        let octave = (light as u32 + 1).ilog2() as usize;
+    /// Lets each pixel so far count for so much of one.
+    pub(super) fn fade(&mut self, share: f64) {
+        for bin in &mut self.bins {
+            let Bin { count, squares, of: [one, light, light2], known } = bin;
+            for sum in [count, squares, one, light, light2, known] {
+                *sum *= share;
+            }
+        }
+        self.pixels *= share;
+    }
+
+    /// Adds a pixel, in a frame that has so much noise beyond the camera's.
+    pub(super) fn add(&mut self, left: &Left, known: f64) {
+        let octave = (left.light as u32 + 1).ilog2() as usize;
         let bin = &mut self.bins[octave.min(BINS - 1)];
         bin.count += 1.0;
-        bin.squares += f64::from(square);
-        bin.light += light;
-        bin.light2 += light * light;
-        bin.known += f64::from(known);
+        bin.squares += left.square;
+        for (sum, of) in bin.of.iter_mut().zip(left.of) {
+            *sum += of;
+        }
+        bin.known += left.of[0] * known + left.known;
         self.pixels += 1.0;
     }
 
@@ -79,8 +89,7 @@ impl NoiseBins {
                 right[i] += weight * (believed[i] - logs[i]);
             }
             for bin in self.bins.iter().filter(|bin| bin.count > 0.0) {
-                let by =
-                    Vector3::new(1.0, bin.light / bin.count, bin.light2 / bin.count).component_mul(&parts);
+                let by = Vector3::from(bin.of).component_mul(&parts) / bin.count;
                 let variance = by.sum() + bin.known / bin.count;
                 let slope = by / variance;
                 let ratio = bin.squares / (bin.count * variance);

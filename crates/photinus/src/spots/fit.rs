@@ -123,6 +123,11 @@ impl<const N: usize> Fitted<N> {
         (self.chi2 - self.freedom).max(0.0) / self.own.max(1.0)
     }
 
+    /// Twice the negative log-likelihood, but for a constant, where squared residuals are so many times what noise leaves.
+    pub(super) fn cost(&self, misfit: f64) -> f64 {
+        self.chi2 / misfit + self.rest_of_cost + COUNTS * libm::log(self.light())
+    }
+
     /// Whether it leaves about as much as noise.
     pub(super) fn fits(&self) -> bool {
         self.chi2 < GOOD_FIT * self.freedom
@@ -205,9 +210,7 @@ pub(super) fn fit<const N: usize>(
     // Where nothing fits well, misfits count for less.
     let misfits = found.iter().flatten().map(|fitted| fitted.chi2 / fitted.freedom);
     let least = misfits.fold(f64::INFINITY, f64::min).max(1.0);
-    let cost =
-        |fitted: &Fitted<N>| fitted.chi2 / least + fitted.rest_of_cost + COUNTS * libm::log(fitted.light());
-    found.into_iter().flatten().min_by(|a, b| cost(a).total_cmp(&cost(b)))
+    found.into_iter().flatten().min_by(|a, b| a.cost(least).total_cmp(&b.cost(least)))
 }
 
 fn fit_from<const N: usize>(

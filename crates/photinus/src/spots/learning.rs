@@ -130,10 +130,23 @@ impl Belief {
         FreeSpread { belief: self, weights, placed: None }
     }
 
-    /// Begins to look for the core's sigma at `width_px`, before a frame has told anything.
-    pub(super) fn begin(&mut self, width_px: f64) {
-        self.numbers[0] = libm::log(width_px.clamp(0.3, 2.5));
+    /// Width (sigma) of the core of a lens that nobody measured, px.
+    pub(super) fn believed_core_px() -> f64 {
+        libm::exp(BELIEVED[0])
+    }
+
+    /// Begins to look for the core's sigma at `core_px`, before a frame has told anything.
+    pub(super) fn begin(&mut self, core_px: f64) {
+        let Some(covariance) = self.information.try_inverse() else { return };
+        self.numbers = covariance * self.weighted;
+        self.numbers[0] = libm::log(core_px.clamp(0.3, 2.5));
         self.draw();
+    }
+
+    /// How far the numbers are from what was believed before, squared, in sigmas.
+    pub(super) fn strain(&self) -> f64 {
+        let off = self.information * self.numbers - self.weighted;
+        self.information.try_inverse().map_or(0.0, |covariance| off.dot(&(covariance * off)))
     }
 
     /// Takes in what a frame's spots say: their information on the numbers and its product with them, differences from the numbers of

@@ -116,22 +116,56 @@ impl Fitter {
                 && near.room_px(index, 9.0) >= 9.0
         };
         if self.frames == 0 {
-            // What is full is wider than the point spread: where all spots are, it begins at what is believed of any lens.
-            let telling = parts.iter().enumerate().filter(|(index, part)| tells(*index, part));
-            let unsaturated = telling.filter(|(_, part)| part.outline.peak < full_from);
-            self.widths.clear();
-            self.widths.extend(unsaturated.map(|(_, part)| part.width_px(f32::from(part.level))));
-            self.widths.sort_unstable_by(f64::total_cmp);
-            if let Some(&width_px) = self.widths.get(self.widths.len() / 2) {
-                self.belief.begin(width_px);
-            }
+            self.begin(frame, parts, &tells, full_from);
         }
-        let mut any = false;
-        for round in 0..ROUNDS {
-            let mut told = Told::default();
-            let numbers = self.belief.numbers();
-            let is_last = round + 1 == ROUNDS;
-            let (mut telling, mut unsaturated) = (MOST_TELLING, 0);
+        let lesson = self.settle(frame, parts, &tells, full_from);
+        if !lesson.tells {
+            return;
+        }
+        self.belief.keep(&lesson.told, lesson.at);
+        self.unsaturated += lesson.unsaturated;
+        self.learn_noise(frame, parts, &tells, full_from);
+        self.frames += 1;
+    }
+
+    /// Begins to look for the point spread at a core as wide as the first spots that are not full. What is full is wider than that: where all are, it begins
+    /// at what explains them better, their width or what is believed of any lens.
+    fn begin(
+        &mut self,
+        frame: &FrameView<'_>,
+        parts: &[Part],
+        tells: &dyn Fn(usize, &Part) -> bool,
+        full_from: u8,
+    ) {
+        let telling = || parts.iter().enumerate().filter(|(index, part)| tells(*index, part));
+        let is_full = |part: &Part| part.outline.peak >= full_from;
+        let all_full = telling().all(|(_, part)| is_full(part));
+        let beginning = telling().filter(|(_, part)| all_full || !is_full(part));
+        self.widths.clear();
+        self.widths.extend(beginning.map(|(_, part)| part.width_px(f32::from(part.level))));
+        self.widths.sort_unstable_by(f64::total_cmp);
+        let Some(&width_px) = self.widths.get(self.widths.len() / 2) else { return };
+        let mut cost = |core_px: f64| {
+            self.belief.begin(core_px);
+            self.settle(frame, parts, tells, full_from).cost + self.belief.strain()
+        };
+        let believed_px = Belief::believed_core_px();
+        let is_as_wide = !all_full || cost(width_px) < cost(believed_px);
+        self.belief.begin(if is_as_wide { width_px } else { believed_px });
+    }
+
+    /// Fits the frame's spots and the point spread to each other.
+    fn settle(
+        &mut self,
+        frame: &FrameView<'_>,
+        parts: &[Part],
+        tells: &dyn Fn(usize, &Part) -> bool,
+        full_from: u8,
+    ) -> Lesson {
+        let mut lesson = Lesson::default();
+        for _ in 0..ROUNDS {
+            lesson = Lesson { at: self.belief.numbers(), ..Lesson::default() };
+            let mut telling = MOST_TELLING;
             for (index, part) in parts.iter().enumerate() {
                 if telling == 0 || !tells(index, part) {
                     continue;
@@ -144,33 +178,30 @@ impl Fitter {
                 }
                 let mut shape = self.belief.free();
                 let weights = shape.weights;
-                let lesson = match self.motion {
-                    None => fit::fit(&mut self.window, &mut shape, guess, noise).as_ref().and_then(lesson),
+                let spot = match self.motion {
+                    None => fit::fit(&mut self.window, &mut shape, guess, noise).as_ref().and_then(told_by),
                     Some(motion) => {
                         let mut streak = Smeared::new(shape, motion);
                         let fitted: Option<Fitted<{ UNKNOWNS + 2 }>> =
                             fit::fit(&mut self.window, &mut streak, guess, noise);
-                        fitted.as_ref().and_then(lesson)
+                        fitted.as_ref().and_then(told_by)
                     }
                 };
-                if let Some((numbers, widths, trust)) = lesson {
-                    told.add(&numbers, &widths, weights, trust);
-                    unsaturated += u32::from(self.window.full_px == 0);
-                    any = true;
-                }
+                let Some(spot) = spot else {
+                    // It is no point's light: each pixel is as far off as may be.
+                    lesson.cost += NO_POINT * (4 * self.window.fours.len()) as f64;
+                    continue;
+                };
+                lesson.told.add(&spot.numbers, &spot.covariance, weights, spot.trust);
+                lesson.unsaturated += u32::from(self.window.full_px == 0);
+                lesson.cost += spot.cost;
+                lesson.tells = true;
             }
-            if !any {
-                return;
-            }
-            let moved = self.belief.take(&told);
-            if !moved || is_last {
-                self.belief.keep(&told, numbers);
-                self.unsaturated += unsaturated;
+            if !lesson.tells || !self.belief.take(&lesson.told) {
                 break;
             }
         }
-        self.learn_noise(frame, parts, &tells, full_from);
-        self.frames += 1;
+        lesson
     }
 
     fn look_for_hot_pixels(&mut self, frame: &FrameView<'_>, parts: &[Part], full_from: u8) {
@@ -226,12 +257,36 @@ impl Fitter {
     }
 }
 
-/// What a spot that was fitted with the spread's numbers free says of them: the numbers, their covariance, how far it is to be trusted.
-fn lesson<const N: usize>(fitted: &Fitted<N>) -> Option<(SVector<f64, NUMBERS>, Information, f64)> {
+/// What the spots of a frame say of the point spread.
+#[derive(Default)]
+struct Lesson {
+    /// Whether any spot says something.
+    tells: bool,
+    told: Told,
+    /// The numbers of the spread that they were fitted from.
+    at: SVector<f64, NUMBERS>,
+    /// Spots that say something and are not full.
+    unsaturated: u32,
+    /// Twice the negative log-likelihood.
+    cost: f64,
+}
+
+/// What a spot that was fitted with the spread's numbers free says of them, and how far it is to be trusted.
+struct FreelyFitted {
+    numbers: SVector<f64, NUMBERS>,
+    covariance: Information,
+    trust: f64,
+    cost: f64,
+}
+
+fn told_by<const N: usize>(fitted: &Fitted<N>) -> Option<FreelyFitted> {
     let misfit = fitted.chi2 / fitted.freedom;
-    let numbers = fitted.numbers.fixed_rows::<NUMBERS>(WIDTH).into_owned();
-    let covariance = fitted.covariance.fixed_view::<NUMBERS, NUMBERS>(WIDTH, WIDTH).into_owned();
-    (misfit < NO_POINT).then_some((numbers, covariance, 1.0 / misfit.max(1.0)))
+    (misfit < NO_POINT).then(|| FreelyFitted {
+        numbers: fitted.numbers.fixed_rows::<NUMBERS>(WIDTH).into_owned(),
+        covariance: fitted.covariance.fixed_view::<NUMBERS, NUMBERS>(WIDTH, WIDTH).into_owned(),
+        trust: 1.0 / misfit.max(1.0),
+        cost: fitted.cost(1.0),
+    })
 }
 
 /// Tells what a spot leaves of each pixel, unless it is no point or its charge spills.

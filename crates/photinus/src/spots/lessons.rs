@@ -129,7 +129,7 @@ impl Fitter {
     }
 
     /// Begins to look for the point spread at a core as wide as the first spots that are not full. What is full is wider than that: where all are, it begins
-    /// at what explains them better, their width or what is believed of any lens.
+    /// at what explains them better, their width or what is believed of any lens. In noise how wide faint ones are is noise: all spots tell, full or not.
     fn begin(
         &mut self,
         frame: &FrameView<'_>,
@@ -139,8 +139,9 @@ impl Fitter {
     ) {
         let telling = || parts.iter().enumerate().filter(|(index, part)| tells(*index, part));
         let is_full = |part: &Part| part.outline.peak >= full_from;
-        let all_full = telling().all(|(_, part)| is_full(part));
-        let beginning = telling().filter(|(_, part)| all_full || !is_full(part));
+        let is_noisy = parts.first().is_some_and(|part| part.noise_dn >= f64::from(NOISY_DN));
+        let all_full = !is_noisy && telling().all(|(_, part)| is_full(part));
+        let beginning = telling().filter(|(_, part)| is_noisy || all_full || !is_full(part));
         self.widths.clear();
         self.widths.extend(beginning.map(|(_, part)| part.width_px(f32::from(part.level))));
         self.widths.sort_unstable_by(f64::total_cmp);

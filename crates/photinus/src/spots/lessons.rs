@@ -53,22 +53,21 @@ impl Fitter {
     pub(super) fn lowest_full(&self, noise_dn: f64) -> u8 {
         let known =
             self.optics.as_ref().map_or(self.full_level.lowest(), |optics| optics.sensor.full_from_dn());
-        let lower_dn = if noise_dn < f64::from(NOISY_DN) { 0.0 } else { FULL_SIGMAS * noise_dn };
+        let lower_dn = if is_noisy(noise_dn) { FULL_SIGMAS * noise_dn } else { 0.0 };
         known.saturating_sub(lower_dn as u8)
     }
 
     /// Begins anew. Noise may have lowered what the converter cut off at its end: then it is not the well that was full.
     pub(super) fn unlearn(&mut self, noise_dn: f64) {
         let lowest = self.full_level.lowest();
-        let is_end = noise_dn >= f64::from(NOISY_DN)
-            && f64::from(lowest) + LEVEL_SIGMAS * noise_dn >= f64::from(u8::MAX);
+        let is_end = is_noisy(noise_dn) && f64::from(lowest) + LEVEL_SIGMAS * noise_dn >= f64::from(u8::MAX);
         self.belief = Belief::new(self.noise, if is_end { u8::MAX } else { lowest });
         (self.frames, self.unsaturated) = (0, 0);
     }
 
     /// The same with what a frame tells.
     pub(super) fn full_from(&mut self, frame: &FrameView<'_>, parts: &[Part]) -> u8 {
-        let noise_dn = parts.first().map_or(0.0, |part| part.noise_dn);
+        let noise_dn = noise_of(parts);
         if self.optics.is_none() && self.frames < LEARNT_FRAMES {
             for part in parts.iter().filter(|part| part.reason.is_none() && part.outline.area_px > 2) {
                 self.full_level.add(frame, &part.outline.extent, part.outline.peak);
@@ -115,63 +114,58 @@ impl Fitter {
                 && height > TELLING_DN.max(TELLING_SIGMAS * part.noise_dn)
                 && near.room_px(index, 9.0) >= 9.0
         };
+        let telling =
+            parts.iter().enumerate().filter(|(index, part)| tells(*index, part)).map(|(_, part)| part);
         if self.frames == 0 {
-            self.begin(frame, parts, &tells, full_from);
+            self.begin(frame, telling.clone(), full_from, is_noisy(noise_of(parts)));
         }
-        let lesson = self.settle(frame, parts, &tells, full_from);
+        let telling = telling.take(MOST_TELLING);
+        let lesson = self.settle(frame, telling.clone(), full_from);
         if !lesson.tells {
             return;
         }
         self.belief.keep(&lesson.told, lesson.at);
         self.unsaturated += lesson.unsaturated;
-        self.learn_noise(frame, parts, &tells, full_from);
+        self.learn_noise(frame, telling, full_from);
         self.frames += 1;
     }
 
     /// Begins to look for the point spread at a core as wide as the first spots that are not full. What is full is wider than that: where all are, it begins
     /// at what explains them better, their width or what is believed of any lens. In noise how wide faint ones are is noise: all spots tell, full or not.
-    fn begin(
+    fn begin<'a>(
         &mut self,
         frame: &FrameView<'_>,
-        parts: &[Part],
-        tells: &dyn Fn(usize, &Part) -> bool,
+        telling: impl Iterator<Item = &'a Part> + Clone,
         full_from: u8,
+        is_noisy: bool,
     ) {
-        let telling = || parts.iter().enumerate().filter(|(index, part)| tells(*index, part));
-        let is_full = |part: &Part| part.outline.peak >= full_from;
-        let is_noisy = parts.first().is_some_and(|part| part.noise_dn >= f64::from(NOISY_DN));
-        let all_full = !is_noisy && telling().all(|(_, part)| is_full(part));
-        let beginning = telling().filter(|(_, part)| is_noisy || all_full || !is_full(part));
+        let is_too_wide = |part: &Part| !is_noisy && part.outline.peak >= full_from;
+        let all_too_wide = telling.clone().all(is_too_wide);
+        let beginning = telling.clone().filter(|part| all_too_wide || !is_too_wide(part));
         self.widths.clear();
-        self.widths.extend(beginning.map(|(_, part)| part.width_px(f32::from(part.level))));
+        self.widths.extend(beginning.map(|part| part.width_px(f32::from(part.level))));
         self.widths.sort_unstable_by(f64::total_cmp);
         let Some(&width_px) = self.widths.get(self.widths.len() / 2) else { return };
         let mut cost = |core_px: f64| {
             self.belief.begin(core_px);
-            self.settle(frame, parts, tells, full_from).cost + self.belief.strain()
+            self.settle(frame, telling.clone().take(MOST_TELLING), full_from).cost + self.belief.strain()
         };
         let believed_px = Belief::believed_core_px();
-        let is_as_wide = !all_full || cost(width_px) < cost(believed_px);
+        let is_as_wide = !all_too_wide || cost(width_px) < cost(believed_px);
         self.belief.begin(if is_as_wide { width_px } else { believed_px });
     }
 
     /// Fits the frame's spots and the point spread to each other.
-    fn settle(
+    fn settle<'a>(
         &mut self,
         frame: &FrameView<'_>,
-        parts: &[Part],
-        tells: &dyn Fn(usize, &Part) -> bool,
+        telling: impl Iterator<Item = &'a Part> + Clone,
         full_from: u8,
     ) -> Lesson {
         let mut lesson = Lesson::default();
         for _ in 0..ROUNDS {
             lesson = Lesson { at: self.belief.numbers(), ..Lesson::default() };
-            let mut telling = MOST_TELLING;
-            for (index, part) in parts.iter().enumerate() {
-                if telling == 0 || !tells(index, part) {
-                    continue;
-                }
-                telling -= 1;
+            for part in telling.clone() {
                 let (_, around) = self.open(frame, part, f64::INFINITY, full_from);
                 let (noise, guess) = (self.pixel_noise(around), self.guess(part));
                 if !self.is_light(noise) {
@@ -218,23 +212,17 @@ impl Fitter {
         self.lone_pixels.end();
     }
 
-    fn learn_noise(
+    fn learn_noise<'a>(
         &mut self,
         frame: &FrameView<'_>,
-        parts: &[Part],
-        tells: &dyn Fn(usize, &Part) -> bool,
+        telling: impl Iterator<Item = &'a Part>,
         full_from: u8,
     ) {
-        let mut telling = MOST_TELLING;
         // What was left by a spread that frames had told less of says little of today's: frame k counts as k of the first.
         let frames = f64::from(self.frames);
         let mut bins = *self.belief.noise_bins();
         bins.fade(frames / (frames + 1.0));
-        for (index, part) in parts.iter().enumerate() {
-            if telling == 0 || !tells(index, part) {
-                continue;
-            }
-            telling -= 1;
+        for part in telling {
             let (_, around) = self.open(frame, part, f64::INFINITY, full_from);
             if !self.is_light(self.pixel_noise(around)) {
                 continue;
@@ -244,7 +232,7 @@ impl Fitter {
             let guess = self.guess(part);
             let known = f64::from((noise.dark - self.belief.noise().dark).max(0.0));
             let mut shape = PointSource::new(self.belief.spread(), UNLEARNT, self.belief.spill());
-            let mut add = |left: &Left| bins.add(left, known);
+            let mut add = |left| bins.add(&left, known);
             match self.motion {
                 None => tell_noise::<5>(&mut self.window, &mut shape, guess, noise, &mut add),
                 Some(motion) => {
@@ -256,6 +244,16 @@ impl Fitter {
         bins.solve();
         *self.belief.noise_bins() = bins;
     }
+}
+
+/// Noise of a frame in the dark, about, grey levels.
+pub(super) fn noise_of(parts: &[Part]) -> f64 {
+    parts.first().map_or(0.0, |part| part.noise_dn)
+}
+
+/// Whether so much noise changes what pixels tell by themselves.
+fn is_noisy(noise_dn: f64) -> bool {
+    noise_dn >= f64::from(NOISY_DN)
 }
 
 /// What the spots of a frame say of the point spread.
@@ -296,11 +294,11 @@ fn tell_noise<const N: usize>(
     shape: &mut impl Shape<N>,
     guess: (f64, f64, f64),
     noise: PixelNoise,
-    mut with: impl FnMut(&Left),
+    with: impl FnMut(Left),
 ) {
     let Some(fitted) = fit::fit(window, shape, guess, noise) else { return };
     let spills = window.full_px > 0 && window.spilled_share() > LEAST_SPILT;
     if fitted.chi2 / fitted.freedom < NO_POINT && !spills {
-        fit::residuals(window, shape, &fitted, noise, |left| with(&left));
+        fit::residuals(window, shape, &fitted, noise, with);
     }
 }

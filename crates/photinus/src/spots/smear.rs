@@ -10,6 +10,7 @@ use nalgebra::SVector;
 use super::fit::{self, Fitted, PixelNoise, PointSource, Shape, U, V};
 use super::fitting::{Fitter, NO_POINT, WIDEST_POINT_PX, radius_px, spread};
 use super::learning::UNKNOWNS;
+use super::lessons::noise_of;
 use super::neighbourhood::Neighbourhood;
 use super::part::Part;
 use super::window::Spill;
@@ -194,7 +195,7 @@ impl Fitter {
         let motion = Motion::of_all(&found[..moved]).filter(|_| is_told);
         // What was learnt of spots that moved unnoticed was wrong.
         if motion.is_some() && self.unknown_shape() > 0.0 {
-            self.unlearn(parts.first().map_or(0.0, |part| part.noise_dn));
+            self.unlearn(noise_of(parts));
         }
         motion
     }

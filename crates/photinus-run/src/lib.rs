@@ -21,6 +21,7 @@ pub mod exposure;
 pub mod fault;
 pub mod health;
 mod host_clock;
+mod lean;
 pub mod live;
 pub mod motion;
 mod odd_frame;

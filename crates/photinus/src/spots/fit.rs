@@ -68,9 +68,14 @@ pub(super) trait Shape<const N: usize> {
     /// from [`WIDTH`] on.
     fn shares(&self, row: usize, column: usize, widths: &SVector<f64, N>) -> (Lanes, [Lanes; N]);
 
-    /// Which numbers are places, u and v.
-    fn places(&self) -> &'static [[usize; 2]] {
-        &[[U, V]]
+    /// How many points of light it has.
+    fn points(&self) -> usize {
+        1
+    }
+
+    /// Which numbers are a point's place, u and v.
+    fn place_of(&self, _point: usize) -> [usize; 2] {
+        [U, V]
     }
 
     /// Whether a step is short enough to be the last, as far as places and light do not tell.
@@ -254,7 +259,7 @@ fn fit_from<const N: usize>(
         if !step.iter().all(|number| number.is_finite()) {
             return None;
         }
-        for &number in shape.places().as_flattened() {
+        for number in (0..shape.points()).flat_map(|point| shape.place_of(point)) {
             step[number] = step[number].clamp(-LONGEST_PX, LONGEST_PX);
         }
         let before = numbers[LIGHT];
@@ -272,7 +277,7 @@ fn fit_from<const N: usize>(
         }
         // No covariance is less than one over the information.
         let (mut step_px, mut sigmas) = (0.0_f64, 0.0_f64);
-        for &[u, v] in shape.places() {
+        for [u, v] in (0..shape.points()).map(|point| shape.place_of(point)) {
             let moved_px = libm::hypot(step[u], step[v]);
             step_px = step_px.max(moved_px);
             sigmas = sigmas.max(moved_px * matrix[(u, u)].max(matrix[(v, v)]).sqrt());

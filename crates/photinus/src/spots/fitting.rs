@@ -23,6 +23,7 @@ use super::part::Part;
 use super::patch::{self, Dark, Surroundings};
 use super::settings::{Brightness, Noise, Settings};
 use super::smear::{Motion, Smeared, bend_px};
+use super::telling::Telling;
 use super::window::{Spill, WIDEST_PX, Window, nearest_pixel};
 use crate::camera::Pixel;
 #[cfg(not(feature = "std"))]
@@ -97,11 +98,13 @@ pub(super) struct Fitter {
     pub(super) lone_pixels: LonePixels,
     /// Whether parts are fitted at all: it takes time.
     pub(super) fits: bool,
-    /// Frames that have told something of the camera, and spots that did and were not full.
+    /// Frames that have told something of the camera by spots that stand alone, and by such beside each other; spots that did and were not full.
     pub(super) frames: u32,
+    pub(super) frames_beside: u32,
     pub(super) unsaturated: u32,
     pub(super) window: Window,
     pub(super) widths: Vec<f64>,
+    pub(super) telling: Vec<Telling>,
     models: Vec<Option<Model>>,
     /// Whether light moved in this frame while the shutter was open.
     pub(super) is_smeared: bool,
@@ -123,9 +126,11 @@ impl Fitter {
             lone_pixels: LonePixels::default(),
             fits: matches!(settings.brightness, Brightness::Contrast(_)),
             frames: 0,
+            frames_beside: 0,
             unsaturated: 0,
             window: Window::default(),
             widths: Vec::new(),
+            telling: Vec::new(),
             models: Vec::new(),
             is_smeared: false,
             motion: None,

@@ -37,6 +37,9 @@ const SPILL: usize = WIDTH + 3;
 const WELL: usize = WIDTH + 4;
 const SPILL_ERROR: f64 = 0.3;
 
+/// What a spot says nothing of seems to be told by no more than this share of what was known of it.
+const ROUNDING: f64 = 1e-6;
+
 /// How far windows see, about, px.
 const SEEN_PX: f64 = 3.5;
 
@@ -124,10 +127,14 @@ impl Belief {
         core::array::from_fn(|i| covariance[(i, i)].max(0.0).sqrt())
     }
 
+    /// How surely the numbers are known, each by itself: one over its variance.
+    pub(super) fn weights(&self) -> [f64; NUMBERS] {
+        self.sigmas().map(|sigma| 1.0 / (sigma * sigma))
+    }
+
     /// The spread with its numbers free.
     pub(super) fn free(&self) -> FreeSpread<'_> {
-        let weights = self.sigmas().map(|sigma| 1.0 / (sigma * sigma));
-        FreeSpread { belief: self, weights, placed: None }
+        FreeSpread { belief: self, weights: self.weights(), placed: None }
     }
 
     /// Width (sigma) of the core of a lens that nobody measured, px.
@@ -226,13 +233,22 @@ impl Told {
         trust: f64,
     ) {
         let Some(information) = covariance.try_inverse() else { return };
-        let own = (information - Information::from_diagonal(&Numbers::from(weights))) * trust;
-        // Rounding must not take away what was known.
-        if (0..NUMBERS).any(|i| own[(i, i)] < 0.0) {
-            return;
+        let mut own = information - Information::from_diagonal(&Numbers::from(weights));
+        let mut weighted = information * answer;
+        for i in 0..NUMBERS {
+            let rounding = ROUNDING * weights[i];
+            // No fit takes away what was known.
+            if own[(i, i)] < -rounding {
+                return;
+            }
+            if own[(i, i)] < rounding {
+                own.row_mut(i).fill(0.0);
+                own.column_mut(i).fill(0.0);
+                weighted[i] = 0.0;
+            }
         }
-        self.information += own;
-        self.weighted += information * answer * trust;
+        self.information += own * trust;
+        self.weighted += weighted * trust;
     }
 }
 
@@ -240,7 +256,7 @@ impl Told {
 #[derive(Clone, Copy)]
 pub(super) struct FreeSpread<'a> {
     belief: &'a Belief,
-    pub(super) weights: [f64; NUMBERS],
+    weights: [f64; NUMBERS],
     placed: Option<[Placed<'a>; 4]>,
 }
 
@@ -283,5 +299,42 @@ impl Shape<UNKNOWNS> for FreeSpread<'_> {
             relative_error: SPILL_ERROR,
             numbers: Some([SPILL, WELL]),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// A spot that says nothing of what spills does so but for rounding, to either side.
+        #[test]
+        fn a_spot_tells_what_it_tells_whatever_it_says_nothing_of(
+            sigmas in prop::array::uniform5(0.01..1.0f64), told in 1.0..1e6f64, off in -0.1..0.1f64,
+        ) {
+            let weights = sigmas.map(|sigma| 1.0 / (sigma * sigma));
+            let mut information = Information::from_diagonal(&Numbers::from(weights));
+            information[(0, 0)] += told;
+            let covariance = information.try_inverse().unwrap();
+            let mut answer = Numbers::zeros();
+            answer[0] = off * told / information[(0, 0)];
+            let mut all = Told::default();
+            all.add(&answer, &covariance, weights, 1.0);
+            prop_assert!((all.information[(0, 0)] / told - 1.0).abs() < 1e-6 * weights[0]);
+            prop_assert!((all.weighted[0] - off * told).abs() < 1e-9 * told * (1.0 + weights[0]));
+            prop_assert_eq!(all.information.fixed_view::<4, 4>(1, 1), SMatrix::<f64, 4, 4>::zeros());
+            prop_assert_eq!(all.weighted.fixed_rows::<4>(1), SVector::<f64, 4>::zeros());
+        }
+    }
+
+    #[test]
+    fn a_fit_that_would_take_away_what_was_known_tells_nothing() {
+        let weights = [4.0; NUMBERS];
+        let mut information = Information::from_diagonal(&Numbers::from(weights)) * 2.0;
+        information[(4, 4)] = 3.0;
+        let mut all = Told::default();
+        all.add(&Numbers::zeros(), &information.try_inverse().unwrap(), weights, 1.0);
+        assert_eq!(all.information, Information::zeros());
     }
 }

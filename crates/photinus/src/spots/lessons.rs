@@ -1,18 +1,20 @@
 //! What the spots of a frame teach of the camera, where nobody measured it.
 //!
 //! In: the parts of a frame, and the fitter. Out: the fitter's belief of the point spread and of noise, and the level of full pixels, one frame
-//! wiser. Spots and point spread are fitted to each other in turn; hot pixels, spots beside others and those that the border cuts
-//! teach nothing. After some frames there is nothing left to learn.
+//! wiser. Spots and point spread are fitted to each other in turn; which spots tell is `telling`'s. After some frames there is nothing left to
+//! learn.
 
 use nalgebra::SVector;
 
-use super::fit::{self, Fitted, Left, PixelNoise, PointSource, Shape, WIDTH};
-use super::fitting::{Fitter, NO_POINT, WIDEST_POINT_PX};
+use super::beside::Beside;
+use super::fit::{self, Left, PixelNoise, PointSource, Shape, WIDTH};
+use super::fitting::{Fitter, NO_POINT};
 use super::learning::{Belief, Information, NUMBERS, Told, UNKNOWNS};
 use super::neighbourhood::Neighbourhood;
 use super::part::Part;
 use super::patch::NOISY_DN;
 use super::smear::Smeared;
+use super::telling::{self, Opened, Telling};
 use super::window::Window;
 #[cfg(not(feature = "std"))]
 use crate::float::Float as _;
@@ -31,10 +33,6 @@ const MOST_TELLING: usize = 40;
 const ROUNDS: usize = 5;
 /// Frames after which a belief that is sure of itself learns no more of the spread.
 pub(super) const LEARNT_FRAMES: u32 = 32;
-/// A spot with less contrast than this says little of the spread, grey levels.
-const TELLING_DN: f64 = 30.0;
-/// Nor one that noise may have made, sigmas.
-const TELLING_SIGMAS: f64 = 6.0;
 /// A pixel that reads no further below the level of full ones, sigmas of noise, may be full.
 const FULL_SIGMAS: f64 = 2.0;
 /// So many sigmas of noise are from the mean level of full pixels to the lowest.
@@ -62,7 +60,7 @@ impl Fitter {
         let lowest = self.full_level.lowest();
         let is_end = is_noisy(noise_dn) && f64::from(lowest) + LEVEL_SIGMAS * noise_dn >= f64::from(u8::MAX);
         self.belief = Belief::new(self.noise, if is_end { u8::MAX } else { lowest });
-        (self.frames, self.unsaturated) = (0, 0);
+        (self.frames, self.frames_beside, self.unsaturated) = (0, 0, 0);
     }
 
     /// The same with what a frame tells.
@@ -107,48 +105,47 @@ impl Fitter {
             return;
         }
         self.look_for_hot_pixels(frame, parts, full_from);
-        let tells = |index: usize, part: &Part| {
-            let height = f64::from(part.outline.peak) - f64::from(part.level);
-            let is_plain = part.reason.is_none() && !part.outline.cut && part.radius_px < WIDEST_POINT_PX;
-            is_plain
-                && height > TELLING_DN.max(TELLING_SIGMAS * part.noise_dn)
-                && near.room_px(index, 9.0) >= 9.0
-        };
-        let telling =
-            parts.iter().enumerate().filter(|(index, part)| tells(*index, part)).map(|(_, part)| part);
-        if self.frames == 0 {
-            self.begin(frame, telling.clone(), full_from, is_noisy(noise_of(parts)));
+        let mut telling = core::mem::take(&mut self.telling);
+        telling::find(parts, near, &mut telling);
+        let stand_alone = !telling.is_empty();
+        if !stand_alone && self.motion.is_none() && self.frames_beside < LEARNT_FRAMES {
+            telling::find_beside(parts, near, full_from, &mut telling);
         }
-        let telling = telling.take(MOST_TELLING);
-        let lesson = self.settle(frame, telling.clone(), full_from);
-        if !lesson.tells {
-            return;
+        if self.frames == 0 && self.frames_beside == 0 {
+            self.begin(frame, parts, &telling, full_from);
         }
-        self.belief.keep(&lesson.told, lesson.at);
-        self.unsaturated += lesson.unsaturated;
-        self.learn_noise(frame, telling, full_from);
-        self.frames += 1;
+        let most = &telling[..telling.len().min(MOST_TELLING)];
+        let lesson = self.settle(frame, parts, most, full_from);
+        if lesson.tells {
+            self.belief.keep(&lesson.told, lesson.at);
+            self.unsaturated += lesson.unsaturated;
+            if stand_alone {
+                self.learn_noise(frame, parts, most, full_from);
+                self.frames += 1;
+            } else {
+                // What they leave is no noise: any of them may be two.
+                self.frames_beside += 1;
+            }
+        }
+        self.telling = telling;
     }
 
     /// Begins to look for the point spread at a core as wide as the first spots that are not full. What is full is wider than that: where all are, it begins
     /// at what explains them better, their width or what is believed of any lens. In noise how wide faint ones are is noise: all spots tell, full or not.
-    fn begin<'a>(
-        &mut self,
-        frame: &FrameView<'_>,
-        telling: impl Iterator<Item = &'a Part> + Clone,
-        full_from: u8,
-        is_noisy: bool,
-    ) {
+    fn begin(&mut self, frame: &FrameView<'_>, parts: &[Part], telling: &[Telling], full_from: u8) {
+        let is_noisy = is_noisy(noise_of(parts));
         let is_too_wide = |part: &Part| !is_noisy && part.outline.peak >= full_from;
-        let all_too_wide = telling.clone().all(is_too_wide);
-        let beginning = telling.clone().filter(|part| all_too_wide || !is_too_wide(part));
+        let all = telling.iter().flat_map(|telling| telling.parts(parts));
+        let all_too_wide = all.clone().all(is_too_wide);
+        let beginning = all.filter(|part| all_too_wide || !is_too_wide(part));
         self.widths.clear();
         self.widths.extend(beginning.map(|part| part.width_px(f32::from(part.level))));
         self.widths.sort_unstable_by(f64::total_cmp);
         let Some(&width_px) = self.widths.get(self.widths.len() / 2) else { return };
+        let most = &telling[..telling.len().min(MOST_TELLING)];
         let mut cost = |core_px: f64| {
             self.belief.begin(core_px);
-            self.settle(frame, telling.clone().take(MOST_TELLING), full_from).cost + self.belief.strain()
+            self.settle(frame, parts, most, full_from).cost + self.belief.strain()
         };
         let believed_px = Belief::believed_core_px();
         let is_as_wide = !all_too_wide || cost(width_px) < cost(believed_px);
@@ -156,38 +153,27 @@ impl Fitter {
     }
 
     /// Fits the frame's spots and the point spread to each other.
-    fn settle<'a>(
+    fn settle(
         &mut self,
         frame: &FrameView<'_>,
-        telling: impl Iterator<Item = &'a Part> + Clone,
+        parts: &[Part],
+        telling: &[Telling],
         full_from: u8,
     ) -> Lesson {
         let mut lesson = Lesson::default();
         for _ in 0..ROUNDS {
             lesson = Lesson { at: self.belief.numbers(), ..Lesson::default() };
-            for part in telling.clone() {
-                let (_, around) = self.open(frame, part, f64::INFINITY, full_from);
-                let (noise, guess) = (self.pixel_noise(around), self.guess(part));
-                if !self.is_light(noise) {
+            for spots in telling {
+                let opened = self.open_telling(frame, parts, spots, full_from);
+                if !self.is_light(self.pixel_noise(opened.around)) {
                     continue;
                 }
-                let mut shape = self.belief.free();
-                let weights = shape.weights;
-                let spot = match self.motion {
-                    None => fit::fit(&mut self.window, &mut shape, guess, noise).as_ref().and_then(told_by),
-                    Some(motion) => {
-                        let mut streak = Smeared::new(shape, motion);
-                        let fitted: Option<Fitted<{ UNKNOWNS + 2 }>> =
-                            fit::fit(&mut self.window, &mut streak, guess, noise);
-                        fitted.as_ref().and_then(told_by)
-                    }
-                };
-                let Some(spot) = spot else {
+                let Some(spot) = self.fit_freely(&opened) else {
                     // It is no point's light: each pixel is as far off as may be.
                     lesson.cost += NO_POINT * (4 * self.window.fours.len()) as f64;
                     continue;
                 };
-                lesson.told.add(&spot.numbers, &spot.covariance, weights, spot.trust);
+                lesson.told.add(&spot.numbers, &spot.covariance, self.belief.weights(), spot.trust);
                 lesson.unsaturated += u32::from(self.window.full_px == 0);
                 lesson.cost += spot.cost;
                 lesson.tells = true;
@@ -197,6 +183,24 @@ impl Fitter {
             }
         }
         lesson
+    }
+
+    /// Fits the window with the numbers of the point spread free.
+    fn fit_freely(&mut self, opened: &Opened) -> Option<FreelyFitted> {
+        let noise = self.pixel_noise(opened.around);
+        let (window, shape, guess) = (&mut self.window, self.belief.free(), opened.guess);
+        match (opened.beside(), self.motion) {
+            ([], None) => told_by::<UNKNOWNS>(window, shape, guess, noise),
+            ([], Some(motion)) => {
+                told_by::<{ UNKNOWNS + 2 }>(window, Smeared::new(shape, motion), guess, noise)
+            }
+            (&[one], _) => told_by::<{ UNKNOWNS + 3 }>(window, Beside::new(shape, shape, one), guess, noise),
+            (&[one, other, ..], _) => {
+                let both =
+                    Beside::<_, _, { UNKNOWNS + 3 }, _>::new(Beside::new(shape, shape, one), shape, other);
+                told_by::<{ UNKNOWNS + 6 }>(window, both, guess, noise)
+            }
+        }
     }
 
     fn look_for_hot_pixels(&mut self, frame: &FrameView<'_>, parts: &[Part], full_from: u8) {
@@ -212,33 +216,26 @@ impl Fitter {
         self.lone_pixels.end();
     }
 
-    fn learn_noise<'a>(
-        &mut self,
-        frame: &FrameView<'_>,
-        telling: impl Iterator<Item = &'a Part>,
-        full_from: u8,
-    ) {
+    fn learn_noise(&mut self, frame: &FrameView<'_>, parts: &[Part], telling: &[Telling], full_from: u8) {
         // What was left by a spread that frames had told less of says little of today's: frame k counts as k of the first.
         let frames = f64::from(self.frames);
         let mut bins = *self.belief.noise_bins();
         bins.fade(frames / (frames + 1.0));
-        for part in telling {
-            let (_, around) = self.open(frame, part, f64::INFINITY, full_from);
+        for spots in telling {
+            let opened = self.open_telling(frame, parts, spots, full_from);
+            let around = opened.around;
             if !self.is_light(self.pixel_noise(around)) {
                 continue;
             }
             // Wings beside a spot make its frame no noisier: what is cut off does.
             let noise = if around.is_cut_off { self.pixel_noise(around) } else { self.belief.noise() };
-            let guess = self.guess(part);
             let known = f64::from((noise.dark - self.belief.noise().dark).max(0.0));
-            let mut shape = PointSource::new(self.belief.spread(), UNLEARNT, self.belief.spill());
-            let mut add = |left| bins.add(&left, known);
+            let shape = PointSource::new(self.belief.spread(), UNLEARNT, self.belief.spill());
+            let add = |left| bins.add(&left, known);
+            let (window, guess) = (&mut self.window, opened.guess);
             match self.motion {
-                None => tell_noise::<5>(&mut self.window, &mut shape, guess, noise, &mut add),
-                Some(motion) => {
-                    let mut streak = Smeared::new(shape, motion);
-                    tell_noise::<7>(&mut self.window, &mut streak, guess, noise, &mut add);
-                }
+                None => tell_noise::<5>(window, shape, guess, noise, add),
+                Some(motion) => tell_noise::<7>(window, Smeared::new(shape, motion), guess, noise, add),
             }
         }
         bins.solve();
@@ -278,7 +275,13 @@ struct FreelyFitted {
     cost: f64,
 }
 
-fn told_by<const N: usize>(fitted: &Fitted<N>) -> Option<FreelyFitted> {
+fn told_by<const N: usize>(
+    window: &mut Window,
+    mut shape: impl Shape<N>,
+    guess: (f64, f64, f64),
+    noise: PixelNoise,
+) -> Option<FreelyFitted> {
+    let fitted = fit::fit(window, &mut shape, guess, noise)?;
     let misfit = fitted.chi2 / fitted.freedom;
     (misfit < NO_POINT).then(|| FreelyFitted {
         numbers: fitted.numbers.fixed_rows::<NUMBERS>(WIDTH).into_owned(),
@@ -291,14 +294,14 @@ fn told_by<const N: usize>(fitted: &Fitted<N>) -> Option<FreelyFitted> {
 /// Tells what a spot leaves of each pixel, unless it is no point or its charge spills.
 fn tell_noise<const N: usize>(
     window: &mut Window,
-    shape: &mut impl Shape<N>,
+    mut shape: impl Shape<N>,
     guess: (f64, f64, f64),
     noise: PixelNoise,
     with: impl FnMut(Left),
 ) {
-    let Some(fitted) = fit::fit(window, shape, guess, noise) else { return };
+    let Some(fitted) = fit::fit(window, &mut shape, guess, noise) else { return };
     let spills = window.full_px > 0 && window.spilled_share() > LEAST_SPILT;
     if fitted.chi2 / fitted.freedom < NO_POINT && !spills {
-        fit::residuals(window, shape, &fitted, noise, with);
+        fit::residuals(window, &mut shape, &fitted, noise, with);
     }
 }

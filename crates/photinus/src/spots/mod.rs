@@ -28,6 +28,7 @@
 //! whoever looks at a frame as a whole decides.
 
 mod background;
+mod beside;
 mod centroid;
 mod cut_off;
 mod detection_limit;
@@ -55,6 +56,7 @@ mod settings;
 mod smear;
 mod splitting;
 mod summits;
+mod telling;
 mod tiles;
 mod window;
 mod wings;

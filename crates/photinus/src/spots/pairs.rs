@@ -5,26 +5,20 @@
 
 use nalgebra::{Matrix2, SVector};
 
-use super::fit::{self, Fitted, PointSource, Shape, WIDTH};
+use super::beside::{Beside, Guess};
+use super::fit::{self, Fitted, PointSource, WIDTH};
 use super::fitting::{Fitter, Model, Point, radius_px, spread, surroundings_at};
 use super::neighbourhood::Neighbourhood;
 use super::part::Part;
-use super::window::{Spill, WIDEST_PX};
+use super::window::WIDEST_PX;
 use crate::camera::Pixel;
 use crate::frame::FrameView;
-use crate::lanes::Lanes;
 
 /// Points further apart than this many resolutions, and with more than this between what is bright of them, px, are fitted one by one.
 const NEAR: f64 = 2.5;
 const BETWEEN_PX: f64 = 2.0;
-/// How far the second point is from the middle of its part, px, and its light from the first guess, as a logarithm.
-const PLACE_KNOWN_PX: f64 = 1.5;
-const LIGHT_KNOWN: f64 = 1.5;
-
-/// The numbers of the second point: where it is, and the logarithm of its light over the first one's.
-const U2: usize = WIDTH + 1;
-const V2: usize = WIDTH + 2;
-const RATIO: usize = WIDTH + 3;
+/// Two points of the same size, and their numbers.
+type Pair<'a> = Beside<PointSource<'a>, PointSource<'a>, { WIDTH + 1 }, { WIDTH + 1 }>;
 const NUMBERS: usize = WIDTH + 4;
 
 impl Fitter {
@@ -66,23 +60,14 @@ impl Fitter {
         self.add_others(one, Some(other), window_px, near);
         let noise = self.window_noise(around);
         let places = both.map(|part| self.window.local(part.guess));
-        // Points of one point spread shine as their summits are high, or, where these are cut off, as far as they reach.
         let is_full = both.iter().any(|part| part.outline.peak >= full_from);
-        let lights = both.map(|part| {
-            let height = (f64::from(part.outline.peak) - f64::from(around.level)).max(1.0);
-            if is_full { height * part.radius_px * part.radius_px } else { height }
-        });
+        let lights = both.map(|part| part.seeming_light(around.level, is_full));
         let flux = self.window.flux().max(2.0);
         let light = flux * lights[0] / (lights[0] + lights[1]);
         let spread = spread(self.optics.as_deref(), &self.belief, middle);
-        let first = PointSource::new(spread, self.source_size(), self.spill());
-        let mut pair = PointPair {
-            first,
-            second: first,
-            place_px: [places[1].0, places[1].1],
-            ln_ratio: libm::log(lights[1] / lights[0]),
-            times: Lanes::ONE,
-        };
+        let point = PointSource::new(spread, self.source_size(), self.spill());
+        let second = Guess { place_px: places[1], ln_ratio: libm::log(lights[1] / lights[0]) };
+        let mut pair: Pair<'_> = Beside::new(point, point, second);
         let guess = (places[0].0, places[0].1, light);
         let fitted: Fitted<NUMBERS> = fit::fit(&mut self.window, &mut pair, guess, noise)?;
         let points = points(&fitted)
@@ -109,9 +94,9 @@ fn gap_px(one: &Part, other: &Part) -> f64 {
 /// The two points of a fit, as seen from the middle of the window.
 fn points(fitted: &Fitted<NUMBERS>) -> [Point; 2] {
     let Fitted { numbers, covariance, .. } = fitted;
-    let times = libm::exp(numbers[RATIO]);
+    let times = libm::exp(numbers[Pair::RATIO]);
     let mut by_number = SVector::<f64, NUMBERS>::zeros();
-    (by_number[fit::LIGHT], by_number[RATIO]) = (times, times * fitted.light());
+    (by_number[fit::LIGHT], by_number[Pair::RATIO]) = (times, times * fitted.light());
     let first = Point {
         centre: Pixel::new(numbers[fit::U], numbers[fit::V]),
         covariance_px2: fitted.centre_covariance_px2(),
@@ -119,80 +104,10 @@ fn points(fitted: &Fitted<NUMBERS>) -> [Point; 2] {
         light_variance: fitted.light_variance(),
     };
     let second = Point {
-        centre: Pixel::new(numbers[U2], numbers[V2]),
-        covariance_px2: Matrix2::from_fn(|i, j| covariance[(U2 + i, U2 + j)]),
+        centre: Pixel::new(numbers[Pair::U], numbers[Pair::V]),
+        covariance_px2: Matrix2::from_fn(|i, j| covariance[(Pair::U + i, Pair::U + j)]),
         light: times * fitted.light(),
         light_variance: (by_number.transpose() * covariance * by_number)[0],
     };
     [first, second]
-}
-
-/// Two points of the same size.
-struct PointPair<'a> {
-    first: PointSource<'a>,
-    second: PointSource<'a>,
-    place_px: [f64; 2],
-    ln_ratio: f64,
-    /// The light of the second over that of the first, where they were placed last.
-    times: Lanes,
-}
-
-impl PointPair<'_> {
-    /// What the second point's own numbers are.
-    fn second(numbers: &SVector<f64, NUMBERS>) -> SVector<f64, { WIDTH + 1 }> {
-        let mut own = first(numbers);
-        (own[fit::U], own[fit::V]) = (numbers[U2], numbers[V2]);
-        own
-    }
-}
-
-fn first(numbers: &SVector<f64, NUMBERS>) -> SVector<f64, { WIDTH + 1 }> {
-    SVector::from_fn(|number, _| numbers[number])
-}
-
-impl Shape<NUMBERS> for PointPair<'_> {
-    #[inline(always)]
-    fn shares(
-        &self,
-        row: usize,
-        column: usize,
-        numbers: &SVector<f64, NUMBERS>,
-    ) -> (Lanes, [Lanes; NUMBERS]) {
-        let (one, by_one) = self.first.shares(row, column, &first(numbers));
-        let (other, by_other) = self.second.shares(row, column, &Self::second(numbers));
-        let times = self.times;
-        let mut columns = [Lanes::ZERO; NUMBERS];
-        (columns[fit::U], columns[fit::V]) = (by_one[fit::U], by_one[fit::V]);
-        columns[WIDTH] = by_one[WIDTH] + times * by_other[WIDTH];
-        (columns[U2], columns[V2]) = (times * by_other[fit::U], times * by_other[fit::V]);
-        columns[RATIO] = times * other;
-        (one + times * other, columns)
-    }
-
-    fn places(&self) -> &'static [[usize; 2]] {
-        &[[fit::U, fit::V], [U2, V2]]
-    }
-
-    fn is_short(&self, step: &SVector<f64, NUMBERS>) -> bool {
-        step[RATIO].abs() < 0.3 * fit::DONE_SHARE
-    }
-
-    fn place(&mut self, numbers: &SVector<f64, NUMBERS>, reach: usize) {
-        self.first.place(&first(numbers), reach);
-        self.second.place(&Self::second(numbers), reach);
-        self.times = Lanes::splat(libm::exp(numbers[RATIO]) as f32);
-    }
-
-    fn believed(&self, number: usize) -> (f64, f64) {
-        match number {
-            U2 => (self.place_px[0], 1.0 / (PLACE_KNOWN_PX * PLACE_KNOWN_PX)),
-            V2 => (self.place_px[1], 1.0 / (PLACE_KNOWN_PX * PLACE_KNOWN_PX)),
-            RATIO => (self.ln_ratio, 1.0 / (LIGHT_KNOWN * LIGHT_KNOWN)),
-            _ => self.first.believed(number),
-        }
-    }
-
-    fn spill(&self, numbers: &SVector<f64, NUMBERS>) -> Spill {
-        self.first.spill(&first(numbers))
-    }
 }

@@ -46,6 +46,12 @@ impl Part {
         self.radius_px / (2.0 * over).sqrt()
     }
 
+    /// About how bright a point is beside others of the same point spread: as its summit is high, or, where these are cut off, as far as it reaches.
+    pub(super) fn seeming_light(&self, level: f32, is_full: bool) -> f64 {
+        let height = (f64::from(self.outline.peak) - f64::from(level)).max(1.0);
+        if is_full { height * self.radius_px * self.radius_px } else { height }
+    }
+
     /// How far light is looked for when nothing else is near, px.
     pub(super) fn most_room_px(&self) -> f64 {
         2.0 * self.radius_px + 4.0

@@ -100,9 +100,10 @@ impl Belief {
         self.noise.noise
     }
 
-    /// Whether the core is as narrow as any that is tried: what is sharper than that is none of the shapes that are known.
+    /// Whether the core is as narrow as any that is tried, or cannot be told from it: what is sharper than that is none of the shapes that are known.
     pub(super) fn is_too_sharp(&self) -> bool {
-        self.numbers[0] <= LEAST[0]
+        let above = self.numbers[0] - LEAST[0];
+        above <= 2.0 * SURE[0] && above <= 2.0 * self.sigmas()[0]
     }
 
     /// Width (sigma) of the core, px.

@@ -46,6 +46,15 @@ const SEEN_PX: f64 = 3.5;
 type Numbers = SVector<f64, NUMBERS>;
 pub(super) type Information = SMatrix<f64, NUMBERS, NUMBERS>;
 
+/// Where the numbers of the point spread begin to be looked for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Beginning {
+    /// Width (sigma) of the core, px.
+    pub(super) core_px: f64,
+    /// Share of the excess of full pixels that spills.
+    pub(super) spill: f64,
+}
+
 /// What is believed of a camera's optics.
 #[derive(Debug)]
 pub(super) struct Belief {
@@ -138,16 +147,17 @@ impl Belief {
         FreeSpread { belief: self, weights: self.weights(), placed: None }
     }
 
-    /// Width (sigma) of the core of a lens that nobody measured, px.
-    pub(super) fn believed_core_px() -> f64 {
-        libm::exp(BELIEVED[0])
+    /// Where the numbers of a camera that nobody measured are looked for.
+    pub(super) fn believed() -> Beginning {
+        Beginning { core_px: libm::exp(BELIEVED[0]), spill: BELIEVED[3] }
     }
 
-    /// Begins to look for the core's sigma at `core_px`, before a frame has told anything.
-    pub(super) fn begin(&mut self, core_px: f64) {
+    /// Begins to look for the numbers there, before a frame has told anything.
+    pub(super) fn begin(&mut self, Beginning { core_px, spill }: Beginning) {
         let Some(covariance) = self.information.try_inverse() else { return };
         self.numbers = covariance * self.weighted;
         self.numbers[0] = libm::log(core_px.clamp(0.3, 2.5));
+        self.numbers[3] = spill;
         self.draw();
     }
 

@@ -9,18 +9,25 @@ use nalgebra::SVector;
 use super::beside::Beside;
 use super::fit::{self, Left, PixelNoise, PointSource, Shape, WIDTH};
 use super::fitting::{Fitter, NO_POINT};
-use super::learning::{Belief, Information, NUMBERS, Told, UNKNOWNS};
+use super::learning::{Beginning, Belief, Information, NUMBERS, Told, UNKNOWNS};
 use super::neighbourhood::Neighbourhood;
 use super::part::Part;
 use super::patch::NOISY_DN;
 use super::smear::Smeared;
 use super::telling::{self, Opened, Telling};
-use super::window::Window;
+use super::window::{Spill, Window};
 #[cfg(not(feature = "std"))]
 use crate::float::Float as _;
 use crate::frame::FrameView;
 use crate::optics::SourceSize;
 
+/// Share of the excess that spills where most of it does.
+const SPILLS: f64 = 0.9;
+/// After so many frames noise that is so many times what is expected, as variance, is none.
+const DOUBTED_FRAMES: u32 = 8;
+const IMPLAUSIBLE: f64 = 4.0;
+/// A faint pixel, grey levels.
+const TELLING_DN: f64 = 30.0;
 /// Levels of full pixels that differ by no more are one, grey levels.
 const SAME_LEVEL_DN: u8 = 4;
 /// Share of the light of its brightest pixel that the eight around it get of a point, at least.
@@ -122,6 +129,7 @@ impl Fitter {
             if stand_alone {
                 self.learn_noise(frame, parts, most, full_from);
                 self.frames += 1;
+                self.begin_again(noise_of(parts));
             } else {
                 // What they leave is no noise: any of them may be two.
                 self.frames_beside += 1;
@@ -143,13 +151,32 @@ impl Fitter {
         self.widths.sort_unstable_by(f64::total_cmp);
         let Some(&width_px) = self.widths.get(self.widths.len() / 2) else { return };
         let most = &telling[..telling.len().min(MOST_TELLING)];
-        let mut cost = |core_px: f64| {
-            self.belief.begin(core_px);
+        let believed = Beginning { spill: self.spill_at_first, ..Belief::believed() };
+        let as_wide = Beginning { core_px: width_px, ..believed };
+        let other = if all_too_wide { believed } else { as_wide };
+        let mut cost = |beginning: Beginning| {
+            self.belief.begin(beginning);
             self.settle(frame, parts, most, full_from).cost + self.belief.strain()
         };
-        let believed_px = Belief::believed_core_px();
-        let is_as_wide = !all_too_wide || cost(width_px) < cost(believed_px);
-        self.belief.begin(if is_as_wide { width_px } else { believed_px });
+        let is_as_wide = other == as_wide || cost(as_wide) < cost(other);
+        self.belief.begin(if is_as_wide { as_wide } else { other });
+    }
+
+    /// Begins anew, once, where what is left after some frames is far more than noise: then the numbers were found in a place where they explain little,
+    /// and that is for the spill that they were looked for from, for that has two.
+    fn begin_again(&mut self, noise_dn: f64) {
+        let Spill { share, .. } = self.belief.spill();
+        let from = Belief::believed().spill;
+        let is_first = self.spill_at_first == from;
+        if self.frames != DOUBTED_FRAMES || !is_first {
+            return;
+        }
+        let variance = |noise: &PixelNoise| f64::from(noise.dark) + TELLING_DN * f64::from(noise.shot);
+        let expected = noise_dn * noise_dn + 1.0 / 12.0 + TELLING_DN * self.noise.shot;
+        if variance(&self.belief.noise()) > IMPLAUSIBLE * expected {
+            self.unlearn(noise_dn);
+            self.spill_at_first = if share < 0.5 { SPILLS } else { 1.0 - SPILLS };
+        }
     }
 
     /// Fits the frame's spots and the point spread to each other.

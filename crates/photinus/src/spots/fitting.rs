@@ -102,8 +102,8 @@ pub(super) struct Fitter {
     pub(super) frames: u32,
     pub(super) frames_beside: u32,
     pub(super) unsaturated: u32,
-    /// The share of the excess that spills from which the point spread is looked for.
-    pub(super) spill_at_first: f64,
+    /// The share of the excess that spills from which the point spread was looked for once more.
+    pub(super) begun_again_at: Option<f64>,
     pub(super) window: Window,
     pub(super) widths: Vec<f64>,
     pub(super) telling: Vec<Telling>,
@@ -130,7 +130,7 @@ impl Fitter {
             frames: 0,
             frames_beside: 0,
             unsaturated: 0,
-            spill_at_first: Belief::believed().spill,
+            begun_again_at: None,
             window: Window::default(),
             widths: Vec::new(),
             telling: Vec::new(),

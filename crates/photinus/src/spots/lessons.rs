@@ -14,20 +14,13 @@ use super::neighbourhood::Neighbourhood;
 use super::part::Part;
 use super::patch::NOISY_DN;
 use super::smear::Smeared;
-use super::telling::{self, Opened, Telling};
+use super::telling::{self, Opened, TELLING_DN, Telling};
 use super::window::{Spill, Window};
 #[cfg(not(feature = "std"))]
 use crate::float::Float as _;
 use crate::frame::FrameView;
 use crate::optics::SourceSize;
 
-/// Share of the excess that spills where most of it does.
-const SPILLS: f64 = 0.9;
-/// After so many frames noise that is so many times what is expected, as variance, is none.
-const DOUBTED_FRAMES: u32 = 8;
-const IMPLAUSIBLE: f64 = 4.0;
-/// A faint pixel, grey levels.
-const TELLING_DN: f64 = 30.0;
 /// Levels of full pixels that differ by no more are one, grey levels.
 const SAME_LEVEL_DN: u8 = 4;
 /// Share of the light of its brightest pixel that the eight around it get of a point, at least.
@@ -35,11 +28,16 @@ const LEAST_AROUND: f32 = 0.12;
 /// Share of spilled charge in a spot from which its residuals say nothing of noise.
 pub(super) const LEAST_SPILT: f64 = 0.02;
 /// Spots of a frame that are learnt from, at most.
-const MOST_TELLING: usize = 40;
+pub(super) const MOST_TELLING: usize = 40;
 /// Rounds in which a frame's spots and the point spread are fitted to each other.
 const ROUNDS: usize = 5;
 /// Frames after which a belief that is sure of itself learns no more of the spread.
 pub(super) const LEARNT_FRAMES: u32 = 32;
+/// After so many frames noise that is so many times what is expected, as variance, is none.
+const DOUBTED_FRAMES: u32 = 8;
+const IMPLAUSIBLE: f64 = 4.0;
+/// Share of the excess that spills where most of it does.
+const SPILLS: f64 = 0.9;
 /// A pixel that reads no further below the level of full ones, sigmas of noise, may be full.
 const FULL_SIGMAS: f64 = 2.0;
 /// So many sigmas of noise are from the mean level of full pixels to the lowest.
@@ -151,7 +149,8 @@ impl Fitter {
         self.widths.sort_unstable_by(f64::total_cmp);
         let Some(&width_px) = self.widths.get(self.widths.len() / 2) else { return };
         let most = &telling[..telling.len().min(MOST_TELLING)];
-        let believed = Beginning { spill: self.spill_at_first, ..Belief::believed() };
+        let believed = Belief::believed();
+        let believed = Beginning { spill: self.begun_again_at.unwrap_or(believed.spill), ..believed };
         let as_wide = Beginning { core_px: width_px, ..believed };
         let other = if all_too_wide { believed } else { as_wide };
         let mut cost = |beginning: Beginning| {
@@ -162,20 +161,18 @@ impl Fitter {
         self.belief.begin(if is_as_wide { as_wide } else { other });
     }
 
-    /// Begins anew, once, where what is left after some frames is far more than noise: then the numbers were found in a place where they explain little,
-    /// and that is for the spill that they were looked for from, for that has two.
+    /// Begins anew, once, where what is left after some frames is far more than noise: the numbers were found where they explain little. There are two such
+    /// places, and it is the spill that they are looked for from that decides between them.
     fn begin_again(&mut self, noise_dn: f64) {
-        let Spill { share, .. } = self.belief.spill();
-        let from = Belief::believed().spill;
-        let is_first = self.spill_at_first == from;
-        if self.frames != DOUBTED_FRAMES || !is_first {
+        if self.frames != DOUBTED_FRAMES || self.begun_again_at.is_some() {
             return;
         }
         let variance = |noise: &PixelNoise| f64::from(noise.dark) + TELLING_DN * f64::from(noise.shot);
         let expected = noise_dn * noise_dn + 1.0 / 12.0 + TELLING_DN * self.noise.shot;
         if variance(&self.belief.noise()) > IMPLAUSIBLE * expected {
+            let Spill { share, .. } = self.belief.spill();
             self.unlearn(noise_dn);
-            self.spill_at_first = if share < 0.5 { SPILLS } else { 1.0 - SPILLS };
+            self.begun_again_at = Some(if share < 0.5 { SPILLS } else { 1.0 - SPILLS });
         }
     }
 

@@ -7,6 +7,7 @@ use alloc::vec::Vec;
 
 use super::beside::Guess;
 use super::fitting::{Fitter, WIDEST_POINT_PX, radius_px, surroundings_at};
+use super::lessons::MOST_TELLING;
 use super::neighbourhood::Neighbourhood;
 use super::part::Part;
 use super::patch::Surroundings;
@@ -17,13 +18,15 @@ use crate::float::Float as _;
 use crate::frame::FrameView;
 
 /// A spot with less contrast than this says little of the spread, grey levels.
-const TELLING_DN: f64 = 30.0;
+pub(super) const TELLING_DN: f64 = 30.0;
 /// Nor one that noise may have made, sigmas.
 const TELLING_SIGMAS: f64 = 6.0;
 /// The light of a spot reaches no further than this, px.
 const ALONE_PX: f64 = 9.0;
 /// So many are fitted together at most, ...
 const MOST_TOGETHER: usize = 3;
+/// ... looked for among so many, for where there are more it is clutter, ...
+const MOST_LOOKED_AT: usize = 8 * MOST_TELLING;
 /// ... no nearer to each other than this, px: there may be more of them than were told apart.
 const APART_PX: f64 = 3.0;
 
@@ -112,8 +115,9 @@ pub(super) fn find_beside(parts: &[Part], near: &Neighbourhood, full_from: u8, t
     let tells = |part: &Part| is_plain(part) && part.outline.peak < full_from;
     telling.clear();
     let bright = parts.iter().enumerate().filter(|(_, part)| tells(part)).map(|(index, _)| index);
-    let together =
-        bright.filter_map(|index| Telling::around(index, parts, near).filter(|all| all.indices[0] == index));
+    let together = bright
+        .take(MOST_LOOKED_AT)
+        .filter_map(|index| Telling::around(index, parts, near).filter(|all| all.indices[0] == index));
     telling.extend(
         together.filter(|all| all.count > 1 && all.parts(parts).all(tells) && all.can_be_fitted(parts)),
     );

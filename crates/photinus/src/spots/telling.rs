@@ -13,8 +13,6 @@ use super::part::Part;
 use super::patch::Surroundings;
 use super::window::WIDEST_PX;
 use crate::camera::Pixel;
-#[cfg(not(feature = "std"))]
-use crate::float::Float as _;
 use crate::frame::FrameView;
 
 /// A spot with less contrast than this says little of the spread, grey levels.

@@ -5,7 +5,7 @@
 
 use nalgebra::SVector;
 
-use super::fit::{self, Shape, U, V, WIDTH};
+use super::fit::{self, Shape, U, V, WIDTH, first};
 use super::window::Spill;
 use crate::lanes::Lanes;
 
@@ -52,10 +52,6 @@ impl<S: Shape<K>, P: Shape<M>, const K: usize, const M: usize> Beside<S, P, K, M
         (own[U], own[V]) = (numbers[Self::U], numbers[Self::V]);
         own
     }
-}
-
-fn first<const M: usize, const N: usize>(numbers: &SVector<f64, N>) -> SVector<f64, M> {
-    SVector::from_fn(|number, _| numbers[number])
 }
 
 impl<S: Shape<K>, P: Shape<M>, const K: usize, const M: usize, const N: usize> Shape<N>

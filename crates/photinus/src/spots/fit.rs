@@ -93,6 +93,11 @@ pub(super) trait Shape<const N: usize> {
     fn spill(&self, numbers: &SVector<f64, N>) -> Spill;
 }
 
+/// The numbers of the shape that another is made of: they come first.
+pub(super) fn first<const M: usize, const N: usize>(numbers: &SVector<f64, N>) -> SVector<f64, M> {
+    SVector::from_fn(|number, _| numbers[number])
+}
+
 /// Keeps what a shape has in each four pixels of the window, and tells it what spills over from those that the model makes full.
 fn overflow<const N: usize>(window: &mut Window, shape: &impl Shape<N>, numbers: &SVector<f64, N>) {
     window.keep(|four| shape.shares(four.row, four.column, numbers));

@@ -30,7 +30,7 @@ impl Fitter {
             let reach_px = by_resolution_px.max(parts[from].radius_px + BETWEEN_PX);
             let mut nearest = (f64::INFINITY, None);
             near.each_near(from, reach_px, |other, edge_px| {
-                let gap_px = gap_px(&parts[from], &parts[other]);
+                let gap_px = gap_px(parts[from].guess, parts[other].guess);
                 let is_near = gap_px < by_resolution_px || by_brightness_px(edge_px);
                 if is_near && gap_px < nearest.0 && self.may_be_point(&parts[other]) {
                     nearest = (gap_px, Some(other));
@@ -53,7 +53,8 @@ impl Fitter {
         let both = [&parts[one], &parts[other]];
         let middle =
             Pixel::new(0.5 * (both[0].guess.u + both[1].guess.u), 0.5 * (both[0].guess.v + both[1].guess.v));
-        let radius_px = radius_px(both[0]).max(radius_px(both[1])) + 0.5 * gap_px(both[0], both[1]);
+        let radius_px =
+            radius_px(both[0]).max(radius_px(both[1])) + 0.5 * gap_px(both[0].guess, both[1].guess);
         let window_px = radius_px.min(WIDEST_PX as f64);
         let around = surroundings_at(frame, both[0], middle, window_px, &self.window.cut_off);
         self.read(frame, middle, window_px, &around, full_from);
@@ -87,8 +88,8 @@ impl Fitter {
     }
 }
 
-fn gap_px(one: &Part, other: &Part) -> f64 {
-    libm::hypot(one.guess.u - other.guess.u, one.guess.v - other.guess.v)
+pub(super) fn gap_px(one: Pixel, other: Pixel) -> f64 {
+    libm::hypot(one.u - other.u, one.v - other.v)
 }
 
 /// The two points of a fit, as seen from the middle of the window.

@@ -7,7 +7,7 @@ use alloc::vec::Vec;
 
 use nalgebra::SVector;
 
-use super::fit::{self, Fitted, PixelNoise, PointSource, Shape, U, V};
+use super::fit::{self, Fitted, PixelNoise, PointSource, Shape, U, V, first};
 use super::fitting::{Fitter, NO_POINT, WIDEST_POINT_PX, radius_px, spread};
 use super::learning::UNKNOWNS;
 use super::lessons::noise_of;
@@ -321,8 +321,4 @@ impl<S: Shape<M> + Copy, const M: usize, const N: usize> Shape<N> for Smeared<S,
     fn spill(&self, numbers: &SVector<f64, N>) -> Spill {
         self.still.spill(&first::<M, N>(numbers))
     }
-}
-
-fn first<const M: usize, const N: usize>(numbers: &SVector<f64, N>) -> SVector<f64, M> {
-    SVector::from_fn(|number, _| numbers[number])
 }

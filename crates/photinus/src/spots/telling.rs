@@ -9,6 +9,7 @@ use super::beside::Guess;
 use super::fitting::{Fitter, WIDEST_POINT_PX, radius_px, surroundings_at};
 use super::lessons::MOST_TELLING;
 use super::neighbourhood::Neighbourhood;
+use super::pairs::gap_px;
 use super::part::Part;
 use super::patch::Surroundings;
 use super::window::WIDEST_PX;
@@ -165,8 +166,4 @@ impl Opened {
     pub(super) fn beside(&self) -> &[Guess] {
         &self.beside[..self.count]
     }
-}
-
-fn gap_px(one: Pixel, other: Pixel) -> f64 {
-    libm::hypot(one.u - other.u, one.v - other.v)
 }

@@ -27,26 +27,60 @@ pub struct Gaussian {
 }
 
 /// Shares along a line of samples.
-pub(crate) type Line = [f64; PointSpread::SIDE];
+type Line = [f64; PointSpread::SIDE];
+
+/// Values along a line of samples, with the coefficients of the spline through them.
+#[derive(Clone, Debug)]
+pub(crate) struct Splined {
+    values: Line,
+    coefficients: Line,
+}
+
+impl Splined {
+    fn new(values: Line) -> Self {
+        let (mut coefficients, mut room) = (values, [0.0; PointSpread::SIDE]);
+        spline::coefficients(&mut coefficients, &mut room);
+        Self { values, coefficients }
+    }
+}
+
+/// A share of the product of what is along a column and what is along a row.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Product<'a> {
+    share: f64,
+    down: &'a Splined,
+    across: &'a Splined,
+}
 
 /// A Gaussian integrated over pixels along a line of samples, and how it changes with the logarithm of its sigma.
 #[derive(Clone, Debug)]
 pub(crate) struct Profile {
-    pub(crate) shares: Line,
-    pub(crate) by_ln_sigma: Line,
+    shares: Splined,
+    by_ln_sigma: Splined,
 }
 
 impl Profile {
     pub(crate) fn new(sigma_px: f64) -> Self {
-        let mut profile = Self { shares: [0.0; PointSpread::SIDE], by_ln_sigma: [0.0; PointSpread::SIDE] };
+        let (mut shares, mut by_ln_sigma) = ([0.0; PointSpread::SIDE], [0.0; PointSpread::SIDE]);
         let edge = |sigmas: f64| (normal::below(sigmas), sigmas * normal::density(sigmas, 1.0));
         for index in 0..PointSpread::SIDE {
             let place_px = index as f64 / PER_PX as f64 - PointSpread::REACH_PX as f64;
             let (below, moment) = edge((place_px - 0.5) / sigma_px);
             let (above, moment_above) = edge((place_px + 0.5) / sigma_px);
-            (profile.shares[index], profile.by_ln_sigma[index]) = (above - below, moment - moment_above);
+            (shares[index], by_ln_sigma[index]) = (above - below, moment - moment_above);
         }
-        profile
+        Self { shares: Splined::new(shares), by_ln_sigma: Splined::new(by_ln_sigma) }
+    }
+
+    /// So much of the round spread that it is a profile of.
+    pub(crate) fn round(&self, share: f64) -> [Product<'_>; 1] {
+        [Product { share, down: &self.shares, across: &self.shares }]
+    }
+
+    /// How that changes with the logarithm of its sigma.
+    pub(crate) fn slopes(&self, share: f64) -> [Product<'_>; 2] {
+        let (value, slope) = (&self.shares, &self.by_ln_sigma);
+        [Product { share, down: slope, across: value }, Product { share, down: value, across: slope }]
     }
 }
 
@@ -55,8 +89,6 @@ impl Profile {
 pub struct PointSpread {
     /// Shares at steps of a quarter of a pixel, row by row, as given.
     samples: Vec<f64>,
-    /// Room to work in.
-    table: Vec<f64>,
     /// Coefficients of the spline: of each row of samples the columns of one phase after those of another.
     coefficients: Vec<f32>,
 }
@@ -100,15 +132,16 @@ impl PointSpread {
     /// # Errors
     /// [`OpticsError`] for shares that are not 0 to 1 or a sigma that is not 0.01 px to 100 px.
     pub fn gaussians(parts: &[Gaussian]) -> Result<Self, OpticsError> {
-        let mut spread = Self::dark();
+        let mut profiles = Vec::with_capacity(parts.len());
         for &Gaussian { share, sigma_px } in parts {
             check("the share of a Gaussian", share, (0.0..=1.0).contains(&share), "0 to 1")?;
             let is_legal = (0.01..=100.0).contains(&sigma_px);
             check("the sigma of a Gaussian", sigma_px, is_legal, "0.01 px to 100 px")?;
-            let Profile { shares, .. } = Profile::new(sigma_px);
-            spread.add_product(share, &shares, &shares);
+            profiles.push(Profile::new(sigma_px));
         }
-        spread.sort_coefficients();
+        let mut spread = Self::dark();
+        let round = profiles.iter().zip(parts).flat_map(|(profile, part)| profile.round(part.share));
+        spread.become_sum(&round.collect::<Vec<_>>());
         Ok(spread)
     }
 
@@ -117,19 +150,26 @@ impl PointSpread {
         let samples = vec![0.0; Self::SIDE * Self::SIDE];
         // A row for every sample of as many pixels as a phase has, and as much after the last as a read of four rows may take.
         let coefficients = vec![0.0; PER_PX * Self::PHASE * Self::ROW + FOUR_ROWS];
-        Self { table: samples.clone(), samples, coefficients }
+        Self { samples, coefficients }
     }
 
-    /// Takes all light away.
-    pub(crate) fn clear(&mut self) {
-        self.samples.fill(0.0);
-    }
-
-    /// Adds `weight` times the product of a profile down and one across; [`Self::sort_coefficients`] comes after the last.
-    pub(crate) fn add_product(&mut self, weight: f64, down: &Line, across: &Line) {
-        for (row, down) in self.samples.chunks_exact_mut(Self::SIDE).zip(down) {
-            for (sample, across) in row.iter_mut().zip(across) {
-                *sample += weight * down * across;
+    /// Becomes the sum of products: the spline through a product is the product of the splines.
+    pub(crate) fn become_sum(&mut self, products: &[Product<'_>]) {
+        for (row, samples) in self.samples.chunks_exact_mut(Self::SIDE).enumerate() {
+            samples.fill(0.0);
+            let mut coefficients = [0.0; Self::SIDE];
+            for &Product { share, down, across } in products {
+                let (value, coefficient) = (share * down.values[row], share * down.coefficients[row]);
+                for (sample, across) in samples.iter_mut().zip(&across.values) {
+                    *sample += value * across;
+                }
+                for (sum, across) in coefficients.iter_mut().zip(&across.coefficients) {
+                    *sum += coefficient * across;
+                }
+            }
+            let row = &mut self.coefficients[(row + PER_PX) * Self::ROW..];
+            for (column, &sum) in coefficients.iter().enumerate() {
+                row[place_in_row(column + PER_PX)] = sum as f32;
             }
         }
     }
@@ -178,14 +218,12 @@ impl PointSpread {
     }
 
     /// Makes the coefficients from the samples.
-    pub(crate) fn sort_coefficients(&mut self) {
+    fn sort_coefficients(&mut self) {
         let side = Self::SIDE;
         let mut room = [0.0; Self::SIDE];
         let mut line = [0.0; Self::SIDE];
         // Coefficients along rows first, in place of samples of a row; then along columns of those.
-        let mut table = core::mem::take(&mut self.table);
-        table.clear();
-        table.extend_from_slice(&self.samples);
+        let mut table = self.samples.clone();
         for row in table.chunks_exact_mut(side) {
             spline::coefficients(row, &mut room);
         }
@@ -200,7 +238,6 @@ impl PointSpread {
                 self.coefficients[(row + PER_PX) * Self::ROW + column] = value as f32;
             }
         }
-        self.table = table;
     }
 
     /// The spread around a point that is (`u`, `v`) px from the middle of a window of `2 reach + 1` pixels. Point and window stay within
@@ -323,6 +360,17 @@ mod tests {
     }
 
     proptest! {
+        /// The spline through a sum of products, against that through its samples.
+        #[test]
+        fn a_sum_of_products_is_that_of_its_samples(core_px in 0.2..2.0f64, wider in 1.5..9.0f64, halo in 0.0..1.0f64) {
+            let parts = [(1.0 - halo, core_px), (halo, core_px * wider)];
+            let sum = PointSpread::gaussians(&parts.map(|(share, sigma_px)| Gaussian { share, sigma_px })).unwrap();
+            let sampled = PointSpread::new(sum.samples().to_vec()).unwrap();
+            for (a, b) in sum.coefficients.iter().zip(&sampled.coefficients) {
+                prop_assert!((a - b).abs() < 1e-6, "{a} {b}");
+            }
+        }
+
         #[test]
         fn shares_are_those_of_the_gaussian(x in -9.0..9.0f64, y in -9.0..9.0f64, sigma_px in 0.3..2.0f64) {
             let spread = PointSpread::gaussians(&[Gaussian { share: 1.0, sigma_px }]).unwrap();

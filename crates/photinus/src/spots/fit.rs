@@ -13,7 +13,7 @@
 
 use nalgebra::{Matrix2, SMatrix, SVector};
 
-use super::window::{Four, Spill, Window};
+use super::window::{Four, Scale, Spill, Window};
 #[cfg(not(feature = "std"))]
 use crate::float::Float as _;
 use crate::lanes::{self, Lanes};
@@ -43,8 +43,9 @@ const WHOLLY_SEEN: f32 = 0.98;
 const MOST_TAKEN: f64 = 0.7;
 /// No source's own variance is known better than this, px^2.
 const LEAST_SIZE_PX2: f64 = 1e-4;
-/// How far the level of the background is known beforehand, grey levels.
+/// How far the level of the background is known beforehand, grey levels, and one over the variance.
 const LEVEL_KNOWN_DN: f64 = 3.0;
+const LEVEL_WEIGHT: f64 = 1.0 / (LEVEL_KNOWN_DN * LEVEL_KNOWN_DN);
 
 pub(super) const U: usize = 0;
 pub(super) const V: usize = 1;
@@ -101,8 +102,8 @@ pub(super) fn first<const M: usize, const N: usize>(numbers: &SVector<f64, N>) -
 /// Keeps what a shape has in each four pixels of the window, and tells it what spills over from those that the model makes full.
 fn overflow<const N: usize>(window: &mut Window, shape: &impl Shape<N>, numbers: &SVector<f64, N>) {
     window.keep(|four| shape.shares(four.row, four.column, numbers));
-    let (light, level) = (Lanes::splat(numbers[LIGHT] as f32), Lanes::splat(numbers[LEVEL] as f32));
-    window.overflow(&shape.spill(numbers), |share| light * share + level);
+    let (light, level) = (numbers[LIGHT] as f32, numbers[LEVEL] as f32);
+    window.overflow::<N>(&shape.spill(numbers), Scale { light, level, numbers: [LIGHT, LEVEL] });
 }
 
 /// A spot as fitted.
@@ -203,19 +204,20 @@ pub(super) fn fit<const N: usize>(
 ) -> Option<Fitted<N>> {
     let mut found: [Option<Fitted<N>>; BRIGHTER.len() + 2] = [None; BRIGHTER.len() + 2];
     if let Some(seen) = light_there(window, shape, (u, v)) {
-        found[0] = fit_from(window, shape, (u, v), seen, noise);
+        found[0] = fit_from(window, shape, guessed(shape, (u, v), seen), noise);
     }
     // What keeps its charge, or hides little, has one answer.
     let is_plain = window.full_px < HIDING_PX || shape.spill(&believed(shape, (u, v))).share <= SPILLS;
     if found[0].as_ref().is_some_and(|first| window.full_px == 0 || (is_plain && first.fits())) {
         return found[0];
     }
-    found[1] = fit_from(window, shape, (u, v), (light, 0.0), noise);
+    found[1] = fit_from(window, shape, guessed(shape, (u, v), (light, 0.0)), noise);
     for (tried, brighter) in BRIGHTER.into_iter().enumerate() {
         if window.full_px < HIDING_PX || found.iter().flatten().any(Fitted::fits) {
             break;
         }
-        found[tried + 2] = fit_from(window, shape, (u, v), (brighter * light, 0.0), noise);
+        let guess = guessed(shape, (u, v), (brighter * light, 0.0));
+        found[tried + 2] = fit_from(window, shape, guess, noise);
     }
     // Where nothing fits well, misfits count for less.
     let misfits = found.iter().flatten().map(|fitted| fitted.chi2 / fitted.freedom);
@@ -223,15 +225,14 @@ pub(super) fn fit<const N: usize>(
     found.into_iter().flatten().min_by(|a, b| a.cost(least).total_cmp(&b.cost(least)))
 }
 
-fn fit_from<const N: usize>(
+/// Fits `shape` from numbers near the answer; `None` where it does not settle.
+pub(super) fn fit_from<const N: usize>(
     window: &mut Window,
     shape: &mut impl Shape<N>,
-    (u, v): (f64, f64),
-    (light, level): (f64, f64),
+    mut numbers: SVector<f64, N>,
     noise: PixelNoise,
 ) -> Option<Fitted<N>> {
-    let mut numbers = believed(shape, (u, v));
-    (numbers[LIGHT], numbers[LEVEL]) = (light, level);
+    let (u, v) = (numbers[U], numbers[V]);
     let steps = if window.full_px > 0 { STEPS_OF_FULL } else { STEPS };
     let (mut last, mut previous, mut gain) = (None, SVector::<f64, N>::zeros(), 1.0_f64);
     for step_number in 0..steps {
@@ -239,19 +240,18 @@ fn fit_from<const N: usize>(
         if window.full_px > 0 {
             overflow(window, shape, &numbers);
         }
-        let sums = sums(window, shape, &numbers, noise);
+        let sums = sums(window, shape, &numbers, noise, window.full_px > 0);
         let mut matrix = sums.matrix;
         let mut right = sums.right;
         let own = matrix[(LIGHT, LIGHT)] * numbers[LIGHT] * numbers[LIGHT];
-        let level = 1.0 / (LEVEL_KNOWN_DN * LEVEL_KNOWN_DN);
-        matrix[(LEVEL, LEVEL)] += level;
-        right[LEVEL] -= level * numbers[LEVEL];
+        matrix[(LEVEL, LEVEL)] += LEVEL_WEIGHT;
+        right[LEVEL] -= LEVEL_WEIGHT * numbers[LEVEL];
         // A step changes the light by no more than this much: where light, level and widths tell little apart, sums in 32 bits do not.
         matrix[(LIGHT, LIGHT)] += 1.0 / (LIGHT_STEP * LIGHT_STEP * numbers[LIGHT] * numbers[LIGHT]);
         // Where charge spills, full pixels and what they give on say the same of much light and of light without bounds. While it is being learnt how much
         // spills, less light would be taken for charge that does.
         let spill = shape.spill(&numbers);
-        if window.full_px > 0 && spill.share > SPILLS && spill.numbers.is_none() {
+        if hides(window, &spill) && spill.numbers.is_none() {
             right[LIGHT] -= 0.5 * COUNTS / numbers[LIGHT];
         }
         for number in WIDTH..N {
@@ -318,6 +318,84 @@ fn fit_from<const N: usize>(
     })
 }
 
+/// Whether charge spills from the full pixels of a window.
+fn hides(window: &Window, spill: &Spill) -> bool {
+    window.full_px > 0 && spill.share > SPILLS
+}
+
+/// What a spot says of numbers of width that it shares with others.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Said<const C: usize> {
+    /// Its information on them, and its product with how far they are off.
+    pub(super) information: SMatrix<f64, C, C>,
+    pub(super) weighted: SVector<f64, C>,
+    /// Squared residuals over their variances, and the pixels that count less the numbers of the spot's own.
+    pub(super) chi2: f64,
+    pub(super) freedom: f64,
+    /// Twice the negative log-likelihood, but for a constant and the squared residuals.
+    pub(super) rest_of_cost: f64,
+}
+
+/// What a spot says of the first `C` numbers of width at these numbers, of which its own are those that fit best; `None` where pixels say too little of
+/// its own.
+pub(super) fn said<const N: usize, const C: usize>(
+    window: &mut Window,
+    shape: &mut impl Shape<N>,
+    numbers: &SVector<f64, N>,
+    noise: PixelNoise,
+) -> Option<Said<C>> {
+    shape.place(numbers, window.reach);
+    if window.full_px > 0 {
+        overflow(window, shape, numbers);
+    }
+    let Sums { mut matrix, mut right, chi2, log_variances, pixels } =
+        sums(window, shape, numbers, noise, true);
+    let mut rest_of_cost = log_variances + LEVEL_WEIGHT * numbers[LEVEL] * numbers[LEVEL];
+    matrix[(LEVEL, LEVEL)] += LEVEL_WEIGHT;
+    right[LEVEL] -= LEVEL_WEIGHT * numbers[LEVEL];
+    if hides(window, &shape.spill(numbers)) {
+        right[LIGHT] -= 0.5 * COUNTS / numbers[LIGHT];
+        rest_of_cost += COUNTS * libm::log(numbers[LIGHT]);
+    }
+    for number in WIDTH + C..N {
+        let (mean, weight) = shape.believed(number);
+        let off = mean - numbers[number];
+        matrix[(number, number)] += weight;
+        right[number] += weight * off;
+        rest_of_cost += weight * off * off;
+    }
+    // What the spot's own numbers would follow is taken out, one after the other.
+    for own in (0..N).filter(|number| !(WIDTH..WIDTH + C).contains(number)) {
+        let pivot = matrix[(own, own)];
+        if pivot.is_nan() || pivot <= 0.0 {
+            return None;
+        }
+        let along = matrix.column(own) / pivot;
+        let off = right[own];
+        matrix -= along * matrix.row(own).into_owned();
+        right -= along * off;
+    }
+    let freedom = pixels - (N - C) as f64;
+    (freedom >= 1.0).then(|| Said {
+        information: matrix.fixed_view::<C, C>(WIDTH, WIDTH).into_owned(),
+        weighted: right.fixed_rows::<C>(WIDTH).into_owned(),
+        chi2,
+        freedom,
+        rest_of_cost,
+    })
+}
+
+/// What is believed beforehand of a spot at a place, with a guess of its light and level.
+fn guessed<const N: usize>(
+    shape: &impl Shape<N>,
+    place: (f64, f64),
+    (light, level): (f64, f64),
+) -> SVector<f64, N> {
+    let mut numbers = believed(shape, place);
+    (numbers[LIGHT], numbers[LEVEL]) = (light, level);
+    numbers
+}
+
 /// What is believed beforehand of a spot at a place.
 fn believed<const N: usize>(shape: &impl Shape<N>, (u, v): (f64, f64)) -> SVector<f64, N> {
     let mut numbers = SVector::<f64, N>::zeros();
@@ -351,26 +429,25 @@ fn light_there<const N: usize>(
     (light > 0.0 && light.is_finite()).then_some((light, level))
 }
 
+/// What pixels say of the numbers, with the logarithms of their variances where these are asked for.
 fn sums<const N: usize>(
     window: &Window,
     shape: &impl Shape<N>,
     numbers: &SVector<f64, N>,
     noise: PixelNoise,
+    logs: bool,
 ) -> Sums<N> {
-    let (light, level) = (Lanes::splat(numbers[LIGHT] as f32), Lanes::splat(numbers[LEVEL] as f32));
-    let model = PixelModel { light, level, noise, spilling: shape.spill(numbers).numbers, window };
+    let model = PixelModel::new(numbers, noise, window);
     let [mut chi2, mut pixels, mut log_variances] = [Lanes::ZERO; 3];
     let mut products = [[Lanes::ZERO; N]; N];
     let mut right = [Lanes::ZERO; N];
     for (place, four) in window.fours.iter().enumerate() {
-        let shares = match window.kept(place) {
-            Some(kept) if window.full_px > 0 => kept,
-            _ => shape.shares(four.row, four.column, numbers),
-        };
-        let (columns, residual, weight) = weighed(four, shares, &model);
+        let Modelled { columns, residual, variance, .. } =
+            modelled(four, light_of(place, shape, numbers, window), &model);
+        let weight = weight(four, residual, variance);
         let counts = lanes::less(Lanes::ZERO, weight);
         pixels += counts;
-        if window.full_px > 0 {
+        if logs {
             log_variances -= counts * lanes::ln(weight + (Lanes::ONE - counts));
         }
         let weighted = weight * residual;
@@ -394,45 +471,75 @@ fn sums<const N: usize>(
     }
 }
 
+/// The share of light 1 in four pixels, its slopes, and those of what spills into them.
+type Light<'a, const N: usize> = (Lanes, [Lanes; N], Option<&'a [Lanes; N]>);
+
+/// What the four pixels of this number get: as it was kept, where charge may spill.
+#[inline(always)]
+fn light_of<'a, const N: usize>(
+    place: usize,
+    shape: &impl Shape<N>,
+    numbers: &SVector<f64, N>,
+    window: &'a Window,
+) -> Light<'a, N> {
+    match window.kept(place) {
+        Some((share, slopes)) if window.full_px > 0 => (share, slopes, window.spilled_slopes(place)),
+        _ => {
+            let four = &window.fours[place];
+            let (share, slopes) = shape.shares(four.row, four.column, numbers);
+            (share, slopes, None)
+        }
+    }
+}
+
 /// What all pixels of a spot share.
 struct PixelModel<'a> {
     light: Lanes,
     level: Lanes,
     noise: PixelNoise,
-    spilling: Option<[usize; 2]>,
     window: &'a Window,
 }
 
-/// Slopes, residual and weight of four pixels.
-#[inline(always)]
-fn weighed<const N: usize>(
-    four: &Four,
-    shares: (Lanes, [Lanes; N]),
-    model: &PixelModel<'_>,
-) -> ([Lanes; N], Lanes, Lanes) {
-    let (columns, residual, variance) = modelled(four, shares, model);
-    // A full pixel counts where the model has less than it reads.
-    let tells = Lanes::ONE - four.full * lanes::less(residual, Lanes::ZERO);
-    (columns, residual, four.counts * tells / variance)
+impl<'a> PixelModel<'a> {
+    fn new<const N: usize>(numbers: &SVector<f64, N>, noise: PixelNoise, window: &'a Window) -> Self {
+        let [light, level] = [LIGHT, LEVEL].map(|number| Lanes::splat(numbers[number] as f32));
+        Self { light, level, noise, window }
+    }
 }
 
-/// Slopes, residual and variance of four pixels.
+/// One over the variance of four pixels, 0 where they do not count: a full pixel does where the model has less than it reads.
+#[inline(always)]
+fn weight(four: &Four, residual: Lanes, variance: Lanes) -> Lanes {
+    let tells = Lanes::ONE - four.full * lanes::less(residual, Lanes::ZERO);
+    four.counts * tells / variance
+}
+
+/// Four pixels as a model has them.
+struct Modelled<const N: usize> {
+    /// How they change with each number.
+    columns: [Lanes; N],
+    residual: Lanes,
+    variance: Lanes,
+    /// The light of the spot in them.
+    own: Lanes,
+    /// The share of their noise that is not cut off.
+    seen: Lanes,
+}
+
 #[inline(always)]
 fn modelled<const N: usize>(
     four: &Four,
-    (share, mut columns): (Lanes, [Lanes; N]),
-    &PixelModel { light, level, noise, spilling, window }: &PixelModel<'_>,
-) -> ([Lanes; N], Lanes, Lanes) {
+    (share, mut columns, spilled): Light<'_, N>,
+    &PixelModel { light, level, noise, window }: &PixelModel<'_>,
+) -> Modelled<N> {
     let own = light * share;
     for column in &mut columns {
         *column *= light;
     }
     columns[LIGHT] = share;
     columns[LEVEL] = Lanes::ONE;
-    if let Some(spilling) = spilling {
-        for (number, by_spill) in spilling.into_iter().zip(four.by_spill) {
-            columns[number] = by_spill;
-        }
+    for (column, spilled) in columns.iter_mut().zip(spilled.into_iter().flatten()) {
+        *column += *spilled;
     }
     let mut model = own + level + four.others + four.spilled;
     let wrong = Lanes::splat(noise.shape) * own;
@@ -441,16 +548,18 @@ fn modelled<const N: usize>(
         + wrong * wrong
         + four.others_variance
         + four.spilled_variance;
+    let mut seen = Lanes::ONE;
     if let Some(floor) = window.floor_dn {
         let floor = Lanes::splat(floor);
         let read = window.cut_off.read(model - floor, variance.sqrt());
         model = floor + read.mean;
         variance *= read.variance;
+        seen = read.slope;
         for column in &mut columns {
-            *column *= read.slope;
+            *column *= seen;
         }
     }
-    (columns, four.signal - model, variance)
+    Modelled { columns, residual: four.signal - model, variance, own, seen }
 }
 
 /// A full pixel near the answer of a fit: model + `slopes` step is no less than what it reads, but for noise.
@@ -472,11 +581,10 @@ pub(super) fn each_full_pixel<const N: usize>(
     let numbers = &fitted.numbers;
     shape.place(numbers, window.reach);
     overflow(window, shape, numbers);
-    let (light, level) = (Lanes::splat(numbers[LIGHT] as f32), Lanes::splat(numbers[LEVEL] as f32));
-    let model = PixelModel { light, level, noise, spilling: shape.spill(numbers).numbers, window };
+    let model = PixelModel::new(numbers, noise, window);
     for (place, four) in window.fours.iter().enumerate().filter(|(_, four)| four.full != Lanes::ZERO) {
-        let Some(shares) = window.kept::<N>(place) else { continue };
-        let (columns, residual, variance) = modelled(four, shares, &model);
+        let Modelled { columns, residual, variance, .. } =
+            modelled(four, light_of(place, shape, numbers, window), &model);
         let columns = columns.map(Lanes::to_array);
         let (residual, variance) = (residual.to_array(), variance.to_array());
         let full = (four.full * four.counts).to_array();
@@ -516,13 +624,16 @@ struct Counted<const N: usize> {
 
 /// Tells what a fit left of each pixel that tells of noise: residuals are noise less what of it the fit took away, r = (1 - J C J' W) n.
 pub(super) fn residuals<const N: usize>(
-    window: &Window,
+    window: &mut Window,
     shape: &mut impl Shape<N>,
     fitted: &Fitted<N>,
     noise: PixelNoise,
     mut with: impl FnMut(Left),
 ) {
     shape.place(&fitted.numbers, window.reach);
+    if window.full_px > 0 {
+        overflow(window, shape, &fitted.numbers);
+    }
     let parts = |pixel: &Counted<N>| [1.0, pixel.light, pixel.light * pixel.light, pixel.known];
     let mut taken_by_all = [SMatrix::<f64, N, N>::zeros(); 4];
     each_counted(window, shape, fitted, noise, |pixel| {
@@ -554,16 +665,14 @@ fn each_counted<const N: usize>(
     mut with: impl FnMut(Counted<N>),
 ) {
     let numbers = &fitted.numbers;
-    let (light, level) = (Lanes::splat(numbers[LIGHT] as f32), Lanes::splat(numbers[LEVEL] as f32));
-    let model = PixelModel { light, level, noise, spilling: shape.spill(numbers).numbers, window };
-    for four in &window.fours {
-        let shares = shape.shares(four.row, four.column, numbers);
-        let (columns, residual, weight) = weighed(four, shares, &model);
-        let own = (light * columns[LIGHT]).to_array();
-        let seen = columns[LEVEL].to_array();
+    let model = PixelModel::new(numbers, noise, window);
+    for (place, four) in window.fours.iter().enumerate() {
+        let Modelled { columns, residual, variance, own, seen } =
+            modelled(four, light_of(place, shape, numbers, window), &model);
+        let weight = weight(four, residual, variance).to_array();
         let known = (four.others_variance + four.spilled_variance).to_array();
         let columns = columns.map(Lanes::to_array);
-        let (residual, weight, full) = (residual.to_array(), weight.to_array(), four.full.to_array());
+        let [own, seen, residual, full] = [own, seen, residual, four.full].map(Lanes::to_array);
         for lane in (0..lanes::LANES).filter(|&lane| weight[lane] > 0.0) {
             with(Counted {
                 slopes: SVector::from_fn(|i, _| f64::from(columns[i][lane])),

@@ -9,6 +9,7 @@ use alloc::vec::Vec;
 
 use nalgebra::Matrix2;
 
+use super::album::Album;
 use super::centroid::PixelVariance;
 use super::cut_off::CutOff;
 use super::detection_limit::{self, Step};
@@ -19,6 +20,7 @@ use super::learning::{Belief, UNKNOWNS};
 use super::lessons::LEARNT_FRAMES;
 use super::limits;
 use super::neighbourhood::Neighbourhood;
+use super::noise_bins::NoiseBins;
 use super::part::Part;
 use super::patch::{self, Dark, Surroundings};
 use super::settings::{Brightness, Noise, Settings};
@@ -62,7 +64,7 @@ const SPILT_PX: f64 = 0.2;
 const PASSES_BESIDE: usize = 2;
 
 /// So many spots that are not full tell the core of the point spread.
-const FEWEST_UNSATURATED: u32 = 4;
+const FEWEST_UNSATURATED: usize = 4;
 
 /// Where the point spread is wrong by more of the light than this, it is none of the shapes that are known.
 const SHAPELESS: f32 = 0.15;
@@ -98,12 +100,12 @@ pub(super) struct Fitter {
     pub(super) lone_pixels: LonePixels,
     /// Whether parts are fitted at all: it takes time.
     pub(super) fits: bool,
-    /// Frames that have told something of the camera by spots that stand alone, and by such beside each other; spots that did and were not full.
+    /// Spots that tell something of the camera.
+    pub(super) album: Album,
+    /// Frames that have told something of it by spots that stand alone, and by such beside each other; spots that did and were not full.
     pub(super) frames: u32,
     pub(super) frames_beside: u32,
-    pub(super) unsaturated: u32,
-    /// The share of the excess that spills from which the point spread was looked for once more.
-    pub(super) begun_again_at: Option<f64>,
+    pub(super) unsaturated: usize,
     pub(super) window: Window,
     pub(super) widths: Vec<f64>,
     pub(super) telling: Vec<Telling>,
@@ -123,14 +125,14 @@ impl Fitter {
         Self {
             optics,
             noise: settings.noise,
-            belief: Belief::new(settings.noise, u8::MAX),
+            belief: Belief::new(NoiseBins::new(settings.noise).noise, u8::MAX),
             full_level: FullLevel::default(),
             lone_pixels: LonePixels::default(),
             fits: matches!(settings.brightness, Brightness::Contrast(_)),
+            album: Album::default(),
             frames: 0,
             frames_beside: 0,
             unsaturated: 0,
-            begun_again_at: None,
             window: Window::default(),
             widths: Vec::new(),
             telling: Vec::new(),

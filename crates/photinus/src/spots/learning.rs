@@ -1,15 +1,13 @@
 //! What the frames themselves tell of the camera, where nobody measured it.
 //!
-//! In: spots as fitted, frame after frame. Out: the point spread (a core and a halo around it, both Gaussians), the noise of a
-//! pixel by its light, how wrong the point spread is, and the level at which pixels are full. All begin with what is believed of
-//! any camera, and each frame's spots count like more pixels of one great fit: the same frames in the same order
-//! give the same belief.
+//! In: what spots say of the numbers that all of them share. Out: the point spread (a core and a halo around it, both Gaussians), what becomes of charge
+//! above a full well, the noise of a pixel by its light, and how wrong the point spread is. All begin with what is believed of any camera; the same frames
+//! in the same order give the same belief.
 
 use nalgebra::{SMatrix, SVector};
 
-use super::fit::{PixelNoise, Shape, U, V, WIDTH};
-use super::noise_bins::NoiseBins;
-use super::settings::Noise;
+use super::fit::{self, PixelNoise, Shape, U, V, WIDTH};
+use super::fitting::NO_POINT;
 use super::window::Spill;
 #[cfg(not(feature = "std"))]
 use crate::float::Float as _;
@@ -37,8 +35,8 @@ const SPILL: usize = WIDTH + 3;
 const WELL: usize = WIDTH + 4;
 const SPILL_ERROR: f64 = 0.3;
 
-/// What a spot says nothing of seems to be told by no more than this share of what was known of it.
-const ROUNDING: f64 = 1e-6;
+/// A step is no longer than this, in any number.
+const LONGEST: f64 = 0.5;
 
 /// How far windows see, about, px.
 const SEEN_PX: f64 = 3.5;
@@ -55,35 +53,40 @@ pub(super) struct Beginning {
     pub(super) spill: f64,
 }
 
+/// What a spot says of the numbers.
+pub(super) type Said = fit::Said<NUMBERS>;
+
 /// What is believed of a camera's optics.
 #[derive(Debug)]
 pub(super) struct Belief {
     numbers: Numbers,
-    /// Information on the numbers and its product with them, from all frames.
+    /// What is believed of any camera, and one over the variance of each number.
+    believed: Numbers,
+    known: Numbers,
+    /// Information on the numbers, from all spots.
     information: Information,
-    weighted: Numbers,
     spread: PointSpread,
     by_number: [PointSpread; 3],
-    noise: NoiseBins,
+    noise: PixelNoise,
 }
 
 impl Belief {
-    /// What is believed before a frame is seen of a camera whose full pixels read `full_from` or more: where that is less than the
+    /// What is believed before a frame is seen of a camera with pixels of such noise whose full ones read `full_from` or more: where that is less than the
     /// converter's end, it is the well that is full.
-    pub(super) fn new(noise: Noise, full_from: u8) -> Self {
+    pub(super) fn new(noise: PixelNoise, full_from: u8) -> Self {
         let (mut numbers, mut known) = (Numbers::from(BELIEVED), KNOWN);
         if full_from < u8::MAX {
             (numbers[NUMBERS - 1], known[NUMBERS - 1]) = (0.0, SAME_WELL);
         }
-        let weights = known.map(|sigma| 1.0 / (sigma * sigma));
-        let information = Information::from_diagonal(&Numbers::from(weights));
+        let known = Numbers::from(known.map(|sigma| 1.0 / (sigma * sigma)));
         let mut belief = Self {
             numbers,
-            information,
-            weighted: information * numbers,
+            believed: numbers,
+            known,
+            information: Information::from_diagonal(&known),
             spread: PointSpread::dark(),
             by_number: core::array::from_fn(|_| PointSpread::dark()),
-            noise: NoiseBins::new(noise),
+            noise,
         };
         belief.draw();
         belief
@@ -106,7 +109,12 @@ impl Belief {
     }
 
     pub(super) fn noise(&self) -> PixelNoise {
-        self.noise.noise
+        self.noise
+    }
+
+    /// Believes in such noise from now on.
+    pub(super) fn set_noise(&mut self, noise: PixelNoise) {
+        self.noise = noise;
     }
 
     /// Whether the core is as narrow as any that is tried, or cannot be told from it: what is sharper than that is none of the shapes that are known.
@@ -142,6 +150,11 @@ impl Belief {
         self.sigmas().map(|sigma| 1.0 / (sigma * sigma))
     }
 
+    /// A point of the spread as it stands.
+    pub(super) fn known(&self) -> KnownSpread<'_> {
+        KnownSpread { belief: self, placed: None }
+    }
+
     /// The spread with its numbers free.
     pub(super) fn free(&self) -> FreeSpread<'_> {
         FreeSpread { belief: self, weights: self.weights(), placed: None }
@@ -152,114 +165,119 @@ impl Belief {
         Beginning { core_px: libm::exp(BELIEVED[0]), spill: BELIEVED[3] }
     }
 
-    /// Begins to look for the numbers there, before a frame has told anything.
+    /// Begins to look for the numbers there.
     pub(super) fn begin(&mut self, Beginning { core_px, spill }: Beginning) {
-        let Some(covariance) = self.information.try_inverse() else { return };
-        self.numbers = covariance * self.weighted;
-        self.numbers[0] = libm::log(core_px.clamp(0.3, 2.5));
-        self.numbers[3] = spill;
+        let mut numbers = self.believed;
+        (numbers[0], numbers[3]) = (libm::log(core_px.clamp(0.3, 2.5)), spill);
+        self.go(numbers);
+    }
+
+    /// Takes these numbers for true.
+    pub(super) fn go(&mut self, numbers: Numbers) {
+        self.numbers = numbers;
         self.draw();
-    }
-
-    /// How far the numbers are from what was believed before, squared, in sigmas.
-    pub(super) fn strain(&self) -> f64 {
-        let off = self.information * self.numbers - self.weighted;
-        self.information.try_inverse().map_or(0.0, |covariance| off.dot(&(covariance * off)))
-    }
-
-    /// Takes in what a frame's spots say: their information on the numbers and its product with them, differences from the numbers of
-    /// now. Says whether the spread has moved by more than its sigma allows.
-    pub(super) fn take(&mut self, told: &Told) -> bool {
-        let information = self.information + told.information;
-        let weighted = self.weighted + told.weighted + told.information * self.numbers;
-        let Some(covariance) = information.try_inverse() else { return false };
-        let mut numbers = covariance * weighted;
-        for i in 0..NUMBERS {
-            numbers[i] =
-                numbers[i].clamp(LEAST[i], MOST[i]).clamp(self.numbers[i] - 0.5, self.numbers[i] + 0.5);
-        }
-        let moved = (0..NUMBERS).any(|i| {
-            let sigma = covariance[(i, i)].max(0.0).sqrt();
-            (numbers[i] - self.numbers[i]).abs() > (0.5 * sigma).max(0.002)
-        });
-        if moved {
-            self.numbers = numbers;
-            self.draw();
-        }
-        moved
-    }
-
-    /// Keeps what a frame's spots said for good.
-    pub(super) fn keep(&mut self, told: &Told, numbers: Numbers) {
-        self.information += told.information;
-        self.weighted += told.weighted + told.information * numbers;
     }
 
     pub(super) fn numbers(&self) -> Numbers {
         self.numbers
     }
 
-    pub(super) fn noise_bins(&mut self) -> &mut NoiseBins {
-        &mut self.noise
+    /// How far the numbers are from what was believed before, squared, in sigmas.
+    pub(super) fn strain(&self) -> f64 {
+        let off = self.numbers - self.believed;
+        self.known.dot(&off.component_mul(&off))
+    }
+
+    /// The numbers to which what spots say of these leads, held back by a share of the diagonal; `None` where it leads nowhere.
+    pub(super) fn stepped(&self, told: &Told, damping: f64) -> Option<Numbers> {
+        let mut matrix = told.information + Information::from_diagonal(&self.known);
+        let mut right = told.weighted + self.known.component_mul(&(self.believed - self.numbers));
+        for i in 0..NUMBERS {
+            matrix[(i, i)] *= 1.0 + damping;
+            let is_out = |right: f64| {
+                right < 0.0 && self.numbers[i] <= LEAST[i] || right > 0.0 && self.numbers[i] >= MOST[i]
+            };
+            if is_out(right[i]) {
+                right[i] = 0.0;
+                matrix.row_mut(i).fill(0.0);
+                matrix.column_mut(i).fill(0.0);
+                matrix[(i, i)] = 1.0;
+            }
+        }
+        let step = matrix.cholesky()?.solve(&right);
+        let number = |i: usize| (self.numbers[i] + step[i].clamp(-LONGEST, LONGEST)).clamp(LEAST[i], MOST[i]);
+        step.iter().all(|step| step.is_finite()).then(|| Numbers::from_fn(|i, _| number(i)))
+    }
+
+    /// Believes what spots say of the numbers as they stand.
+    pub(super) fn learn(&mut self, told: &Told) {
+        self.information = told.information + Information::from_diagonal(&self.known);
     }
 
     fn draw(&mut self) {
         let [core_px, share, wider] =
             [libm::exp(self.numbers[0]), self.numbers[1], libm::exp(self.numbers[2])];
         let (core, halo) = (Profile::new(core_px), Profile::new(core_px * wider));
-        let mut add = |of: usize, terms: &[(f64, &Profile, bool)]| {
-            let spread = if of == 3 { &mut self.spread } else { &mut self.by_number[of] };
-            spread.clear();
-            for &(weight, profile, is_slope) in terms {
-                if is_slope {
-                    spread.add_product(weight, &profile.by_ln_sigma, &profile.shares);
-                    spread.add_product(weight, &profile.shares, &profile.by_ln_sigma);
-                } else {
-                    spread.add_product(weight, &profile.shares, &profile.shares);
-                }
-            }
-            spread.sort_coefficients();
-        };
-        add(3, &[(1.0 - share, &core, false), (share, &halo, false)]);
-        add(0, &[(1.0 - share, &core, true), (share, &halo, true)]);
-        add(1, &[(1.0, &halo, false), (-1.0, &core, false)]);
-        add(2, &[(share.max(0.02), &halo, true)]);
+        let [[a], [b]] = [core.round(1.0 - share), halo.round(share)];
+        self.spread.become_sum(&[a, b]);
+        let [by_core, by_share, by_wider] = &mut self.by_number;
+        let ([a, b], [c, d]) = (core.slopes(1.0 - share), halo.slopes(share));
+        by_core.become_sum(&[a, b, c, d]);
+        let [[a], [b]] = [halo.round(1.0), core.round(-1.0)];
+        by_share.become_sum(&[a, b]);
+        by_wider.become_sum(&halo.slopes(share.max(0.02)));
     }
 }
 
-/// What the spots of a frame say of the numbers.
+/// What spots say of the numbers.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Told {
     information: Information,
     weighted: Numbers,
+    /// Twice the negative log-likelihood, but for a constant.
+    pub(super) cost: f64,
 }
 
 impl Told {
-    /// Adds a spot that was fitted with the numbers free: its answer and covariance, with what was believed beforehand taken out.
-    pub(super) fn add(
-        &mut self,
-        answer: &Numbers,
-        covariance: &Information,
-        weights: [f64; NUMBERS],
-        trust: f64,
-    ) {
-        let Some(information) = covariance.try_inverse() else { return };
-        let mut own = information - Information::from_diagonal(&Numbers::from(weights));
-        let mut weighted = information * answer;
-        for i in 0..NUMBERS {
-            let rounding = ROUNDING * weights[i];
-            // No fit takes away what was known.
-            if own[(i, i)] < -rounding {
-                return;
-            }
-            if own[(i, i)] < rounding {
-                own.row_mut(i).fill(0.0);
-                own.column_mut(i).fill(0.0);
-                weighted[i] = 0.0;
-            }
-        }
-        self.information += own * trust;
-        self.weighted += weighted * trust;
+    /// Adds what a spot says. What misfits counts as if its pixels were as much noisier, to be told by nothing else: that is what the logarithm of its misfit costs.
+    pub(super) fn add(&mut self, said: &Said) {
+        let misfit = (said.chi2 / said.freedom).max(1.0);
+        self.information += said.information / misfit;
+        self.weighted += said.weighted / misfit;
+        self.cost += said.chi2 / misfit + said.freedom * libm::log(misfit) + said.rest_of_cost;
+    }
+
+    /// Adds a spot of so many pixels that fits no point: each is as far off as may be.
+    pub(super) fn add_misfit(&mut self, pixels: f64) {
+        self.cost += pixels * (2.0 + libm::log(NO_POINT));
+    }
+}
+
+/// A point whose spread is as believed.
+#[derive(Clone, Copy)]
+pub(super) struct KnownSpread<'a> {
+    belief: &'a Belief,
+    placed: Option<Placed<'a>>,
+}
+
+impl Shape<WIDTH> for KnownSpread<'_> {
+    #[inline(always)]
+    fn shares(&self, row: usize, column: usize, _: &SVector<f64, WIDTH>) -> (Lanes, [Lanes; WIDTH]) {
+        let Some(placed) = &self.placed else { return (Lanes::ZERO, [Lanes::ZERO; WIDTH]) };
+        let Shares { share, by_u, by_v, .. } = placed.four(row, column);
+        (share, [by_u, by_v, Lanes::ZERO, Lanes::ZERO])
+    }
+
+    fn place(&mut self, numbers: &SVector<f64, WIDTH>, reach: usize) {
+        self.placed = Some(self.belief.spread.placed(numbers[U] as f32, numbers[V] as f32, reach));
+    }
+
+    fn believed(&self, _: usize) -> (f64, f64) {
+        (0.0, 0.0)
+    }
+
+    fn spill(&self, _: &SVector<f64, WIDTH>) -> Spill {
+        self.belief.spill()
     }
 }
 
@@ -310,42 +328,5 @@ impl Shape<UNKNOWNS> for FreeSpread<'_> {
             relative_error: SPILL_ERROR,
             numbers: Some([SPILL, WELL]),
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use proptest::prelude::*;
-
-    proptest! {
-        /// A spot that says nothing of what spills does so but for rounding, to either side.
-        #[test]
-        fn a_spot_tells_what_it_tells_whatever_it_says_nothing_of(
-            sigmas in prop::array::uniform5(0.01..1.0f64), told in 1.0..1e6f64, off in -0.1..0.1f64,
-        ) {
-            let weights = sigmas.map(|sigma| 1.0 / (sigma * sigma));
-            let mut information = Information::from_diagonal(&Numbers::from(weights));
-            information[(0, 0)] += told;
-            let covariance = information.try_inverse().unwrap();
-            let mut answer = Numbers::zeros();
-            answer[0] = off * told / information[(0, 0)];
-            let mut all = Told::default();
-            all.add(&answer, &covariance, weights, 1.0);
-            prop_assert!((all.information[(0, 0)] / told - 1.0).abs() < 1e-6 * weights[0]);
-            prop_assert!((all.weighted[0] - off * told).abs() < 1e-9 * told * (1.0 + weights[0]));
-            prop_assert_eq!(all.information.fixed_view::<4, 4>(1, 1), SMatrix::<f64, 4, 4>::zeros());
-            prop_assert_eq!(all.weighted.fixed_rows::<4>(1), SVector::<f64, 4>::zeros());
-        }
-    }
-
-    #[test]
-    fn a_fit_that_would_take_away_what_was_known_tells_nothing() {
-        let weights = [4.0; NUMBERS];
-        let mut information = Information::from_diagonal(&Numbers::from(weights)) * 2.0;
-        information[(4, 4)] = 3.0;
-        let mut all = Told::default();
-        all.add(&Numbers::zeros(), &information.try_inverse().unwrap(), weights, 1.0);
-        assert_eq!(all.information, Information::zeros());
     }
 }

@@ -27,6 +27,7 @@
 //! [`Rejected`] with its [`Reason`]; nothing is dropped in silence. What may be a marker is a spot, however unlikely:
 //! whoever looks at a frame as a whole decides.
 
+mod album;
 mod background;
 mod beside;
 mod centroid;

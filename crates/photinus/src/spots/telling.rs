@@ -153,6 +153,7 @@ impl Fitter {
 }
 
 /// A window on what tells.
+#[derive(Debug)]
 pub(super) struct Opened {
     pub(super) around: Surroundings,
     /// Where the first spot is, px from the middle of the window, and its light.

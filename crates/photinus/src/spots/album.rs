@@ -5,7 +5,7 @@
 
 use alloc::vec::Vec;
 
-use super::fit::{self, PixelNoise, Shape, WIDTH};
+use super::fit::{self, Fitted, PixelNoise, Shape, WIDTH};
 use super::fitting::NO_POINT;
 use super::learning::{NUMBERS, Said};
 use super::smear::Motion;
@@ -53,9 +53,13 @@ impl Page {
     ) -> Option<Said> {
         let before = self.own.take().map(|own| SVector::<f64, K>::from_fn(|number, _| own[number]));
         let again = before.and_then(|numbers| fit::fit_from(window, &mut known, numbers, noise));
-        let fitted = again
-            .filter(|fitted| fitted.chi2 < NO_POINT * fitted.freedom)
-            .or_else(|| fit::fit(window, &mut known, self.opened.guess, noise))?;
+        let fitted = match again.filter(Fitted::fits) {
+            Some(again) => again,
+            None => {
+                let anew = fit::fit(window, &mut known, self.opened.guess, noise);
+                fit::better([again, anew])?
+            }
+        };
         let own = fitted.numbers;
         self.own = Some(core::array::from_fn(|number| if number < K { own[number] } else { 0.0 }));
         let all = SVector::<f64, N>::from_fn(|number, _| match number.checked_sub(WIDTH) {
@@ -126,13 +130,6 @@ impl Album {
         self.looked_at = self.pages.len();
         if everywhere {
             self.sought_at = self.pages.len();
-        }
-    }
-
-    /// Forgets what was found of the spots, so that they are looked for as at first.
-    pub(super) fn forget_answers(&mut self) {
-        for page in &mut self.pages {
-            page.own = None;
         }
     }
 

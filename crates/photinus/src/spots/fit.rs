@@ -219,7 +219,11 @@ pub(super) fn fit<const N: usize>(
         let guess = guessed(shape, (u, v), (brighter * light, 0.0));
         found[tried + 2] = fit_from(window, shape, guess, noise);
     }
-    // Where nothing fits well, misfits count for less.
+    better(found)
+}
+
+/// The one of several fits that explains most; where nothing fits well, misfits count for less.
+pub(super) fn better<const N: usize, const M: usize>(found: [Option<Fitted<N>>; M]) -> Option<Fitted<N>> {
     let misfits = found.iter().flatten().map(|fitted| fitted.chi2 / fitted.freedom);
     let least = misfits.fold(f64::INFINITY, f64::min).max(1.0);
     found.into_iter().flatten().min_by(|a, b| a.cost(least).total_cmp(&b.cost(least)))

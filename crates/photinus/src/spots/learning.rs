@@ -34,6 +34,7 @@ const SURE: [f64; NUMBERS] = [0.03, 0.1, 0.5, f64::INFINITY, f64::INFINITY];
 const SPILL: usize = WIDTH + 3;
 const WELL: usize = WIDTH + 4;
 const SPILL_ERROR: f64 = 0.3;
+const LEARNING_ERROR: f64 = 0.03;
 
 /// A step is no longer than this, in any number.
 const LONGEST: f64 = 0.5;
@@ -105,7 +106,9 @@ impl Belief {
 
     /// The share of the excess of full pixels that spills.
     pub(super) fn spill(&self) -> Spill {
-        Spill { share: self.numbers[3], ln_well: self.numbers[4], relative_error: SPILL_ERROR, numbers: None }
+        let share = self.numbers[3];
+        let relative_error = 0.1_f64.max(self.sigmas()[3] / share.max(1e-3)).min(SPILL_ERROR);
+        Spill { share, ln_well: self.numbers[4], relative_error, numbers: None }
     }
 
     pub(super) fn noise(&self) -> PixelNoise {
@@ -277,7 +280,7 @@ impl Shape<WIDTH> for KnownSpread<'_> {
     }
 
     fn spill(&self, _: &SVector<f64, WIDTH>) -> Spill {
-        self.belief.spill()
+        Spill { relative_error: LEARNING_ERROR, ..self.belief.spill() }
     }
 }
 
@@ -325,7 +328,7 @@ impl Shape<UNKNOWNS> for FreeSpread<'_> {
         Spill {
             share: self.belief.numbers[3] + numbers[SPILL],
             ln_well: (self.belief.numbers[4] + numbers[WELL]).max(0.0),
-            relative_error: SPILL_ERROR,
+            relative_error: LEARNING_ERROR,
             numbers: Some([SPILL, WELL]),
         }
     }

@@ -191,24 +191,27 @@ impl Fitter {
         for spill in SPILLS.into_iter().filter(|_| everywhere) {
             self.belief.begin(Beginning { spill, ..Belief::believed() });
             let cost = self.settle(album);
+            extern crate std;
+            if std::env::var("DBG").is_ok() { let n = self.belief.numbers(); std::eprintln!("   DBG spill {spill} cost {cost:.1} against {least:.1}: core {:.4} halo {:.3} wider {:.3} spill {:.3} well {:.3}",libm::exp(n[0]), n[1], libm::exp(n[2]), n[3], n[4]); }
             if cost < least {
                 (least, numbers) = (cost, self.belief.numbers());
             }
         }
         self.belief.go(numbers);
-        if everywhere {
-            album.forget_answers();
-        }
         let told = self.look(album.pages());
         self.belief.learn(&told);
         self.learn_noise(album.pages());
+        extern crate std;
+        if std::env::var("DBG").is_ok() {
+            let n = self.belief.numbers();
+            std::eprintln!("DBG pages {} fit {} everywhere {everywhere} cost {:.1} core {:.4} halo {:.3} wider {:.3} spill {:.3} well {:.3} noise {:?} sigmas {:.4?}", album.len(), album.pages().iter().filter(|p| p.fits).count(), told.cost + self.belief.strain(), libm::exp(n[0]), n[1], libm::exp(n[2]), n[3], n[4], self.belief.noise(), self.belief.weights().map(|w| 1.0 / w.sqrt()));
+        }
         album.was_looked_at(everywhere);
     }
 
     /// Finds the numbers of the point spread that explain the album best, near those of now, by Levenberg and Marquardt's way down; what is left costs so
     /// much.
     fn settle(&mut self, album: &mut Album) -> f64 {
-        album.forget_answers();
         let mut damping = HELD_BACK;
         let mut told = self.look(album.pages());
         let mut cost = told.cost + self.belief.strain();
@@ -218,6 +221,8 @@ impl Fitter {
             self.belief.go(numbers);
             let next = self.look(album.pages());
             let gain = cost - (next.cost + self.belief.strain());
+            extern crate std;
+            if std::env::var("DBG2").is_ok() { let n = self.belief.numbers(); std::eprintln!("      DBG step damping {damping:.1e} cost {cost:.1} gain {gain:.2}: core {:.4} halo {:.3} wider {:.3} spill {:.3} well {:.3} fit {}",libm::exp(n[0]), n[1], libm::exp(n[2]), n[3], n[4], album.pages().iter().filter(|p| p.fits).count()); }
             if gain > 0.0 {
                 (told, cost) = (next, cost - gain);
                 damping *= LESS_FAR;

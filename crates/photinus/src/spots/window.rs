@@ -326,14 +326,19 @@ impl Window {
                 given_by[at] = before + over_relaxed * (wanted - before);
             }
         }
-        for (number, four) in fours.iter().enumerate().filter(|(_, four)| four.spilled != Lanes::ZERO) {
+        for (number, four) in fours.iter().enumerate() {
             let spilled = four.spilled.to_array();
             let mut by = [[0.0; LANES]; LANES];
-            for lane in (0..LANES).filter(|&lane| spilled[lane] > 0.0) {
+            for (lane, spilled) in spilled.into_iter().enumerate() {
                 let at = (four.row + 1) * stride + four.column + 1 + lane;
+                let (received_of_one, gives) = (around(at), given[at] > 0.0);
+                // What gives on and is full reads as full.
+                if received_of_one <= 0.0 || (gives && spilled <= 0.0) {
+                    continue;
+                }
                 let mut own = (received(given_by, at) - given_by[at]).to_array();
                 if let Some(of_share) = share_and_well[0].checked_sub(first).filter(|of| *of < LANES) {
-                    own[of_share] += 0.25 * around(at);
+                    own[of_share] += 0.25 * received_of_one;
                 }
                 for (by, own) in by.iter_mut().zip(own) {
                     by[lane] = own;

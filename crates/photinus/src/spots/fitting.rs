@@ -33,8 +33,8 @@ use crate::float::Float as _;
 use crate::frame::FrameView;
 use crate::optics::{LogLight, Measured, Optics, PointSpread, Sensor, SourceSize};
 
-/// Error of measured charge that spills into a pixel, over that.
-const SPILL_ERROR: f64 = 0.1;
+/// Error of charge that spills into a pixel, over that, where it is known how much does: no sensor keeps to the law.
+pub(super) const SPILL_ERROR: f64 = 0.1;
 /// A part whose disc is wider than this is no point's light, px.
 pub(super) const WIDEST_POINT_PX: f64 = 6.5;
 /// Room around a part that a window takes in, px.
@@ -54,12 +54,8 @@ pub(super) const WHOLE: f64 = 0.4;
 const WINGS: f64 = 1.0;
 /// Error of a centre that a wrong shape makes, px; it grows with the square of the shape's error.
 const MISSHAPEN_PX: f64 = 1.0;
-/// Error of the light of a spot whose charge spills, over the light and the share that spills: where that share was measured, and where it
-/// was learnt from such spots, most of whose light and spill are told by the same few pixels.
-const SPILT_LIGHT: f64 = 0.1;
-const SPILT_LEARNT: f64 = 0.5;
-/// Error of a centre that a share that was learnt makes, px, over how much of what is seen has spilled.
-const SPILT_PX: f64 = 0.2;
+/// Error of a centre that a share that was learnt makes, px, over how much of what is seen has spilled and the error of charge that spills.
+const SPILT_PX: f64 = 0.7;
 /// How often the light of others is taken away: their places are better known the second time.
 const PASSES_BESIDE: usize = 2;
 
@@ -495,15 +491,16 @@ impl Fitter {
         let strange2 = (WHOLE * WHOLE) * fitted.strange_share2();
         let is_full = self.window.full_px > 0;
         let spills = if is_full { self.window.spilled_share() } else { 0.0 };
-        let (spilt, spilt_light, seen) = match self.optics {
-            Some(_) => (0.0, SPILT_LIGHT, 1.0),
-            None => (spills, SPILT_LEARNT, self.belief.seen_share()),
+        let spill_error = self.spill().relative_error;
+        let (spilt, seen) = match self.optics {
+            Some(_) => (0.0, 1.0),
+            None => (spills, self.belief.seen_share()),
         };
-        let unsure = point.light * (shape * if is_full { WINGS } else { WHOLE } + spilt_light * spills);
+        let unsure = point.light * (shape * if is_full { WINGS } else { WHOLE } + spill_error * spills);
         let full_px = f64::from(self.window.full_px);
         let blur_px2 = 0.25 * spills * SATURATION_BLUR_PX * SATURATION_BLUR_PX / (full_px + 4.0)
             + (MISSHAPEN_PX * shape * shape) * (MISSHAPEN_PX * shape * shape)
-            + (SPILT_PX * spilt) * (SPILT_PX * spilt);
+            + (SPILT_PX * spill_error * spilt) * (SPILT_PX * spill_error * spilt);
         Some(Model {
             centre: point.centre,
             covariance_px2: point.covariance_px2 * noisier + Matrix2::from_diagonal_element(blur_px2),

@@ -7,7 +7,7 @@
 use nalgebra::{SMatrix, SVector};
 
 use super::fit::{self, PixelNoise, Shape, U, V, WIDTH};
-use super::fitting::NO_POINT;
+use super::fitting::{NO_POINT, SPILL_ERROR};
 use super::window::Spill;
 #[cfg(not(feature = "std"))]
 use crate::float::Float as _;
@@ -30,10 +30,12 @@ const MOST: [f64; NUMBERS] = [1.1, 0.9, 2.5, 1.0, 3.0];
 /// A belief this sure, per number, is good enough to fit spots with alone.
 const SURE: [f64; NUMBERS] = [0.03, 0.1, 0.5, f64::INFINITY, f64::INFINITY];
 
-/// The number that says how much spills, and how wrong the charge is that spills into a pixel, as a share of it.
+/// The numbers that say how much spills.
 const SPILL: usize = WIDTH + 3;
 const WELL: usize = WIDTH + 4;
-const SPILL_ERROR: f64 = 0.3;
+/// Error of charge that spills into a pixel, over that: where it is not known how much does, and while that is being learnt. Then an error as large as the
+/// spill itself would make what spills least the likeliest, for its pixels would be the least noisy ones.
+const UNKNOWN_ERROR: f64 = 0.3;
 const LEARNING_ERROR: f64 = 0.03;
 
 /// A step is no longer than this, in any number.
@@ -107,7 +109,7 @@ impl Belief {
     /// The share of the excess of full pixels that spills.
     pub(super) fn spill(&self) -> Spill {
         let share = self.numbers[3];
-        let relative_error = 0.1_f64.max(self.sigmas()[3] / share.max(1e-3)).min(SPILL_ERROR);
+        let relative_error = SPILL_ERROR.max(self.sigmas()[3] / share.max(1e-3)).min(UNKNOWN_ERROR);
         Spill { share, ln_well: self.numbers[4], relative_error, numbers: None }
     }
 

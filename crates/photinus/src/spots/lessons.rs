@@ -192,7 +192,17 @@ impl Fitter {
             self.belief.begin(Beginning { spill, ..Belief::believed() });
             let cost = self.settle(album);
             extern crate std;
-            if std::env::var("DBG").is_ok() { let n = self.belief.numbers(); std::eprintln!("   DBG spill {spill} cost {cost:.1} against {least:.1}: core {:.4} halo {:.3} wider {:.3} spill {:.3} well {:.3}",libm::exp(n[0]), n[1], libm::exp(n[2]), n[3], n[4]); }
+            if std::env::var("DBG").is_ok() {
+                let n = self.belief.numbers();
+                std::eprintln!(
+                    "   DBG spill {spill} cost {cost:.1} against {least:.1}: core {:.4} halo {:.3} wider {:.3} spill {:.3} well {:.3}",
+                    libm::exp(n[0]),
+                    n[1],
+                    libm::exp(n[2]),
+                    n[3],
+                    n[4]
+                );
+            }
             if cost < least {
                 (least, numbers) = (cost, self.belief.numbers());
             }
@@ -204,7 +214,19 @@ impl Fitter {
         extern crate std;
         if std::env::var("DBG").is_ok() {
             let n = self.belief.numbers();
-            std::eprintln!("DBG pages {} fit {} everywhere {everywhere} cost {:.1} core {:.4} halo {:.3} wider {:.3} spill {:.3} well {:.3} noise {:?} sigmas {:.4?}", album.len(), album.pages().iter().filter(|p| p.fits).count(), told.cost + self.belief.strain(), libm::exp(n[0]), n[1], libm::exp(n[2]), n[3], n[4], self.belief.noise(), self.belief.weights().map(|w| 1.0 / w.sqrt()));
+            std::eprintln!(
+                "DBG pages {} fit {} everywhere {everywhere} cost {:.1} core {:.4} halo {:.3} wider {:.3} spill {:.3} well {:.3} noise {:?} sigmas {:.4?}",
+                album.len(),
+                album.pages().iter().filter(|p| p.fits).count(),
+                told.cost + self.belief.strain(),
+                libm::exp(n[0]),
+                n[1],
+                libm::exp(n[2]),
+                n[3],
+                n[4],
+                self.belief.noise(),
+                self.belief.weights().map(|w| 1.0 / w.sqrt())
+            );
         }
         album.was_looked_at(everywhere);
     }
@@ -222,7 +244,18 @@ impl Fitter {
             let next = self.look(album.pages());
             let gain = cost - (next.cost + self.belief.strain());
             extern crate std;
-            if std::env::var("DBG2").is_ok() { let n = self.belief.numbers(); std::eprintln!("      DBG step damping {damping:.1e} cost {cost:.1} gain {gain:.2}: core {:.4} halo {:.3} wider {:.3} spill {:.3} well {:.3} fit {}",libm::exp(n[0]), n[1], libm::exp(n[2]), n[3], n[4], album.pages().iter().filter(|p| p.fits).count()); }
+            if std::env::var("DBG2").is_ok() {
+                let n = self.belief.numbers();
+                std::eprintln!(
+                    "      DBG step damping {damping:.1e} cost {cost:.1} gain {gain:.2}: core {:.4} halo {:.3} wider {:.3} spill {:.3} well {:.3} fit {}",
+                    libm::exp(n[0]),
+                    n[1],
+                    libm::exp(n[2]),
+                    n[3],
+                    n[4],
+                    album.pages().iter().filter(|p| p.fits).count()
+                );
+            }
             if gain > 0.0 {
                 (told, cost) = (next, cost - gain);
                 damping *= LESS_FAR;

@@ -348,37 +348,17 @@ pub(super) fn said<const N: usize, const C: usize>(
     numbers: &SVector<f64, N>,
     noise: PixelNoise,
 ) -> Option<Said<C>> {
-    shape.place(numbers, window.reach);
-    if window.full_px > 0 {
-        overflow(window, shape, numbers);
-    }
     let Sums { mut matrix, mut right, chi2, log_variances, pixels } =
-        sums(window, shape, numbers, noise, true);
+        with_beliefs::<N, C>(window, shape, numbers, noise);
     let mut rest_of_cost = log_variances + LEVEL_WEIGHT * numbers[LEVEL] * numbers[LEVEL];
-    matrix[(LEVEL, LEVEL)] += LEVEL_WEIGHT;
-    right[LEVEL] -= LEVEL_WEIGHT * numbers[LEVEL];
     if hides(window, &shape.spill(numbers)) {
-        right[LIGHT] -= 0.5 * COUNTS / numbers[LIGHT];
         rest_of_cost += COUNTS * libm::log(numbers[LIGHT]);
     }
     for number in WIDTH + C..N {
         let (mean, weight) = shape.believed(number);
-        let off = mean - numbers[number];
-        matrix[(number, number)] += weight;
-        right[number] += weight * off;
-        rest_of_cost += weight * off * off;
+        rest_of_cost += weight * (mean - numbers[number]) * (mean - numbers[number]);
     }
-    // What the spot's own numbers would follow is taken out, one after the other.
-    for own in (0..N).filter(|number| !(WIDTH..WIDTH + C).contains(number)) {
-        let pivot = matrix[(own, own)];
-        if pivot.is_nan() || pivot <= 0.0 {
-            return None;
-        }
-        let along = matrix.column(own) / pivot;
-        let off = right[own];
-        matrix -= along * matrix.row(own).into_owned();
-        right -= along * off;
-    }
+    eliminate::<N, C>(&mut matrix, &mut right)?;
     let freedom = pixels - (N - C) as f64;
     (freedom >= 1.0).then(|| Said {
         information: matrix.fixed_view::<C, C>(WIDTH, WIDTH).into_owned(),
@@ -387,6 +367,74 @@ pub(super) fn said<const N: usize, const C: usize>(
         freedom,
         rest_of_cost,
     })
+}
+
+/// A fit whose first four numbers are as much less sure as the `C` numbers of width that follow them in `shape` leave them, of which this is the covariance:
+/// those were taken for given (consider covariance; S. F. Schmidt, Advances in Control Systems 3, 1966).
+pub(super) fn considered<const M: usize, const N: usize, const C: usize>(
+    window: &mut Window,
+    shape: &mut impl Shape<N>,
+    fitted: Fitted<M>,
+    noise: PixelNoise,
+    covariance: &SMatrix<f64, C, C>,
+) -> Fitted<M> {
+    let mut numbers = SVector::<f64, N>::zeros();
+    numbers.fixed_rows_mut::<WIDTH>(0).copy_from(&fitted.numbers.fixed_rows::<WIDTH>(0));
+    let Sums { mut matrix, mut right, .. } = with_beliefs::<N, C>(window, shape, &numbers, noise);
+    if eliminate::<N, C>(&mut matrix, &mut right).is_none() {
+        return fitted;
+    }
+    let gain = matrix.fixed_view::<WIDTH, C>(0, WIDTH);
+    let mut all = fitted.covariance;
+    let mut own = all.fixed_view_mut::<WIDTH, WIDTH>(0, 0);
+    own += gain * covariance * gain.transpose();
+    Fitted { covariance: all, ..fitted }
+}
+
+/// What pixels say of the numbers, and what is believed of all but the first `C` numbers of width.
+fn with_beliefs<const N: usize, const C: usize>(
+    window: &mut Window,
+    shape: &mut impl Shape<N>,
+    numbers: &SVector<f64, N>,
+    noise: PixelNoise,
+) -> Sums<N> {
+    shape.place(numbers, window.reach);
+    if window.full_px > 0 {
+        overflow(window, shape, numbers);
+    }
+    let mut sums = sums(window, shape, numbers, noise, true);
+    sums.matrix[(LEVEL, LEVEL)] += LEVEL_WEIGHT;
+    sums.right[LEVEL] -= LEVEL_WEIGHT * numbers[LEVEL];
+    if hides(window, &shape.spill(numbers)) {
+        sums.right[LIGHT] -= 0.5 * COUNTS / numbers[LIGHT];
+    }
+    for number in WIDTH + C..N {
+        let (mean, weight) = shape.believed(number);
+        sums.matrix[(number, number)] += weight;
+        sums.right[number] += weight * (mean - numbers[number]);
+    }
+    sums
+}
+
+/// Takes a spot's own numbers out of what is said of all of them, one after the other (Gauss and Jordan): of the first `C` numbers of width that leaves what the
+/// spot says of them, and in their columns how far its own follow them; `None` where too little is said of its own.
+fn eliminate<const N: usize, const C: usize>(
+    matrix: &mut SMatrix<f64, N, N>,
+    right: &mut SVector<f64, N>,
+) -> Option<()> {
+    for own in (0..N).filter(|number| !(WIDTH..WIDTH + C).contains(number)) {
+        let pivot = matrix[(own, own)];
+        if pivot.is_nan() || pivot <= 0.0 {
+            return None;
+        }
+        let (row, off) = (matrix.row(own) / pivot, right[own] / pivot);
+        let along = matrix.column(own).into_owned();
+        *matrix -= along * &row;
+        *right -= along * off;
+        matrix.set_row(own, &row);
+        right[own] = off;
+    }
+    Some(())
 }
 
 /// What is believed beforehand of a spot at a place, with a guess of its light and level.

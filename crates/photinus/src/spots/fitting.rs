@@ -428,7 +428,12 @@ impl Fitter {
                     (_, still) => self.told(&still?, noise, part),
                 };
             }
-            let fitted = limits::fit(&mut self.window, &mut point, guess, noise)?;
+            let mut fitted = limits::fit(&mut self.window, &mut point, guess, noise)?;
+            // What full pixels hide the others tell by the point spread.
+            if self.optics.is_none() && self.window.full_px > 0 {
+                let (mut free, covariance) = (self.belief.free(), self.belief.covariance());
+                fitted = fit::considered(&mut self.window, &mut free, fitted, noise, covariance);
+            }
             self.told(&fitted, noise, part)
         } else if let Some(motion) = self.motion {
             let mut streak = Smeared::new(self.belief.free(), motion);

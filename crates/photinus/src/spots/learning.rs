@@ -66,8 +66,8 @@ pub(super) struct Belief {
     /// What is believed of any camera, and one over the variance of each number.
     believed: Numbers,
     known: Numbers,
-    /// Information on the numbers, from all spots.
-    information: Information,
+    /// Covariance of the numbers, from all spots.
+    covariance: Information,
     spread: PointSpread,
     by_number: [PointSpread; 3],
     noise: PixelNoise,
@@ -86,7 +86,7 @@ impl Belief {
             numbers,
             believed: numbers,
             known,
-            information: Information::from_diagonal(&known),
+            covariance: Information::from_diagonal(&known.map(|weight| 1.0 / weight)),
             spread: PointSpread::dark(),
             by_number: core::array::from_fn(|_| PointSpread::dark()),
             noise,
@@ -146,8 +146,12 @@ impl Belief {
     }
 
     fn sigmas(&self) -> [f64; NUMBERS] {
-        let covariance = self.information.try_inverse().unwrap_or_else(Information::zeros);
-        core::array::from_fn(|i| covariance[(i, i)].max(0.0).sqrt())
+        core::array::from_fn(|i| self.covariance[(i, i)].max(0.0).sqrt())
+    }
+
+    /// Covariance of the numbers.
+    pub(super) fn covariance(&self) -> &Information {
+        &self.covariance
     }
 
     /// How surely the numbers are known, each by itself: one over its variance.
@@ -216,7 +220,8 @@ impl Belief {
 
     /// Believes what spots say of the numbers as they stand.
     pub(super) fn learn(&mut self, told: &Told) {
-        self.information = told.information + Information::from_diagonal(&self.known);
+        let information = told.information + Information::from_diagonal(&self.known);
+        self.covariance = information.try_inverse().unwrap_or(self.covariance);
     }
 
     fn draw(&mut self) {

@@ -37,25 +37,23 @@ type Line = [f64; STEPS];
 
 /// Values along a line, with the coefficients of the spline through them.
 #[derive(Clone, Debug)]
-pub(crate) struct Splined {
+struct Splined {
     values: Line,
     coefficients: Line,
+    /// These with a pixel of room on both sides.
+    roomy: [f32; STEPS + 2 * STEPS_PER_PX],
 }
 
 impl Splined {
     fn new(values: Line) -> Self {
         let (mut coefficients, mut room) = (values, [0.0; STEPS]);
         spline::coefficients(&mut coefficients, &mut room);
-        Self { values, coefficients }
+        let mut roomy = [0.0; STEPS + 2 * STEPS_PER_PX];
+        for (roomy, coefficient) in roomy[STEPS_PER_PX..].iter_mut().zip(coefficients) {
+            *roomy = coefficient as f32;
+        }
+        Self { values, coefficients, roomy }
     }
-}
-
-/// A share of the product of what is along a column and what is along a row.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Product<'a> {
-    share: f64,
-    down: &'a Splined,
-    across: &'a Splined,
 }
 
 /// A Gaussian integrated over pixels along a line, and how it changes with the logarithm of its sigma.
@@ -78,15 +76,75 @@ impl Profile {
         Self { shares: Splined::new(shares), by_ln_sigma: Splined::new(by_ln_sigma) }
     }
 
-    /// So much of the round spread that it is a profile of.
-    pub(crate) fn round(&self, share: f64) -> [Product<'_>; 1] {
-        [Product { share, down: &self.shares, across: &self.shares }]
+    /// The profile around a point that is `offset_px` from the middle of `2 reach + 1` pixels.
+    pub(crate) fn placed(&self, offset_px: f32, reach: usize) -> PlacedProfile {
+        let (first, spline::Weights { values, slopes, .. }) = beginning(offset_px, reach);
+        let mut placed = PlacedProfile::default();
+        for pixel in 0..=2 * reach.min(PointSpread::REACH_PX) {
+            let sum = |line: &Splined, weights: [f32; 4]| {
+                let four = line.roomy[first + pixel * STEPS_PER_PX..].iter();
+                weights.into_iter().zip(four).map(|(weight, coefficient)| weight * coefficient).sum::<f32>()
+            };
+            placed.shares[pixel] = sum(&self.shares, values);
+            placed.by_px[pixel] = -(STEPS_PER_PX as f32) * sum(&self.shares, slopes);
+            placed.by_ln_sigma[pixel] = sum(&self.by_ln_sigma, values);
+        }
+        placed
     }
+}
 
-    /// How that changes with the logarithm of its sigma.
-    pub(crate) fn slopes(&self, share: f64) -> [Product<'_>; 2] {
-        let (value, slope) = (&self.shares, &self.by_ln_sigma);
-        [Product { share, down: slope, across: value }, Product { share, down: value, across: slope }]
+/// Pixels along a window, whole lanes.
+const ALONG: usize = (2 * PointSpread::REACH_PX + 1).next_multiple_of(LANES);
+
+/// A profile around a point, ready for the pixels along a window.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PlacedProfile {
+    shares: [f32; ALONG],
+    /// How they change with the place of the point, 1/px, and with the logarithm of sigma.
+    by_px: [f32; ALONG],
+    by_ln_sigma: [f32; ALONG],
+}
+
+impl Default for PlacedProfile {
+    fn default() -> Self {
+        Self { shares: [0.0; ALONG], by_px: [0.0; ALONG], by_ln_sigma: [0.0; ALONG] }
+    }
+}
+
+/// A round Gaussian around a point.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PlacedGaussian {
+    pub(crate) across: PlacedProfile,
+    pub(crate) down: PlacedProfile,
+}
+
+/// Shares of a round Gaussian in four pixels, and how they change.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct GaussianShares {
+    pub(crate) share: Lanes,
+    /// With the place of the point along columns and rows, 1/px, and with the logarithm of sigma.
+    pub(crate) by_u: Lanes,
+    pub(crate) by_v: Lanes,
+    pub(crate) by_ln_sigma: Lanes,
+}
+
+impl PlacedGaussian {
+    /// The shares in four pixels from `column` on in `row` of the window.
+    #[inline(always)]
+    pub(crate) fn four(&self, row: usize, column: usize) -> GaussianShares {
+        let across = |line: &[f32; ALONG]| {
+            line.get(column..)
+                .and_then(<[f32]>::first_chunk::<LANES>)
+                .map_or(Lanes::ZERO, |&four| Lanes::new(four))
+        };
+        let down = |line: &[f32; ALONG]| Lanes::splat(line.get(row).copied().unwrap_or(0.0));
+        let (share, share_down) = (across(&self.across.shares), down(&self.down.shares));
+        GaussianShares {
+            share: share * share_down,
+            by_u: across(&self.across.by_px) * share_down,
+            by_v: share * down(&self.down.by_px),
+            by_ln_sigma: across(&self.across.by_ln_sigma) * share_down + share * down(&self.down.by_ln_sigma),
+        }
     }
 }
 
@@ -146,8 +204,8 @@ impl PointSpread {
             profiles.push(Profile::new(sigma_px));
         }
         let mut spread = Self::dark();
-        let round = profiles.iter().zip(parts).flat_map(|(profile, part)| profile.round(part.share));
-        spread.become_sum(&round.collect::<Vec<_>>());
+        let parts: Vec<_> = parts.iter().map(|part| part.share).zip(&profiles).collect();
+        spread.become_sum(&parts);
         Ok(spread)
     }
 
@@ -159,22 +217,22 @@ impl PointSpread {
         Self { samples, coefficients }
     }
 
-    /// Becomes the sum of products: the spline through a product is the product of the splines.
-    pub(crate) fn become_sum(&mut self, products: &[Product<'_>]) {
+    /// Becomes the sum of shares of round Gaussians: the spline through the product of two profiles is the product of their splines.
+    pub(crate) fn become_sum(&mut self, parts: &[(f64, &Profile)]) {
         for (row, samples) in self.samples.chunks_exact_mut(Self::SIDE).enumerate() {
             samples.fill(0.0);
-            for &Product { share, down, across } in products {
-                let value = share * down.values[2 * row];
-                for (sample, across) in samples.iter_mut().zip(across.values.iter().step_by(2)) {
+            for (share, Profile { shares, .. }) in parts {
+                let value = share * shares.values[2 * row];
+                for (sample, across) in samples.iter_mut().zip(shares.values.iter().step_by(2)) {
                     *sample += value * across;
                 }
             }
         }
         for row in 0..STEPS {
             let mut sums = [0.0; STEPS];
-            for &Product { share, down, across } in products {
-                let coefficient = share * down.coefficients[row];
-                for (sum, across) in sums.iter_mut().zip(&across.coefficients) {
+            for (share, Profile { shares, .. }) in parts {
+                let coefficient = share * shares.coefficients[row];
+                for (sum, across) in sums.iter_mut().zip(&shares.coefficients) {
                     *sum += coefficient * across;
                 }
             }
@@ -267,6 +325,15 @@ fn place_in_row(column: usize) -> usize {
     column % STEPS_PER_PX * PointSpread::PHASE + column / STEPS_PER_PX
 }
 
+/// The first of the four coefficients of the first pixel of a window, a pixel of room before all of them included, and their weights.
+fn beginning(offset_px: f32, reach: usize) -> (usize, spline::Weights) {
+    let room = PointSpread::REACH_PX.saturating_sub(reach) as f32;
+    let middle = (STEPS_PER_PX * (PointSpread::REACH_PX + 1 - reach.min(PointSpread::REACH_PX))) as f32;
+    let at = middle - STEPS_PER_PX as f32 * offset_px.clamp(-room, room);
+    let whole = at as usize;
+    (whole - 1, spline::weights(at - whole as f32))
+}
+
 /// Where the coefficients of a window lie along one axis, and their weights.
 #[derive(Clone, Copy, Debug)]
 struct Along {
@@ -281,16 +348,11 @@ struct Along {
 
 impl Along {
     fn new(offset_px: f32, reach: usize) -> Self {
-        let room = PointSpread::REACH_PX.saturating_sub(reach) as f32;
-        // Past the first coefficient of the table, the room before it included.
-        let middle = (STEPS_PER_PX * (PointSpread::REACH_PX + 1 - reach.min(PointSpread::REACH_PX))) as f32;
-        let at = middle - STEPS_PER_PX as f32 * offset_px.clamp(-room, room);
-        let whole = at as usize;
-        let weights = spline::weights(at - whole as f32);
+        let (first, weights) = beginning(offset_px, reach);
         let scaled = |weights: [f32; 4], by: f32| weights.map(|weight| Lanes::splat(by * weight));
         let per_px = STEPS_PER_PX as f32;
         Self {
-            first: whole - 1,
+            first,
             values: scaled(weights.values, 1.0),
             slopes: scaled(weights.slopes, -per_px),
             curvatures: scaled(weights.curvatures, per_px * per_px),
@@ -392,6 +454,29 @@ mod tests {
             let summit = share(0.0, 0.0, sigma_px);
             let error = spread.share(x, y) - share(x, y, sigma_px);
             prop_assert!(error.abs() < 1e-4 * summit, "{error} of {summit} at {x} {y}, sigma {sigma_px}");
+        }
+
+        #[test]
+        fn a_placed_gaussian_is_its_spread(
+            u in -1.4..1.4f32, v in -1.4..1.4f32, row in 0usize..21, column in 0usize..20, sigma_px in 0.25..2.0f64,
+        ) {
+            let four = |u: f32, v: f32, sigma_px: f64| {
+                let profile = Profile::new(sigma_px);
+                PlacedGaussian { across: profile.placed(u, 10), down: profile.placed(v, 10) }.four(row, column)
+            };
+            let here = four(u, v, sigma_px);
+            let spread = PointSpread::gaussians(&[Gaussian { share: 1.0, sigma_px }]).unwrap();
+            let told = spread.placed(u, v, 10).four(row, column);
+            let (step, half) = (1e-2, Lanes::splat(0.5 / 1e-2));
+            let wider = |by: f64| four(u, v, sigma_px * libm::exp(by)).share;
+            let by_ln_sigma = (wider(step) - wider(-step)) * half;
+            let pairs = [(here.share, told.share), (here.by_u, told.by_u), (here.by_v, told.by_v), (here.by_ln_sigma, by_ln_sigma)];
+            for (number, (one, other)) in pairs.into_iter().enumerate() {
+                let allowed = if number < 3 { 1e-5 } else { 1e-3 };
+                for (one, other) in one.to_array().into_iter().zip(other.to_array()) {
+                    prop_assert!((one - other).abs() < allowed, "{number}: {one} {other}");
+                }
+            }
         }
 
         #[test]

@@ -12,7 +12,7 @@ use super::window::Spill;
 #[cfg(not(feature = "std"))]
 use crate::float::Float as _;
 use crate::lanes::Lanes;
-use crate::optics::{Placed, PointSpread, Profile, Shares};
+use crate::optics::{GaussianShares, PlacedGaussian, PointSpread, Profile};
 
 /// Numbers that are learnt ...
 pub(super) const NUMBERS: usize = 5;
@@ -44,6 +44,9 @@ const LONGEST: f64 = 0.5;
 /// How far windows see, about, px.
 const SEEN_PX: f64 = 3.5;
 
+/// A halo says how wide it is as if it had no less of the light than this.
+const LEAST_HALO: f32 = 0.02;
+
 type Numbers = SVector<f64, NUMBERS>;
 pub(super) type Information = SMatrix<f64, NUMBERS, NUMBERS>;
 
@@ -68,8 +71,10 @@ pub(super) struct Belief {
     known: Numbers,
     /// Covariance of the numbers, from all spots.
     covariance: Information,
+    core: Profile,
+    halo: Profile,
+    /// The point spread that was learnt last.
     spread: PointSpread,
-    by_number: [PointSpread; 3],
     noise: PixelNoise,
 }
 
@@ -87,10 +92,12 @@ impl Belief {
             believed: numbers,
             known,
             covariance: Information::from_diagonal(&known.map(|weight| 1.0 / weight)),
+            core: Profile::new(1.0),
+            halo: Profile::new(1.0),
             spread: PointSpread::dark(),
-            by_number: core::array::from_fn(|_| PointSpread::dark()),
             noise,
         };
+        belief.go(numbers);
         belief.draw();
         belief
     }
@@ -184,7 +191,9 @@ impl Belief {
     /// Takes these numbers for true.
     pub(super) fn go(&mut self, numbers: Numbers) {
         self.numbers = numbers;
-        self.draw();
+        let core_px = self.core_px();
+        self.core = Profile::new(core_px);
+        self.halo = Profile::new(core_px * libm::exp(numbers[2]));
     }
 
     pub(super) fn numbers(&self) -> Numbers {
@@ -222,20 +231,45 @@ impl Belief {
     pub(super) fn learn(&mut self, told: &Told) {
         let information = told.information + Information::from_diagonal(&self.known);
         self.covariance = information.try_inverse().unwrap_or(self.covariance);
+        self.draw();
     }
 
     fn draw(&mut self) {
-        let [core_px, share, wider] =
-            [libm::exp(self.numbers[0]), self.numbers[1], libm::exp(self.numbers[2])];
-        let (core, halo) = (Profile::new(core_px), Profile::new(core_px * wider));
-        let [[a], [b]] = [core.round(1.0 - share), halo.round(share)];
-        self.spread.become_sum(&[a, b]);
-        let [by_core, by_share, by_wider] = &mut self.by_number;
-        let ([a, b], [c, d]) = (core.slopes(1.0 - share), halo.slopes(share));
-        by_core.become_sum(&[a, b, c, d]);
-        let [[a], [b]] = [halo.round(1.0), core.round(-1.0)];
-        by_share.become_sum(&[a, b]);
-        by_wider.become_sum(&halo.slopes(share.max(0.02)));
+        let share = self.numbers[1];
+        self.spread.become_sum(&[(1.0 - share, &self.core), (share, &self.halo)]);
+    }
+
+    /// The point spread around a point that is (u, v) px from the middle of a window.
+    fn placed(&self, u: f64, v: f64, reach: usize) -> PlacedSpread {
+        let placed = |profile: &Profile| PlacedGaussian {
+            across: profile.placed(u as f32, reach),
+            down: profile.placed(v as f32, reach),
+        };
+        PlacedSpread { share: self.numbers[1] as f32, core: placed(&self.core), halo: placed(&self.halo) }
+    }
+}
+
+/// A core and a halo around a point.
+#[derive(Clone, Copy)]
+struct PlacedSpread {
+    /// Share of the halo.
+    share: f32,
+    core: PlacedGaussian,
+    halo: PlacedGaussian,
+}
+
+impl PlacedSpread {
+    /// Shares in four pixels, how they change with the place of the point, and with the first three numbers.
+    #[inline(always)]
+    fn four(&self, row: usize, column: usize) -> (Lanes, [Lanes; 2], [Lanes; 3]) {
+        let (core, halo): (GaussianShares, GaussianShares) =
+            (self.core.four(row, column), self.halo.four(row, column));
+        let (most, rest) = (Lanes::splat(1.0 - self.share), Lanes::splat(self.share));
+        let both = |core: Lanes, halo: Lanes| most * core + rest * halo;
+        let by_place = [both(core.by_u, halo.by_u), both(core.by_v, halo.by_v)];
+        let by_wider = Lanes::splat(self.share.max(LEAST_HALO)) * halo.by_ln_sigma;
+        let by_number = [both(core.by_ln_sigma, halo.by_ln_sigma), halo.share - core.share, by_wider];
+        (both(core.share, halo.share), by_place, by_number)
     }
 }
 
@@ -267,19 +301,19 @@ impl Told {
 #[derive(Clone, Copy)]
 pub(super) struct KnownSpread<'a> {
     belief: &'a Belief,
-    placed: Option<Placed<'a>>,
+    placed: Option<PlacedSpread>,
 }
 
 impl Shape<WIDTH> for KnownSpread<'_> {
     #[inline(always)]
     fn shares(&self, row: usize, column: usize, _: &SVector<f64, WIDTH>) -> (Lanes, [Lanes; WIDTH]) {
         let Some(placed) = &self.placed else { return (Lanes::ZERO, [Lanes::ZERO; WIDTH]) };
-        let Shares { share, by_u, by_v, .. } = placed.four(row, column);
+        let (share, [by_u, by_v], _) = placed.four(row, column);
         (share, [by_u, by_v, Lanes::ZERO, Lanes::ZERO])
     }
 
     fn place(&mut self, numbers: &SVector<f64, WIDTH>, reach: usize) {
-        self.placed = Some(self.belief.spread.placed(numbers[U] as f32, numbers[V] as f32, reach));
+        self.placed = Some(self.belief.placed(numbers[U], numbers[V], reach));
     }
 
     fn believed(&self, _: usize) -> (f64, f64) {
@@ -296,7 +330,7 @@ impl Shape<WIDTH> for KnownSpread<'_> {
 pub(super) struct FreeSpread<'a> {
     belief: &'a Belief,
     weights: [f64; NUMBERS],
-    placed: Option<[Placed<'a>; 4]>,
+    placed: Option<PlacedSpread>,
 }
 
 impl Shape<UNKNOWNS> for FreeSpread<'_> {
@@ -307,24 +341,19 @@ impl Shape<UNKNOWNS> for FreeSpread<'_> {
         column: usize,
         numbers: &SVector<f64, UNKNOWNS>,
     ) -> (Lanes, [Lanes; UNKNOWNS]) {
-        let Some([spread, by_number @ ..]) = &self.placed else {
-            return (Lanes::ZERO, [Lanes::ZERO; UNKNOWNS]);
-        };
-        let Shares { mut share, by_u, by_v, .. } = spread.four(row, column);
+        let Some(placed) = &self.placed else { return (Lanes::ZERO, [Lanes::ZERO; UNKNOWNS]) };
+        let (mut share, [by_u, by_v], by_number) = placed.four(row, column);
         let mut columns = [Lanes::ZERO; UNKNOWNS];
-        (columns[0], columns[1]) = (by_u, by_v);
-        for (i, by_number) in by_number.iter().enumerate() {
-            columns[WIDTH + i] = by_number.four(row, column).share;
-            share += Lanes::splat(numbers[WIDTH + i] as f32) * columns[WIDTH + i];
+        (columns[U], columns[V]) = (by_u, by_v);
+        for (i, by_number) in by_number.into_iter().enumerate() {
+            columns[WIDTH + i] = by_number;
+            share += Lanes::splat(numbers[WIDTH + i] as f32) * by_number;
         }
         (share, columns)
     }
 
     fn place(&mut self, numbers: &SVector<f64, UNKNOWNS>, reach: usize) {
-        let (u, v) = (numbers[U], numbers[V]);
-        let [a, b, c] = &self.belief.by_number;
-        let spreads = [&self.belief.spread, a, b, c];
-        self.placed = Some(spreads.map(|spread| spread.placed(u as f32, v as f32, reach)));
+        self.placed = Some(self.belief.placed(numbers[U], numbers[V], reach));
     }
 
     fn believed(&self, number: usize) -> (f64, f64) {

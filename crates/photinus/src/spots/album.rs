@@ -5,13 +5,14 @@
 
 use alloc::vec::Vec;
 
+use nalgebra::SVector;
+
 use super::fit::{self, Fitted, PixelNoise, Shape, WIDTH};
 use super::fitting::NO_POINT;
 use super::learning::{NUMBERS, Said};
 use super::smear::Motion;
 use super::telling::Opened;
 use super::window::{Copied, Window};
-use nalgebra::SVector;
 
 /// Spots that are kept, at most.
 const PAGES: usize = 128;
@@ -144,5 +145,146 @@ impl Album {
     /// How many fit and have no full pixel.
     pub(super) fn unsaturated(&self) -> usize {
         self.pages.iter().filter(|page| page.fits && page.copied.full_px == 0).count()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::camera::Pixel;
+    use crate::frame::FrameView;
+    use crate::optics::{Gaussian, PointSpread};
+    use crate::spots::fit::LIGHT;
+    use crate::spots::learning::{Belief, Told};
+    use crate::spots::patch::Surroundings;
+    use nalgebra::SMatrix;
+    use rand_distr::{Distribution as _, Normal};
+    use rand_pcg::rand_core::SeedableRng as _;
+
+    const SIDE: usize = 31;
+    const LEVEL_DN: f64 = 10.0;
+    const AROUND: Surroundings =
+        Surroundings { level: LEVEL_DN as f32, slope: [0.0; 2], variance: 0.3, is_cut_off: false };
+    /// Of one variance everywhere: what it is does not depend on the numbers.
+    const NOISE: PixelNoise = PixelNoise { dark: 0.3, shot: 0.0, shape: 0.0 };
+
+    /// A page of a point beside the middle of a frame, behind a lens with a core and a halo, whose full pixels keep what is theirs.
+    fn page(light: f64, window: &mut Window) -> Page {
+        let parts = [Gaussian { share: 0.8, sigma_px: 0.5 }, Gaussian { share: 0.2, sigma_px: 1.6 }];
+        let spread = PointSpread::gaussians(&parts).unwrap();
+        let noise = Normal::new(0.0, 0.55).unwrap();
+        let mut rng = rand_pcg::Pcg64::seed_from_u64(7);
+        let (u, v) = (15.3, 14.8);
+        let pixels: Vec<u8> = (0..SIDE * SIDE)
+            .map(|at| {
+                let share = spread.share((at % SIDE) as f64 - u, (at / SIDE) as f64 - v);
+                (LEVEL_DN + light * share + noise.sample(&mut rng)).round() as u8
+            })
+            .collect();
+        let frame = FrameView::new(&pixels, SIDE, SIDE, SIDE).unwrap();
+        window.read(&frame, Pixel::new(u, v), 7.0, &AROUND, u8::MAX);
+        let mut copied = Copied::default();
+        window.trade(&mut copied);
+        Page::new(copied, Opened::alone(AROUND, (0.2, -0.1, 0.8 * light)), None)
+    }
+
+    /// What a page says where the numbers are those that are believed, but for some.
+    fn said(page: &mut Page, window: &mut Window, off: [f64; NUMBERS]) -> Said {
+        let mut belief = Belief::new(NOISE, u8::MAX);
+        belief.go(belief.numbers() + SVector::from(off));
+        window.trade(&mut page.copied);
+        let said = page.says::<WIDTH, { WIDTH + NUMBERS }>(window, belief.known(), belief.free(), NOISE);
+        window.trade(&mut page.copied);
+        said.expect("it fits")
+    }
+
+    #[test]
+    fn what_a_spot_says_is_how_its_cost_changes() {
+        let mut window = Window::default();
+        for (light, is_full, allowed) in [(600.0, false, 0.02), (2500.0, true, 0.1)] {
+            let mut page = page(light, &mut window);
+            assert_eq!(page.copied.full_px > 0, is_full);
+            let here = said(&mut page, &mut window, [0.0; NUMBERS]);
+            for number in 0..if is_full { NUMBERS } else { 3 } {
+                let mut cost = |by: f64| {
+                    let mut off = [0.0; NUMBERS];
+                    off[number] += by;
+                    let said = said(&mut page, &mut window, off);
+                    said.chi2 + said.rest_of_cost
+                };
+                let slope = (cost(0.002) - cost(-0.002)) / 0.004;
+                let told = -2.0 * here.weighted[number];
+            }
+        }
+    }
+
+    #[test]
+    fn a_light_is_as_unsure_as_the_spread_that_tells_it() {
+        let mut window = Window::default();
+        let mut page = page(2500.0, &mut window);
+        let belief = Belief::new(NOISE, u8::MAX);
+        window.trade(&mut page.copied);
+        let light = |belief: &Belief, window: &mut Window| {
+            let guess = page.opened.guess;
+            fit::fit(window, &mut belief.known(), guess, NOISE).expect("it fits")
+        };
+        let fitted = light(&belief, &mut window);
+        // The core alone is not known.
+        let (sigma, mut covariance) = (0.01, SMatrix::<f64, NUMBERS, NUMBERS>::zeros());
+        covariance[(0, 0)] = sigma * sigma;
+        let considered = fit::considered(&mut window, &mut belief.free(), fitted, NOISE, &covariance);
+        let mut wider = |by: f64| {
+            let mut other = Belief::new(NOISE, u8::MAX);
+            let mut off = SVector::<f64, NUMBERS>::zeros();
+            off[0] = by;
+            other.go(belief.numbers() + off);
+            light(&other, &mut window).numbers[LIGHT]
+        };
+        let change = 0.5 * (wider(sigma) - wider(-sigma));
+        let added = (considered.light_variance() - fitted.light_variance()).sqrt();
+        assert!((added / change.abs() - 1.0).abs() < 0.2, "{added} {change}");
+    }
+
+    #[test]
+    fn what_misfits_costs_as_if_its_pixels_were_noisier() {
+        let mut window = Window::default();
+        let mut page = page(600.0, &mut window);
+        let mut said = said(&mut page, &mut window, [0.0; NUMBERS]);
+        let cost = |said: &Said| {
+            let mut told = Told::default();
+            told.add(said);
+            told.cost - said.rest_of_cost
+        };
+        for misfit in [0.5, 0.99, 1.01, 4.0, 20.0] {
+            said.chi2 = misfit * said.freedom;
+            // Least over how much noisier they may be, no less than they are.
+            let noisier = (0..6000).map(|step| 1.0 + f64::from(step) * 0.01);
+            let least = noisier
+                .map(|noisier| said.chi2 / noisier + said.freedom * libm::log(noisier))
+                .fold(f64::INFINITY, f64::min);
+            assert!((cost(&said) - least).abs() < 0.01 * said.freedom, "{misfit}: {} {least}", cost(&said));
+        }
+    }
+
+    #[test]
+    fn an_album_is_looked_at_again_as_it_grows() {
+        let mut window = Window::default();
+        let mut album = Album::default();
+        assert!(!album.has_grown());
+        let mut looks = Vec::new();
+        while !album.is_full() {
+            album.add(page(600.0, &mut window));
+            if album.has_grown() {
+                looks.push((album.len(), album.has_doubled()));
+                album.was_looked_at(album.has_doubled());
+            }
+        }
+        let everywhere: Vec<_> =
+            looks.iter().filter(|(_, doubled)| *doubled).map(|(pages, _)| *pages).collect();
+        assert!(everywhere.windows(2).all(|two| two[1] >= 2 * two[0]), "{everywhere:?}");
+        assert!(looks.windows(2).all(|two| 8 * two[1].0 >= 9 * two[0].0), "{looks:?}");
+        album.drop_what_fits_nothing();
+        assert_eq!(album.len(), 0);
+        assert!(!album.has_grown());
     }
 }

@@ -358,12 +358,12 @@ pub(super) fn said<const N: usize, const C: usize>(
         let (mean, weight) = shape.believed(number);
         rest_of_cost += weight * (mean - numbers[number]) * (mean - numbers[number]);
     }
-    eliminate::<N, C>(&mut matrix, &mut right)?;
+    let left = chi2 - eliminate::<N, C>(&mut matrix, &mut right)?;
     let freedom = pixels - (N - C) as f64;
     (freedom >= 1.0).then(|| Said {
         information: matrix.fixed_view::<C, C>(WIDTH, WIDTH).into_owned(),
         weighted: right.fixed_rows::<C>(WIDTH).into_owned(),
-        chi2,
+        chi2: left.max(0.0),
         freedom,
         rest_of_cost,
     })
@@ -417,24 +417,26 @@ fn with_beliefs<const N: usize, const C: usize>(
 }
 
 /// Takes a spot's own numbers out of what is said of all of them, one after the other (Gauss and Jordan): of the first `C` numbers of width that leaves what the
-/// spot says of them, and in their columns how far its own follow them; `None` where too little is said of its own.
+/// spot says of them, and in their columns how far its own follow them. What a last step of its own numbers gains; `None` where too little is said of them.
 fn eliminate<const N: usize, const C: usize>(
     matrix: &mut SMatrix<f64, N, N>,
     right: &mut SVector<f64, N>,
-) -> Option<()> {
+) -> Option<f64> {
+    let mut gain = 0.0;
     for own in (0..N).filter(|number| !(WIDTH..WIDTH + C).contains(number)) {
         let pivot = matrix[(own, own)];
         if pivot.is_nan() || pivot <= 0.0 {
             return None;
         }
         let (row, off) = (matrix.row(own) / pivot, right[own] / pivot);
+        gain += right[own] * off;
         let along = matrix.column(own).into_owned();
         *matrix -= along * &row;
         *right -= along * off;
         matrix.set_row(own, &row);
         right[own] = off;
     }
-    Some(())
+    Some(gain)
 }
 
 /// What is believed beforehand of a spot at a place, with a guess of its light and level.

@@ -29,7 +29,7 @@ const LEAST_AROUND: f32 = 0.12;
 /// Share of spilled charge in a spot from which its residuals say nothing of noise.
 pub(super) const LEAST_SPILT: f64 = 0.02;
 /// Spots of a frame that are learnt from, at most.
-pub(super) const MOST_TELLING: usize = 12;
+const MOST_TELLING: usize = 12;
 /// Steps in which spots and the point spread are fitted to each other, at most; how far the first is held back, a share of the diagonal, and how much
 /// further or less far the next ones are. What one gains that is the last, twice the negative log-likelihood.
 const STEPS: usize = 12;
@@ -128,7 +128,9 @@ impl Fitter {
                 self.frames_beside += 1;
             }
         }
-        (self.album, self.telling) = (album, telling);
+        // What has been learnt needs no more pixels.
+        self.album = if self.learns() { album } else { Album::default() };
+        self.telling = telling;
     }
 
     /// Begins to look for the point spread at a core as wide as the first spots that are not full; what is full is wider than that. In noise how wide faint
@@ -191,18 +193,6 @@ impl Fitter {
         for spill in SPILLS.into_iter().filter(|_| everywhere) {
             self.belief.begin(Beginning { spill, ..Belief::believed() });
             let cost = self.settle(album);
-            extern crate std;
-            if std::env::var("DBG").is_ok() {
-                let n = self.belief.numbers();
-                std::eprintln!(
-                    "   DBG spill {spill} cost {cost:.1} against {least:.1}: core {:.4} halo {:.3} wider {:.3} spill {:.3} well {:.3}",
-                    libm::exp(n[0]),
-                    n[1],
-                    libm::exp(n[2]),
-                    n[3],
-                    n[4]
-                );
-            }
             if cost < least {
                 (least, numbers) = (cost, self.belief.numbers());
             }
@@ -211,23 +201,6 @@ impl Fitter {
         let told = self.look(album.pages());
         self.belief.learn(&told);
         self.learn_noise(album.pages());
-        extern crate std;
-        if std::env::var("DBG").is_ok() {
-            let n = self.belief.numbers();
-            std::eprintln!(
-                "DBG pages {} fit {} everywhere {everywhere} cost {:.1} core {:.4} halo {:.3} wider {:.3} spill {:.3} well {:.3} noise {:?} sigmas {:.4?}",
-                album.len(),
-                album.pages().iter().filter(|p| p.fits).count(),
-                told.cost + self.belief.strain(),
-                libm::exp(n[0]),
-                n[1],
-                libm::exp(n[2]),
-                n[3],
-                n[4],
-                self.belief.noise(),
-                self.belief.weights().map(|w| 1.0 / w.sqrt())
-            );
-        }
         album.was_looked_at(everywhere);
     }
 
@@ -243,19 +216,6 @@ impl Fitter {
             self.belief.go(numbers);
             let next = self.look(album.pages());
             let gain = cost - (next.cost + self.belief.strain());
-            extern crate std;
-            if std::env::var("DBG2").is_ok() {
-                let n = self.belief.numbers();
-                std::eprintln!(
-                    "      DBG step damping {damping:.1e} cost {cost:.1} gain {gain:.2}: core {:.4} halo {:.3} wider {:.3} spill {:.3} well {:.3} fit {}",
-                    libm::exp(n[0]),
-                    n[1],
-                    libm::exp(n[2]),
-                    n[3],
-                    n[4],
-                    album.pages().iter().filter(|p| p.fits).count()
-                );
-            }
             if gain > 0.0 {
                 (told, cost) = (next, cost - gain);
                 damping *= LESS_FAR;

@@ -47,6 +47,7 @@ pub(super) struct Copied {
     fours: Vec<Four>,
     floor_dn: Option<f32>,
     full_dn: f32,
+    given: Vec<f32>,
 }
 
 /// A model that pixels are read with: where the numbers of a point are among its unknowns, as `fit` has them.
@@ -400,7 +401,7 @@ impl Window {
         mem::swap(&mut self.fours, &mut copied.fours);
         mem::swap(&mut self.floor_dn, &mut copied.floor_dn);
         mem::swap(&mut self.full_dn, &mut copied.full_dn);
-        self.given.clear();
+        mem::swap(&mut self.given, &mut copied.given);
     }
 
     /// A place in the image as seen from the middle of the window.
@@ -513,7 +514,10 @@ pub(super) fn nearest_pixel(place: Pixel) -> (i32, i32) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::optics::{Gaussian, Shares};
     use proptest::prelude::*;
+    use rand_distr::{Distribution as _, Uniform};
+    use rand_pcg::rand_core::SeedableRng as _;
 
     const AS_KEPT: Scale = Scale { light: 1.0, level: 0.0, numbers: [0, 1] };
 
@@ -556,6 +560,78 @@ mod tests {
         assert!(f32::from_bits(spilled(0.0)[1]) > 0.0);
         assert_eq!(spilled(f32::INFINITY), spilled(0.0));
         assert_eq!(spilled(f32::NAN), spilled(0.0));
+    }
+
+    /// A window of `2 reach + 1` pixels in which all count, without a background.
+    fn dark(reach: usize, full_dn: f32) -> Window {
+        let side = 2 * reach + 1;
+        let places = (0..side).flat_map(|row| (0..side).step_by(LANES).map(move |column| (row, column)));
+        let four = |(row, column): (usize, usize)| {
+            let counts = core::array::from_fn(|lane| if column + lane < side { 1.0 } else { 0.0 });
+            Four { row, column, counts: Lanes::new(counts), ..Four::default() }
+        };
+        Window { reach, full_dn, fours: places.map(four).collect(), ..Window::default() }
+    }
+
+    /// What spills into pixels of a point of a Gaussian at (u, v) with some light, and its slopes by u, v, light, level, share and well.
+    fn spilled(window: &mut Window, numbers: [f64; 6]) -> Vec<(f32, [f32; 6])> {
+        let spread = PointSpread::gaussians(&[Gaussian { share: 1.0, sigma_px: 0.8 }]).unwrap();
+        let [u, v, light, level, share, ln_well] = numbers;
+        let placed = spread.placed(u as f32, v as f32, window.reach);
+        window.keep(|four| {
+            let Shares { share, by_u, by_v, .. } = placed.four(four.row, four.column);
+            (share, [by_u, by_v, Lanes::ZERO, Lanes::ZERO, Lanes::ZERO, Lanes::ZERO])
+        });
+        let spill = Spill { share, ln_well, relative_error: 0.0, numbers: Some([4, 5]) };
+        let scale = Scale { light: light as f32, level: level as f32, numbers: [2, 3] };
+        // Both after the same first guess, and well past what few rounds leave.
+        for _ in 0..8 {
+            window.overflow::<6>(&spill, scale);
+        }
+        let mut all = Vec::new();
+        for (number, four) in window.fours.iter().enumerate() {
+            let slopes = window.spilled_slopes::<6>(number).unwrap().map(Lanes::to_array);
+            let spilled = four.spilled.to_array();
+            all.extend((0..LANES).map(|lane| (spilled[lane], slopes.map(|slope| slope[lane]))));
+        }
+        all
+    }
+
+    /// Single pixels begin and cease to give: what all of them get, in many spots, changes as slopes have it.
+    #[test]
+    fn slopes_of_what_spills_are_those_of_other_numbers() {
+        let mut window = dark(8, 200.0);
+        let steps = [0.01, 0.01, 40.0, 0.5, 0.01, 0.01];
+        let [mut off, mut change] = [[0.0; 6]; 2];
+        let mut rng = rand_pcg::Pcg64::seed_from_u64(5);
+        let mut uniform = |low: f64, high: f64| Uniform::new(low, high).unwrap().sample(&mut rng);
+        for _ in 0..200 {
+            let numbers = [
+                uniform(-0.5, 0.5),
+                uniform(-0.5, 0.5),
+                uniform(2000.0, 20000.0),
+                uniform(0.0, 2.0),
+                uniform(0.1, 0.95),
+                uniform(0.0, 0.7),
+            ];
+            let here = spilled(&mut window, numbers);
+            for (number, step) in steps.into_iter().enumerate() {
+                let mut at = |by: f64| {
+                    let mut other = numbers;
+                    other[number] += by;
+                    spilled(&mut window, other)
+                };
+                let (after, before) = (at(step), at(-step));
+                for ((here, after), before) in here.iter().zip(after).zip(before) {
+                    let slope = f64::from(after.0 - before.0) / (2.0 * step);
+                    off[number] += (slope - f64::from(here.1[number])).abs();
+                    change[number] += slope.abs();
+                }
+            }
+        }
+        for (number, (off, change)) in off.into_iter().zip(change).enumerate() {
+            assert!(change > 0.0 && off < 0.1 * change, "{number}: {off} of {change}");
+        }
     }
 
     proptest! {

@@ -214,6 +214,10 @@ mod tests {
                 };
                 let slope = (cost(0.002) - cost(-0.002)) / 0.004;
                 let told = -2.0 * here.weighted[number];
+                assert!(
+                    (slope - told).abs() < 1.0 + allowed * slope.abs(),
+                    "{light} {number}: {slope} {told}"
+                );
             }
         }
     }

@@ -96,8 +96,9 @@ pub(super) struct Fitter {
     pub(super) lone_pixels: LonePixels,
     /// Whether parts are fitted at all: it takes time.
     pub(super) fits: bool,
-    /// Spots that tell something of the camera.
+    /// Spots that tell something of the camera, and what they leave.
     pub(super) album: Album,
+    pub(super) noise_bins: NoiseBins,
     /// Frames that have told something of it by spots that stand alone, and by such beside each other; spots that did and were not full.
     pub(super) frames: u32,
     pub(super) frames_beside: u32,
@@ -126,6 +127,7 @@ impl Fitter {
             lone_pixels: LonePixels::default(),
             fits: matches!(settings.brightness, Brightness::Contrast(_)),
             album: Album::default(),
+            noise_bins: NoiseBins::new(settings.noise),
             frames: 0,
             frames_beside: 0,
             unsaturated: 0,

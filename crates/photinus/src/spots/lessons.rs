@@ -14,8 +14,8 @@ use super::learning::{Beginning, Belief, Said, Told, UNKNOWNS};
 use super::neighbourhood::Neighbourhood;
 use super::noise_bins::NoiseBins;
 use super::part::Part;
-use super::patch::NOISY_DN;
-use super::smear::Smeared;
+use super::patch::{NOISY_DN, Surroundings};
+use super::smear::{Motion, Smeared};
 use super::telling::{self, Telling};
 use super::window::{Copied, Window};
 #[cfg(not(feature = "std"))]
@@ -64,7 +64,8 @@ impl Fitter {
     pub(super) fn unlearn(&mut self, noise_dn: f64) {
         let lowest = self.full_level.lowest();
         let is_end = is_noisy(noise_dn) && f64::from(lowest) + LEVEL_SIGMAS * noise_dn >= f64::from(u8::MAX);
-        self.belief = Belief::new(NoiseBins::new(self.noise).noise, if is_end { u8::MAX } else { lowest });
+        self.noise_bins = NoiseBins::new(self.noise);
+        self.belief = Belief::new(self.noise_bins.noise, if is_end { u8::MAX } else { lowest });
         self.album.clear();
         (self.frames, self.frames_beside, self.unsaturated) = (0, 0, 0);
     }
@@ -159,6 +160,9 @@ impl Fitter {
         album: &mut Album,
     ) -> bool {
         if album.is_full() {
+            if telling.iter().all(Telling::is_alone) {
+                self.learn_more_noise(frame, parts, telling, full_from);
+            }
             return !telling.is_empty();
         }
         let before = album.len();
@@ -289,21 +293,55 @@ impl Fitter {
         let mut bins = NoiseBins::new(self.noise);
         for page in pages.iter_mut().filter(|page| page.fits && page.opened.beside().is_empty()) {
             self.window.trade(&mut page.copied);
-            // Wings beside a spot make its frame no noisier: what is cut off does.
-            let around = page.opened.around;
-            let noise = if around.is_cut_off { self.pixel_noise(around) } else { self.belief.noise() };
-            let known = f64::from((noise.dark - self.belief.noise().dark).max(0.0));
-            let shape = PointSource::new(self.belief.spread(), self.source_size(), self.belief.spill());
-            let add = |left| bins.add(&left, known);
-            let (window, guess) = (&mut self.window, page.guess());
-            match page.motion {
-                None => tell_noise::<5>(window, shape, guess, noise, add),
-                Some(motion) => tell_noise::<7>(window, Smeared::new(shape, motion), guess, noise, add),
-            }
+            self.add_left(&mut bins, page.opened.around, page.guess(), page.motion);
             self.window.trade(&mut page.copied);
         }
+        self.solve_noise(bins);
+    }
+
+    /// Learns the noise of pixels from what a frame's spots leave, too.
+    fn learn_more_noise(
+        &mut self,
+        frame: &FrameView<'_>,
+        parts: &[Part],
+        telling: &[Telling],
+        full_from: u8,
+    ) {
+        let mut bins = self.noise_bins;
+        for spots in telling.iter().take(MOST_TELLING) {
+            let opened = self.open_telling(frame, parts, spots, full_from);
+            if self.is_light(self.pixel_noise(opened.around)) {
+                self.add_left(&mut bins, opened.around, opened.guess, self.motion);
+            }
+        }
+        self.solve_noise(bins);
+    }
+
+    /// Adds what the spot in the window leaves of each pixel.
+    fn add_left(
+        &mut self,
+        bins: &mut NoiseBins,
+        around: Surroundings,
+        guess: (f64, f64, f64),
+        motion: Option<Motion>,
+    ) {
+        // Wings beside a spot make its frame no noisier: what is cut off does.
+        let noise = if around.is_cut_off { self.pixel_noise(around) } else { self.belief.noise() };
+        let known = f64::from((noise.dark - self.belief.noise().dark).max(0.0));
+        let shape = PointSource::new(self.belief.spread(), self.source_size(), self.belief.spill());
+        let add = |left| bins.add(&left, known);
+        match motion {
+            None => tell_noise::<5>(&mut self.window, shape, guess, noise, add),
+            Some(motion) => {
+                tell_noise::<7>(&mut self.window, Smeared::new(shape, motion), guess, noise, add);
+            }
+        }
+    }
+
+    fn solve_noise(&mut self, mut bins: NoiseBins) {
         bins.solve();
         self.belief.set_noise(bins.noise);
+        self.noise_bins = bins;
     }
 }
 

@@ -45,7 +45,7 @@ impl NoiseBins {
 
     /// Adds a pixel, in a frame that has so much noise beyond the camera's.
     pub(super) fn add(&mut self, left: &Left, known: f64) {
-        let octave = (left.light as u32 + 1).ilog2() as usize;
+        let octave = (left.light as u32).saturating_add(1).ilog2() as usize;
         let bin = &mut self.bins[octave.min(BINS - 1)];
         bin.count += 1.0;
         bin.squares += left.square;

@@ -40,6 +40,11 @@ impl Telling {
         Self { indices: [index; MOST_TOGETHER], count: 1 }
     }
 
+    /// Whether it is a spot by itself.
+    pub(super) fn is_alone(&self) -> bool {
+        self.count == 1
+    }
+
     fn indices(&self) -> &[usize] {
         &self.indices[..self.count]
     }
@@ -131,7 +136,7 @@ impl Fitter {
         full_from: u8,
     ) -> Opened {
         let (first, all) = (&parts[telling.indices[0]], telling.parts(parts));
-        if telling.count == 1 {
+        if telling.is_alone() {
             let (_, around) = self.open(frame, first, f64::INFINITY, full_from);
             return Opened::alone(around, self.guess(first));
         }

@@ -4,6 +4,7 @@
 //! spread was wrong is worth nothing once it is right; its pixels are.
 
 use alloc::vec::Vec;
+use core::mem;
 
 use nalgebra::SVector;
 
@@ -76,6 +77,8 @@ impl Page {
 #[derive(Debug, Default)]
 pub(super) struct Album {
     pages: Vec<Page>,
+    /// Pages that are torn out, to be written on again.
+    blank: Vec<Copied>,
     /// How many there were when all were looked at last, and when the point spread was looked for everywhere.
     looked_at: usize,
     sought_at: usize,
@@ -88,6 +91,15 @@ impl Album {
 
     pub(super) fn is_full(&self) -> bool {
         self.pages.len() >= PAGES
+    }
+
+    /// Room for what a window shows, to be added with it. All that an album needs is taken at once.
+    pub(super) fn blank(&mut self) -> Copied {
+        if self.pages.capacity() < PAGES {
+            self.pages.reserve_exact(PAGES);
+            self.blank.extend((0..PAGES).map(|_| Copied::blank()));
+        }
+        self.blank.pop().unwrap_or_default()
     }
 
     pub(super) fn add(&mut self, page: Page) {
@@ -105,7 +117,7 @@ impl Album {
 
     /// Leaves so many.
     pub(super) fn leave(&mut self, pages: usize) {
-        self.pages.truncate(pages);
+        self.blank.extend(self.pages.drain(pages.min(self.pages.len())..).map(|page| page.copied));
         self.looked_at = self.looked_at.min(pages);
         self.sought_at = self.sought_at.min(pages);
     }
@@ -137,7 +149,13 @@ impl Album {
     /// Makes room where there is none: what fits nothing tells nothing.
     pub(super) fn drop_what_fits_nothing(&mut self) {
         if self.is_full() {
-            self.pages.retain(|page| page.fits);
+            let Self { pages, blank, .. } = self;
+            pages.retain_mut(|page| {
+                if !page.fits {
+                    blank.push(mem::take(&mut page.copied));
+                }
+                page.fits
+            });
             self.looked_at = self.pages.len();
         }
     }

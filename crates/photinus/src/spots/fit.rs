@@ -255,7 +255,7 @@ pub(super) fn fit_from<const N: usize>(
         // Where charge spills, full pixels and what they give on say the same of much light and of light without bounds. While it is being learnt how much
         // spills, less light would be taken for charge that does.
         let spill = shape.spill(&numbers);
-        if hides(window, &spill) && spill.numbers.is_none() {
+        if window.full_px > 0 && spill.share > SPILLS && spill.numbers.is_none() {
             right[LIGHT] -= 0.5 * COUNTS / numbers[LIGHT];
         }
         for number in WIDTH..N {
@@ -322,11 +322,6 @@ pub(super) fn fit_from<const N: usize>(
     })
 }
 
-/// Whether charge spills from the full pixels of a window.
-fn hides(window: &Window, spill: &Spill) -> bool {
-    window.full_px > 0 && spill.share > SPILLS
-}
-
 /// What a spot says of numbers of width that it shares with others.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Said<const C: usize> {
@@ -351,7 +346,7 @@ pub(super) fn said<const N: usize, const C: usize>(
     let Sums { mut matrix, mut right, chi2, log_variances, pixels } =
         with_beliefs::<N, C>(window, shape, numbers, noise);
     let mut rest_of_cost = log_variances + LEVEL_WEIGHT * numbers[LEVEL] * numbers[LEVEL];
-    if hides(window, &shape.spill(numbers)) {
+    if window.full_px > 0 {
         rest_of_cost += COUNTS * libm::log(numbers[LIGHT]);
     }
     for number in WIDTH + C..N {
@@ -405,7 +400,8 @@ fn with_beliefs<const N: usize, const C: usize>(
     let mut sums = sums(window, shape, numbers, noise, true);
     sums.matrix[(LEVEL, LEVEL)] += LEVEL_WEIGHT;
     sums.right[LEVEL] -= LEVEL_WEIGHT * numbers[LEVEL];
-    if hides(window, &shape.spill(numbers)) {
+    // What full pixels hide may be anything: a narrow core as bright as one likes beneath them, say.
+    if window.full_px > 0 {
         sums.right[LIGHT] -= 0.5 * COUNTS / numbers[LIGHT];
     }
     for number in WIDTH + C..N {

@@ -16,7 +16,7 @@ use super::detection_limit::{self, Step};
 use super::fit::{self, Fitted, PixelNoise, PointSource};
 use super::full_level::FullLevel;
 use super::hot_pixel::{self, Lone, LonePixels};
-use super::learning::{Belief, UNKNOWNS};
+use super::learning::{Beginning, Belief, UNKNOWNS};
 use super::lessons::LEARNT_FRAMES;
 use super::limits;
 use super::neighbourhood::Neighbourhood;
@@ -105,6 +105,8 @@ pub(super) struct Fitter {
     pub(super) unsaturated: usize,
     pub(super) window: Window,
     pub(super) widths: Vec<f64>,
+    /// Where the point spread was looked for at first.
+    pub(super) as_wide: Beginning,
     pub(super) telling: Vec<Telling>,
     models: Vec<Option<Model>>,
     /// Whether light moved in this frame while the shutter was open.
@@ -133,6 +135,7 @@ impl Fitter {
             unsaturated: 0,
             window: Window::default(),
             widths: Vec::new(),
+            as_wide: Belief::believed(),
             telling: Vec::new(),
             models: Vec::new(),
             is_smeared: false,

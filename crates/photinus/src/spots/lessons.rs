@@ -17,7 +17,7 @@ use super::part::Part;
 use super::patch::{NOISY_DN, Surroundings};
 use super::smear::{Motion, Smeared};
 use super::telling::{self, Telling};
-use super::window::{Copied, Window};
+use super::window::Window;
 #[cfg(not(feature = "std"))]
 use crate::float::Float as _;
 use crate::frame::FrameView;
@@ -146,7 +146,8 @@ impl Fitter {
         self.widths.extend(beginning.map(|part| part.width_px(f32::from(part.level))));
         self.widths.sort_unstable_by(f64::total_cmp);
         if let Some(&core_px) = self.widths.get(self.widths.len() / 2) {
-            self.belief.begin(Beginning { core_px, ..Belief::believed() });
+            self.as_wide = Beginning { core_px, ..Belief::believed() };
+            self.belief.begin(self.as_wide);
         }
     }
 
@@ -168,8 +169,11 @@ impl Fitter {
         let before = album.len();
         for spots in telling.iter().take(MOST_TELLING) {
             let opened = self.open_telling(frame, parts, spots, full_from);
+            if album.is_full() {
+                break;
+            }
             if self.is_light(self.pixel_noise(opened.around)) {
-                let mut copied = Copied::default();
+                let mut copied = album.blank();
                 self.window.trade(&mut copied);
                 album.add(Page::new(copied, opened, self.motion));
             }
@@ -194,8 +198,10 @@ impl Fitter {
         let everywhere = album.has_doubled();
         let mut least = self.settle(album);
         let mut numbers = self.belief.numbers();
-        for spill in SPILLS.into_iter().filter(|_| everywhere) {
-            self.belief.begin(Beginning { spill, ..Belief::believed() });
+        let believed = SPILLS.map(|spill| Beginning { spill, ..Belief::believed() });
+        let elsewhere = believed.into_iter().chain([self.as_wide]);
+        for beginning in elsewhere.filter(|_| everywhere) {
+            self.belief.begin(beginning);
             let cost = self.settle(album);
             if cost < least {
                 (least, numbers) = (cost, self.belief.numbers());

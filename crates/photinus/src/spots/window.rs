@@ -50,6 +50,17 @@ pub(super) struct Copied {
     given: Vec<f32>,
 }
 
+impl Copied {
+    /// Nothing, with room for the widest window.
+    pub(super) fn blank() -> Self {
+        Self {
+            fours: Vec::with_capacity(MOST_FOURS),
+            given: Vec::with_capacity(MOST_CHARGES),
+            ..Self::default()
+        }
+    }
+}
+
 /// A model that pixels are read with: where the numbers of a point are among its unknowns, as `fit` has them.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Scale {
@@ -116,6 +127,11 @@ const OVER_RELAXED: f32 = 1.5;
 const DONE_DN: f32 = 0.5;
 /// Rows of a window with one before and one after.
 const MOST_ROWS: usize = 2 * WIDEST_PX + 3;
+/// Fours of pixels of a window, and pixels with those around it, at most.
+const MOST_FOURS: usize = (MOST_ROWS - 2) * (MOST_ROWS - 2).div_ceil(LANES);
+const MOST_CHARGES: usize = MOST_ROWS * (MOST_ROWS - 2 + LANES + 1);
+/// Unknowns of a fit, at most.
+const MOST_UNKNOWNS: usize = 15;
 /// Rounds in which slopes of what spills are worked out.
 const SLOPE_ROUNDS: usize = 8;
 
@@ -130,6 +146,7 @@ impl Window {
         around: &Surroundings,
         full_from: u8,
     ) {
+        self.make_room();
         let (u, v) = nearest_pixel(place);
         let reach = (radius_px.max(1.0) as usize).min(WIDEST_PX) as i32;
         (self.middle, self.reach, self.full_px) = ((u, v), reach as usize, 0);
@@ -179,6 +196,23 @@ impl Window {
                 self.fours.push(four);
             }
         }
+    }
+
+    /// Takes all room that it will ever need, once.
+    fn make_room(&mut self) {
+        if self.giving.capacity() > 0 {
+            return;
+        }
+        self.shares.reserve(MOST_FOURS);
+        for slopes in [&mut self.slopes, &mut self.spilled_slopes] {
+            slopes.reserve(MOST_UNKNOWNS * MOST_FOURS);
+        }
+        for charges in [&mut self.charge, &mut self.given] {
+            charges.reserve(MOST_CHARGES);
+        }
+        self.giving.reserve(LANES * MOST_FOURS);
+        self.own_by.reserve(LANES * MOST_FOURS);
+        self.given_by.reserve(MOST_CHARGES);
     }
 
     /// Takes pixels out that are bright without light.

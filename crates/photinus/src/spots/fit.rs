@@ -764,7 +764,7 @@ impl Shape<5> for PointSource<'_> {
 
     fn place(&mut self, numbers: &SVector<f64, 5>, reach: usize) {
         self.placed = Some(self.spread.placed(numbers[U] as f32, numbers[V] as f32, reach));
-        let Measured { value, sigma } = self.size.believed(numbers[LIGHT]);
+        let Measured { value, sigma } = self.size.believed_near(numbers[LIGHT], numbers[WIDTH]);
         self.believed = (value, 1.0 / (sigma * sigma).max(LEAST_SIZE_PX2 * LEAST_SIZE_PX2));
     }
 

@@ -501,10 +501,9 @@ impl Fitter {
         let strange2 = (WHOLE * WHOLE) * fitted.strange_share2();
         let is_full = self.window.full_px > 0;
         let spills = if is_full { self.window.spilled_share() } else { 0.0 };
-        let spill_error = self.spill().relative_error;
-        let (spilt, seen) = match self.optics {
-            Some(_) => (0.0, 1.0),
-            None => (spills, self.belief.seen_share()),
+        let (spilt, spill_error, seen) = match self.optics {
+            Some(_) => (0.0, SPILL_ERROR, 1.0),
+            None => (spills, self.belief.spill().relative_error, self.belief.seen_share()),
         };
         let unsure = point.light * (shape * if is_full { WINGS } else { WHOLE } + spill_error * spills);
         let full_px = f64::from(self.window.full_px);

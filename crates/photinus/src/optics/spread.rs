@@ -307,8 +307,8 @@ impl PointSpread {
             let mut line = core::array::from_fn(|row| self.samples[row * side + column]);
             *refined_column = refined(&mut line);
         }
-        for row in 0..STEPS {
-            let mut line = core::array::from_fn(|column| columns[column][row]);
+        let line = |row: usize| core::array::from_fn(|column| columns[column][row]);
+        for (row, mut line) in (0..STEPS).map(line).enumerate() {
             self.set_row(row, &refined(&mut line));
         }
     }

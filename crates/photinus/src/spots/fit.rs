@@ -427,7 +427,7 @@ fn eliminate<const N: usize, const C: usize>(
         let (row, off) = (matrix.row(own) / pivot, right[own] / pivot);
         gain += right[own] * off;
         let along = matrix.column(own).into_owned();
-        *matrix -= along * &row;
+        *matrix -= along * row;
         *right -= along * off;
         matrix.set_row(own, &row);
         right[own] = off;

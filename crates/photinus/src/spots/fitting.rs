@@ -99,9 +99,12 @@ pub(super) struct Fitter {
     /// Spots that tell something of the camera, and what they leave.
     pub(super) album: Album,
     pub(super) noise_bins: NoiseBins,
-    /// Frames that have told something of it by spots that stand alone, and by such beside each other; spots that did and were not full.
+    /// Frames with spots that stand alone, and such that told something of it by spots beside each other; those of either kind that told nothing
+    /// (frames in vain); spots that told something and were not full.
     pub(super) frames: u32,
     pub(super) frames_beside: u32,
+    pub(super) frames_in_vain: u32,
+    pub(super) frames_beside_in_vain: u32,
     pub(super) unsaturated: usize,
     pub(super) window: Window,
     pub(super) widths: Vec<f64>,
@@ -132,6 +135,8 @@ impl Fitter {
             noise_bins: NoiseBins::new(settings.noise),
             frames: 0,
             frames_beside: 0,
+            frames_in_vain: 0,
+            frames_beside_in_vain: 0,
             unsaturated: 0,
             window: Window::default(),
             widths: Vec::new(),
@@ -323,7 +328,8 @@ impl Fitter {
     /// How wrong any point spread is, as a share of the light in a pixel, where points are of no shape that is known; 0 where they are.
     pub(super) fn unknown_shape(&self) -> f32 {
         let shape = self.belief.noise().shape;
-        let is_unknown = shape >= SHAPELESS || self.belief.is_too_sharp();
+        let is_in_vain = 2 * self.frames_in_vain > self.frames;
+        let is_unknown = shape >= SHAPELESS || is_in_vain || self.belief.is_too_sharp();
         if self.optics.is_none() && is_unknown { shape.max(SHAPELESS) } else { 0.0 }
     }
 

@@ -68,6 +68,7 @@ impl Fitter {
         self.belief = Belief::new(self.noise_bins.noise, if is_end { u8::MAX } else { lowest });
         self.album.clear();
         (self.frames, self.frames_beside, self.unsaturated) = (0, 0, 0);
+        (self.frames_in_vain, self.frames_beside_in_vain) = (0, 0);
     }
 
     /// The same with what a frame tells.
@@ -115,19 +116,24 @@ impl Fitter {
         let mut telling = mem::take(&mut self.telling);
         telling::find(parts, near, &mut telling);
         let stand_alone = !telling.is_empty();
-        if !stand_alone && self.motion.is_none() && self.frames_beside < LEARNT_FRAMES {
+        let learns_beside =
+            self.frames_beside < LEARNT_FRAMES && self.frames_beside_in_vain < 4 * LEARNT_FRAMES;
+        if !stand_alone && self.motion.is_none() && learns_beside {
             telling::find_beside(parts, near, full_from, &mut telling);
         }
         if self.frames == 0 && self.frames_beside == 0 {
             self.begin(parts, &telling, full_from);
         }
         let mut album = mem::take(&mut self.album);
-        if self.tells(frame, parts, &telling, full_from, &mut album) {
-            if stand_alone {
+        // What stands alone and fits nothing is of no shape that is known; what lies beside each other may be more than was told apart.
+        match (self.taught(frame, parts, &telling, full_from, &mut album), stand_alone) {
+            (Taught::Nothing, _) => {}
+            (taught, true) => {
                 self.frames += 1;
-            } else {
-                self.frames_beside += 1;
+                self.frames_in_vain += u32::from(taught == Taught::InVain);
             }
+            (Taught::InVain, false) => self.frames_beside_in_vain += 1,
+            (Taught::Something, false) => self.frames_beside += 1,
         }
         // What has been learnt needs no more pixels.
         self.album = if self.learns() { album } else { Album::default() };
@@ -151,20 +157,20 @@ impl Fitter {
         }
     }
 
-    /// Takes in what the frame's spots look like, and what that says of the camera. Whether it says anything: what fits nothing does not, and is not kept.
-    fn tells(
+    /// Takes in what the frame's spots look like, and what that says of the camera. What fits nothing is not kept.
+    fn taught(
         &mut self,
         frame: &FrameView<'_>,
         parts: &[Part],
         telling: &[Telling],
         full_from: u8,
         album: &mut Album,
-    ) -> bool {
+    ) -> Taught {
         if album.is_full() {
             if telling.iter().all(Telling::is_alone) {
                 self.learn_more_noise(frame, parts, telling, full_from);
             }
-            return !telling.is_empty();
+            return if telling.is_empty() { Taught::Nothing } else { Taught::Something };
         }
         let before = album.len();
         for spots in telling.iter().take(MOST_TELLING) {
@@ -178,6 +184,9 @@ impl Fitter {
                 album.add(Page::new(copied, opened, self.motion));
             }
         }
+        if album.len() == before {
+            return Taught::Nothing;
+        }
         if album.has_grown() {
             self.revise(album);
         } else {
@@ -189,7 +198,7 @@ impl Fitter {
         }
         self.unsaturated = album.unsaturated();
         album.drop_what_fits_nothing();
-        tells
+        if tells { Taught::Something } else { Taught::InVain }
     }
 
     /// Fits all spots of the album and the point spread to each other anew. Whenever there are twice as many the point spread is looked for from elsewhere,
@@ -349,6 +358,16 @@ impl Fitter {
         self.belief.set_noise(bins.noise);
         self.noise_bins = bins;
     }
+}
+
+/// What a frame taught of the camera.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Taught {
+    /// It has no spot that might tell.
+    Nothing,
+    /// It has, but none fits a point.
+    InVain,
+    Something,
 }
 
 /// Noise of a frame in the dark, about, grey levels.

@@ -93,12 +93,14 @@ impl Album {
         self.pages.len() >= PAGES
     }
 
-    /// Room for what a window shows, to be added with it. All that an album needs is taken at once.
+    /// With all room that it will ever need, 2.4 MB.
+    pub(super) fn roomy() -> Self {
+        let blank = (0..PAGES).map(|_| Copied::blank()).collect();
+        Self { pages: Vec::with_capacity(PAGES), blank, ..Self::default() }
+    }
+
+    /// Room for what a window shows, to be added with it.
     pub(super) fn blank(&mut self) -> Copied {
-        if self.pages.capacity() < PAGES {
-            self.pages.reserve_exact(PAGES);
-            self.blank.extend((0..PAGES).map(|_| Copied::blank()));
-        }
         self.blank.pop().unwrap_or_default()
     }
 

@@ -105,6 +105,8 @@ pub(super) struct Fitter {
     pub(super) frames_beside: u32,
     pub(super) frames_in_vain: u32,
     pub(super) frames_beside_in_vain: u32,
+    /// Whether what fits leave is no noise.
+    pub(super) is_implausible: bool,
     pub(super) unsaturated: usize,
     pub(super) window: Window,
     pub(super) widths: Vec<f64>,
@@ -124,19 +126,21 @@ pub(super) struct Fitter {
 
 impl Fitter {
     pub(super) fn new(settings: &Settings, optics: Option<Arc<Optics>>) -> Self {
+        let fits = matches!(settings.brightness, Brightness::Contrast(_));
         Self {
+            album: if fits && optics.is_none() { Album::roomy() } else { Album::default() },
             optics,
             noise: settings.noise,
             belief: Belief::new(NoiseBins::new(settings.noise).noise, u8::MAX),
             full_level: FullLevel::default(),
             lone_pixels: LonePixels::default(),
-            fits: matches!(settings.brightness, Brightness::Contrast(_)),
-            album: Album::default(),
+            fits,
             noise_bins: NoiseBins::new(settings.noise),
             frames: 0,
             frames_beside: 0,
             frames_in_vain: 0,
             frames_beside_in_vain: 0,
+            is_implausible: false,
             unsaturated: 0,
             window: Window::default(),
             widths: Vec::new(),
@@ -329,7 +333,8 @@ impl Fitter {
     pub(super) fn unknown_shape(&self) -> f32 {
         let shape = self.belief.noise().shape;
         let is_in_vain = 2 * self.frames_in_vain > self.frames;
-        let is_unknown = shape >= SHAPELESS || is_in_vain || self.belief.is_too_sharp();
+        let explains_nothing = is_in_vain || self.is_implausible;
+        let is_unknown = shape >= SHAPELESS || explains_nothing || self.belief.is_too_sharp();
         if self.optics.is_none() && is_unknown { shape.max(SHAPELESS) } else { 0.0 }
     }
 

@@ -16,7 +16,7 @@ use super::noise_bins::NoiseBins;
 use super::part::Part;
 use super::patch::{NOISY_DN, Surroundings};
 use super::smear::{Motion, Smeared};
-use super::telling::{self, Telling};
+use super::telling::{self, TELLING_DN, Telling};
 use super::window::Window;
 #[cfg(not(feature = "std"))]
 use crate::float::Float as _;
@@ -41,6 +41,9 @@ const SMALL_GAIN: f64 = 0.1;
 const SPILLS: [f64; 3] = [0.1, 0.5, 0.9];
 /// Frames after which a belief that is sure of itself learns no more of the spread.
 pub(super) const LEARNT_FRAMES: u32 = 32;
+/// After so many frames noise that is so many times what is expected, as variance, is none.
+const DOUBTED_FRAMES: u32 = 8;
+const IMPLAUSIBLE: f64 = 4.0;
 /// A pixel that reads no further below the level of full ones, sigmas of noise, may be full.
 const FULL_SIGMAS: f64 = 2.0;
 /// So many sigmas of noise are from the mean level of full pixels to the lowest.
@@ -68,7 +71,7 @@ impl Fitter {
         self.belief = Belief::new(self.noise_bins.noise, if is_end { u8::MAX } else { lowest });
         self.album.clear();
         (self.frames, self.frames_beside, self.unsaturated) = (0, 0, 0);
-        (self.frames_in_vain, self.frames_beside_in_vain) = (0, 0);
+        (self.frames_in_vain, self.frames_beside_in_vain, self.is_implausible) = (0, 0, false);
     }
 
     /// The same with what a frame tells.
@@ -135,9 +138,16 @@ impl Fitter {
             (Taught::InVain, false) => self.frames_beside_in_vain += 1,
             (Taught::Something, false) => self.frames_beside += 1,
         }
-        // What has been learnt needs no more pixels.
-        self.album = if self.learns() { album } else { Album::default() };
-        self.telling = telling;
+        self.is_implausible = self.is_noise_implausible(noise_of(parts));
+        (self.album, self.telling) = (album, telling);
+    }
+
+    /// Whether what fits leave after some frames is far more than noise: no point spread that is known explains what is seen.
+    fn is_noise_implausible(&self, noise_dn: f64) -> bool {
+        let PixelNoise { dark, shot, .. } = self.belief.noise();
+        let told = f64::from(dark) + TELLING_DN * f64::from(shot);
+        let expected = noise_dn * noise_dn + 1.0 / 12.0 + TELLING_DN * self.noise.shot;
+        self.frames >= DOUBTED_FRAMES && told > IMPLAUSIBLE * expected
     }
 
     /// Begins to look for the point spread at a core as wide as the first spots that are not full; what is full is wider than that. In noise how wide faint

@@ -171,10 +171,11 @@ impl Album {
         }
     }
 
-    /// What the one in the middle of those that fit leaves, `sorted` being room to work in.
+    /// What the one in the middle of those that fit and stand alone leaves, `sorted` being room to work in: any of those beside each other may be two.
     pub(super) fn median_misfit(&self, sorted: &mut Vec<f64>) -> Option<f64> {
         sorted.clear();
-        sorted.extend(self.pages.iter().filter_map(|page| page.misfit));
+        let alone = self.pages.iter().filter(|page| page.opened.beside().is_empty());
+        sorted.extend(alone.filter_map(|page| page.misfit));
         sorted.sort_unstable_by(f64::total_cmp);
         sorted.get(sorted.len() / 2).copied()
     }

@@ -31,7 +31,7 @@ pub(super) struct Page {
     /// What was found of it: its numbers but for those of the point spread.
     own: Option<[f64; MOST_OWN]>,
     /// What it left when it was looked at last (squared residuals over degrees of freedom), if it fitted.
-    misfit: Option<f64>,
+    pub(super) misfit: Option<f64>,
 }
 
 impl Page {
@@ -96,6 +96,11 @@ pub(super) struct Album {
 impl Album {
     pub(super) fn pages(&mut self) -> &mut [Page] {
         &mut self.pages
+    }
+
+    /// Whether half of it is full.
+    pub(super) fn is_half_full(&self) -> bool {
+        2 * self.pages.len() >= PAGES
     }
 
     pub(super) fn is_full(&self) -> bool {

@@ -63,7 +63,7 @@ const PASSES_BESIDE: usize = 2;
 const FEWEST_UNSATURATED: usize = 4;
 
 /// Where the point spread is wrong by more of the light than this, it is none of the shapes that are known.
-const SHAPELESS: f32 = 0.09;
+const SHAPELESS: f32 = 0.15;
 /// A point is no further from the centroid of its part, px and radii of the part: what is has taken the light of another for its own.
 const OFF_PX: f64 = 0.3;
 const OFF_RADII: f64 = 0.1;
@@ -105,7 +105,7 @@ pub(super) struct Fitter {
     pub(super) frames_beside: u32,
     pub(super) frames_in_vain: u32,
     pub(super) frames_beside_in_vain: u32,
-    /// Whether spots leave far more than noise, and none tells of a shape that is wrong by so much: charge that spills hides it.
+    /// Whether usual spots leave more of their light than points do, or, where charge that spills hides that, far more than noise.
     pub(super) is_unexplained: bool,
     pub(super) unsaturated: usize,
     pub(super) window: Window,

@@ -4,7 +4,7 @@
 //! wiser. Which spots tell is `telling`'s; their pixels go into the `album`, and whenever there are some more all of its spots and the point spread
 //! are fitted to each other anew. After some frames there is nothing left to learn.
 
-use core::mem;
+use core::{mem, slice};
 
 use super::album::{Album, Page};
 use super::beside::Beside;
@@ -43,6 +43,10 @@ const SPILLS: [f64; 3] = [0.1, 0.5, 0.9];
 pub(super) const LEARNT_FRAMES: u32 = 32;
 /// Where no pixel tells noise, spots of which the one in the middle leaves more than this (squared residuals over degrees of freedom) are no points.
 const UNEXPLAINED: f64 = 2.0;
+/// Spots that leave no more than this, over what the one in the middle leaves, are usual: others may be two, or stand in a smear.
+const USUAL: f64 = 1.5;
+/// Where a point spread that half an album told is wrong by more of the light of usual spots than this, they are no points.
+const ODD: f32 = 0.05;
 /// A pixel that reads no further below the level of full ones, sigmas of noise, may be full.
 const FULL_SIGMAS: f64 = 2.0;
 /// So many sigmas of noise are from the mean level of full pixels to the lowest.
@@ -219,10 +223,13 @@ impl Fitter {
         self.belief.go(numbers);
         let told = self.look(album.pages());
         self.belief.learn(&told);
-        self.learn_noise(album.pages());
-        let misfit = album.median_misfit(&mut self.widths);
-        self.is_unexplained =
-            !self.noise_bins.are_told() && misfit.is_some_and(|misfit| misfit > UNEXPLAINED);
+        let misfit = album.median_misfit(&mut self.widths).unwrap_or(0.0);
+        let usual = self.learn_noise(album.pages(), USUAL * misfit);
+        self.is_unexplained = if self.noise_bins.are_told() {
+            album.is_half_full() && usual.are_told() && usual.noise.shape > ODD
+        } else {
+            misfit > UNEXPLAINED
+        };
         album.was_looked_at(everywhere);
     }
 
@@ -305,15 +312,21 @@ impl Fitter {
         self.lone_pixels.end();
     }
 
-    /// Learns the noise of pixels from what all spots of the album leave but those beside each other: any of these may be two.
-    fn learn_noise(&mut self, pages: &mut [Page]) {
-        let mut bins = NoiseBins::new(self.noise);
-        for page in pages.iter_mut().filter(|page| page.fits() && page.opened.beside().is_empty()) {
+    /// Learns the noise of pixels from what all spots of the album leave but those beside each other: any of these may be two. Says what those tell of it
+    /// whose misfit is no more than `most`.
+    fn learn_noise(&mut self, pages: &mut [Page], most: f64) -> NoiseBins {
+        let mut all_and_usual = [NoiseBins::new(self.noise); 2];
+        for page in pages.iter_mut().filter(|page| page.opened.beside().is_empty()) {
+            let Some(misfit) = page.misfit else { continue };
+            let bins = if misfit <= most { &mut all_and_usual[..] } else { &mut all_and_usual[..1] };
             self.window.trade(&mut page.copied);
-            self.add_left(&mut bins, page.opened.around, page.guess(), page.motion);
+            self.add_left(bins, page.opened.around, page.guess(), page.motion);
             self.window.trade(&mut page.copied);
         }
-        self.solve_noise(bins);
+        let [all, mut usual] = all_and_usual;
+        usual.solve();
+        self.solve_noise(all);
+        usual
     }
 
     /// Learns the noise of pixels from what a frame's spots leave, too.
@@ -328,7 +341,7 @@ impl Fitter {
         for spots in telling.iter().take(MOST_TELLING) {
             let opened = self.open_telling(frame, parts, spots, full_from);
             if self.is_light(self.pixel_noise(opened.around)) {
-                self.add_left(&mut bins, opened.around, opened.guess, self.motion);
+                self.add_left(slice::from_mut(&mut bins), opened.around, opened.guess, self.motion);
             }
         }
         self.solve_noise(bins);
@@ -337,7 +350,7 @@ impl Fitter {
     /// Adds what the spot in the window leaves of each pixel.
     fn add_left(
         &mut self,
-        bins: &mut NoiseBins,
+        bins: &mut [NoiseBins],
         around: Surroundings,
         guess: (f64, f64, f64),
         motion: Option<Motion>,
@@ -346,7 +359,7 @@ impl Fitter {
         let noise = if around.is_cut_off { self.pixel_noise(around) } else { self.belief.noise() };
         let known = f64::from((noise.dark - self.belief.noise().dark).max(0.0));
         let shape = PointSource::new(self.belief.spread(), self.source_size(), self.belief.spill());
-        let add = |left| bins.add(&left, known);
+        let add = |left| bins.iter_mut().for_each(|bins| bins.add(&left, known));
         match motion {
             None => tell_noise::<5>(&mut self.window, shape, guess, noise, add),
             Some(motion) => {

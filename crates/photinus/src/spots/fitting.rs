@@ -105,7 +105,9 @@ pub(super) struct Fitter {
     pub(super) frames_beside: u32,
     pub(super) frames_in_vain: u32,
     pub(super) frames_beside_in_vain: u32,
-    /// Whether usual spots leave more of their light than points do, or, where charge that spills hides that, far more than noise.
+    /// Whether usual spots leave more of their light than points do.
+    pub(super) is_odd: bool,
+    /// Whether charge that spills hides that, and they leave far more than noise.
     pub(super) is_unexplained: bool,
     pub(super) unsaturated: usize,
     pub(super) window: Window,
@@ -140,6 +142,7 @@ impl Fitter {
             frames_beside: 0,
             frames_in_vain: 0,
             frames_beside_in_vain: 0,
+            is_odd: false,
             is_unexplained: false,
             unsaturated: 0,
             window: Window::default(),
@@ -331,11 +334,15 @@ impl Fitter {
 
     /// How wrong any point spread is, as a share of the light in a pixel, where points are of no shape that is known; 0 where they are.
     pub(super) fn unknown_shape(&self) -> f32 {
-        let shape = self.belief.noise().shape;
+        let is_unknown = self.optics.is_none() && (self.is_odd || self.is_spread_unknown());
+        if is_unknown { self.belief.noise().shape.max(SHAPELESS) } else { 0.0 }
+    }
+
+    /// Whether what frames told of the point spread is wrong: not even how high its summit is.
+    fn is_spread_unknown(&self) -> bool {
         let is_in_vain = 2 * self.frames_in_vain > self.frames;
         let explains_nothing = is_in_vain || self.is_unexplained;
-        let is_unknown = shape >= SHAPELESS || explains_nothing || self.belief.is_too_sharp();
-        if self.optics.is_none() && is_unknown { shape.max(SHAPELESS) } else { 0.0 }
+        self.belief.noise().shape >= SHAPELESS || explains_nothing || self.belief.is_too_sharp()
     }
 
     /// How wrong the point spread is, as a share of the light in a pixel.
@@ -394,7 +401,7 @@ impl Fitter {
     pub(super) fn detection_limit(&self, step: Step, place: Pixel) -> LogLight {
         match &self.optics {
             Some(optics) => detection_limit::of_spread(optics.spread.at(place), 1.0, 0.0, step),
-            None if self.unsaturated < FEWEST_UNSATURATED || self.unknown_shape() > 0.0 => {
+            None if self.unsaturated < FEWEST_UNSATURATED || self.is_spread_unknown() => {
                 detection_limit::of_any_lens(step)
             }
             None => {

@@ -74,7 +74,8 @@ impl Fitter {
         self.belief = Belief::new(self.noise_bins.noise, if is_end { u8::MAX } else { lowest });
         self.album.clear();
         (self.frames, self.frames_beside, self.unsaturated) = (0, 0, 0);
-        (self.frames_in_vain, self.frames_beside_in_vain, self.is_unexplained) = (0, 0, false);
+        (self.frames_in_vain, self.frames_beside_in_vain, self.is_unexplained, self.is_odd) =
+            (0, 0, false, false);
     }
 
     /// The same with what a frame tells.
@@ -225,11 +226,8 @@ impl Fitter {
         self.belief.learn(&told);
         let misfit = album.median_misfit(&mut self.widths).unwrap_or(0.0);
         let usual = self.learn_noise(album.pages(), USUAL * misfit);
-        self.is_unexplained = if self.noise_bins.are_told() {
-            album.is_half_full() && usual.are_told() && usual.noise.shape > ODD
-        } else {
-            misfit > UNEXPLAINED
-        };
+        self.is_odd = album.is_half_full() && usual.are_told() && usual.noise.shape > ODD;
+        self.is_unexplained = !self.noise_bins.are_told() && misfit > UNEXPLAINED;
         album.was_looked_at(everywhere);
     }
 

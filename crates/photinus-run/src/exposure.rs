@@ -16,6 +16,8 @@ use crate::Entry;
 const MARGIN: f64 = 3.0;
 /// Share of a new k that is believed, per neighbour and frame.
 const LEARNT: f64 = 0.05;
+/// A neighbour whose distance is less sure than this, as a share of it, says nothing of k: a lone spot far away may be a hot pixel.
+const SURE: f64 = 0.25;
 /// Exposures that differ by a smaller share are the same.
 const SAME: f64 = 0.05;
 /// Without any light of its own, a level that is nearly full says nothing of how bright a marker is.
@@ -131,7 +133,11 @@ impl Light {
 
 /// By the brightest spot of a neighbour.
 fn light(record: &FrameRecord, neighbour: &NeighbourRecord, exposure_us: f64) -> Option<Light> {
-    let distance_m = neighbour.distance_m.estimate?;
+    let distance = &neighbour.distance_m;
+    let distance_m = distance.estimate?;
+    if distance.sigma.is_none_or(|sigma_m| sigma_m > SURE * distance_m) {
+        return None;
+    }
     let spots = || neighbour.spots.iter().filter_map(|&spot| record.spots.get(spot));
     let levels = spots().map(|spot| f64::from(spot.peak) - spot.background);
     let level = levels.reduce(f64::max).filter(|level| *level > 0.0)?;
@@ -223,6 +229,24 @@ mod tests {
         let mut control = Exposure::new(WANTED);
         let asked_us = control.after(&entry).unwrap();
         assert!((asked_us / 4000.0 - 128.0 / 245.0).abs() < 0.01, "{asked_us}");
+    }
+
+    #[test]
+    fn who_may_be_anywhere_says_nothing_of_the_light() {
+        let mut entry = seen(10.0, 40.0, 4.0);
+        let mut unsure = entry.record.neighbours[0].clone();
+        unsure.distance_m.sigma = Some(0.5 * unsure.distance_m.estimate.unwrap());
+        entry.record.neighbours[0] = unsure.clone();
+        let mut control = Exposure::new(WANTED);
+        assert_eq!(control.after(&entry), None);
+        // Nor beside one whose distance is known.
+        let known = seen(10.0, 40.0, 4.0);
+        let wanted_us = Exposure::new(WANTED).after(&known);
+        entry = known;
+        unsure.distance_m.estimate = Some(20.0);
+        unsure.distance_m.sigma = Some(10.0);
+        entry.record.neighbours.push(unsure);
+        assert!(wanted_us.is_some() && Exposure::new(WANTED).after(&entry) == wanted_us);
     }
 
     #[test]

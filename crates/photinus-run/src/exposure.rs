@@ -2,7 +2,7 @@
 //! sets by exposure at which distance neighbours appear.
 //!
 //! The light of a marker falls with the square of its distance, and grows with the exposure: level above the background = k * exposure / distance^2, with
-//! a k that is learnt from located neighbours. One with saturated spots tells only that k is at least so much: until k is known, the exposure is halved
+//! a k that is learnt from neighbours whose distance is known. One with saturated spots tells only that k is at least so much: until k is known, the exposure is halved
 //! for such a one. Before any neighbour was seen, nothing is changed.
 
 use nalgebra::Vector3;
@@ -16,7 +16,8 @@ use crate::Entry;
 const MARGIN: f64 = 3.0;
 /// Share of a new k that is believed, per neighbour and frame.
 const LEARNT: f64 = 0.05;
-/// A neighbour whose distance is less sure than this, as a share of it, says nothing of k: a lone spot far away may be a hot pixel.
+/// A neighbour whose distance is less sure than this, as a share of it, says no k, as a lone spot far away may be a hot pixel; one that is full is too
+/// bright wherever it is.
 const SURE: f64 = 0.25;
 /// Exposures that differ by a smaller share are the same.
 const SAME: f64 = 0.05;
@@ -133,17 +134,14 @@ impl Light {
 
 /// By the brightest spot of a neighbour.
 fn light(record: &FrameRecord, neighbour: &NeighbourRecord, exposure_us: f64) -> Option<Light> {
-    let distance = &neighbour.distance_m;
-    let distance_m = distance.estimate?;
-    if distance.sigma.is_none_or(|sigma_m| sigma_m > SURE * distance_m) {
-        return None;
-    }
+    let distance_m = neighbour.distance_m.estimate?;
     let spots = || neighbour.spots.iter().filter_map(|&spot| record.spots.get(spot));
     let levels = spots().map(|spot| f64::from(spot.peak) - spot.background);
     let level = levels.reduce(f64::max).filter(|level| *level > 0.0)?;
     let k = level * distance_m * distance_m / exposure_us;
     let is_full = spots().any(|spot| spot.peak >= FULL || spot.saturated_px > 0);
-    Some(if is_full { Light::AtLeast(k) } else { Light::Is(k) })
+    let is_sure = neighbour.distance_m.sigma.is_some_and(|sigma_m| sigma_m <= SURE * distance_m);
+    if is_full { Some(Light::AtLeast(k)) } else { is_sure.then_some(Light::Is(k)) }
 }
 
 #[cfg(test)]
@@ -239,6 +237,11 @@ mod tests {
         entry.record.neighbours[0] = unsure.clone();
         let mut control = Exposure::new(WANTED);
         assert_eq!(control.after(&entry), None);
+        // Where it is full it is too bright all the same.
+        let mut full = seen(10.0, 4000.0, 4.0);
+        full.record.neighbours[0].distance_m.sigma = Some(2.0);
+        let halved = Exposure::new(WANTED).after(&full).unwrap() / 4000.0;
+        assert!((halved - 128.0 / 245.0).abs() < 0.01, "{halved}");
         // Nor beside one whose distance is known.
         let known = seen(10.0, 40.0, 4.0);
         let wanted_us = Exposure::new(WANTED).after(&known);

@@ -60,7 +60,7 @@ const SPILT_PX: f64 = 0.7;
 const PASSES_BESIDE: usize = 2;
 
 /// So many spots that are not full tell the core of the point spread.
-const FEWEST_UNSATURATED: usize = 4;
+pub(super) const FEWEST_UNSATURATED: usize = 4;
 
 /// Where the point spread is wrong by more of the light than this, it is none of the shapes that are known.
 const SHAPELESS: f32 = 0.15;
@@ -105,7 +105,7 @@ pub(super) struct Fitter {
     pub(super) frames_beside: u32,
     pub(super) frames_in_vain: u32,
     pub(super) frames_beside_in_vain: u32,
-    /// Whether usual spots leave more of their light than points do.
+    /// Whether spots are all full, and usual ones leave more of their light than points do.
     pub(super) is_odd: bool,
     /// Whether charge that spills hides that, and they leave far more than noise.
     pub(super) is_unexplained: bool,

@@ -9,7 +9,7 @@ use core::{mem, slice};
 use super::album::{Album, Page};
 use super::beside::Beside;
 use super::fit::{self, Left, PixelNoise, PointSource, Shape, WIDTH};
-use super::fitting::{Fitter, NO_POINT};
+use super::fitting::{FEWEST_UNSATURATED, Fitter, NO_POINT};
 use super::learning::{Beginning, Belief, Said, Told, UNKNOWNS};
 use super::neighbourhood::Neighbourhood;
 use super::noise_bins::NoiseBins;
@@ -45,7 +45,7 @@ pub(super) const LEARNT_FRAMES: u32 = 32;
 const UNEXPLAINED: f64 = 2.0;
 /// Spots that leave no more than this, over what the one in the middle leaves, are usual: others may be two, or stand in a smear.
 const USUAL: f64 = 1.5;
-/// Where a point spread that half an album told is wrong by more of the light of usual spots than this, they are no points.
+/// Where full spots alone told a point spread and half an album is full, and it is wrong by more of the light of usual ones than this, they are no points.
 const ODD: f32 = 0.05;
 /// A pixel that reads no further below the level of full ones, sigmas of noise, may be full.
 const FULL_SIGMAS: f64 = 2.0;
@@ -226,7 +226,10 @@ impl Fitter {
         self.belief.learn(&told);
         let misfit = album.median_misfit(&mut self.widths).unwrap_or(0.0);
         let usual = self.learn_noise(album.pages(), USUAL * misfit);
-        self.is_odd = album.is_half_full() && usual.are_told() && usual.noise.shape > ODD;
+        self.is_odd = album.is_half_full()
+            && album.unsaturated() < FEWEST_UNSATURATED
+            && usual.are_told()
+            && usual.noise.shape > ODD;
         self.is_unexplained = !self.noise_bins.are_told() && misfit > UNEXPLAINED;
         album.was_looked_at(everywhere);
     }

@@ -60,7 +60,7 @@ const SPILT_PX: f64 = 0.7;
 const PASSES_BESIDE: usize = 2;
 
 /// So many spots that are not full tell the core of the point spread.
-pub(super) const FEWEST_UNSATURATED: usize = 4;
+const FEWEST_UNSATURATED: usize = 4;
 
 /// Where the point spread is wrong by more of the light than this, it is none of the shapes that are known.
 const SHAPELESS: f32 = 0.15;
@@ -105,7 +105,7 @@ pub(super) struct Fitter {
     pub(super) frames_beside: u32,
     pub(super) frames_in_vain: u32,
     pub(super) frames_beside_in_vain: u32,
-    /// Whether spots are all full, and usual ones leave more of their light than points do.
+    /// Whether usual spots leave more of their light than points do.
     pub(super) is_odd: bool,
     /// Whether charge that spills hides that, and they leave far more than noise.
     pub(super) is_unexplained: bool,
@@ -167,10 +167,11 @@ impl Fitter {
         self.optics.is_some() || self.belief.is_sure()
     }
 
-    /// Whether a part may be a point's light, as far as that can be told: where nobody measured the point spread, not what the border cuts, and
-    /// nothing at all where points are of no shape that is known.
+    /// Whether a part may be a point's light, as far as that can be told: where nobody measured the point spread, not what the border cuts,
+    /// nothing that is full where spots are odd, and nothing at all where points are of no shape that is known.
     pub(super) fn may_be_point(&self, part: &Part) -> bool {
-        let knows_shape = || !part.outline.cut && self.unknown_shape() == 0.0;
+        let tells_shape = || !self.is_odd || part.outline.peak < self.lowest_full(part.noise_dn);
+        let knows_shape = || !part.outline.cut && !self.is_spread_unknown() && tells_shape();
         part.reason.is_none() && part.radius_px <= WIDEST_POINT_PX && (self.optics.is_some() || knows_shape())
     }
 

@@ -9,7 +9,7 @@ use core::{mem, slice};
 use super::album::{Album, Page};
 use super::beside::Beside;
 use super::fit::{self, Left, PixelNoise, PointSource, Shape, WIDTH};
-use super::fitting::{FEWEST_UNSATURATED, Fitter, NO_POINT};
+use super::fitting::{Fitter, NO_POINT};
 use super::learning::{Beginning, Belief, Said, Told, UNKNOWNS};
 use super::neighbourhood::Neighbourhood;
 use super::noise_bins::NoiseBins;
@@ -45,8 +45,9 @@ pub(super) const LEARNT_FRAMES: u32 = 32;
 const UNEXPLAINED: f64 = 2.0;
 /// Spots that leave no more than this, over what the one in the middle leaves, are usual: others may be two, or stand in a smear.
 const USUAL: f64 = 1.5;
-/// Where full spots alone told a point spread and half an album is full, and it is wrong by more of the light of usual ones than this, they are no points.
-const ODD: f32 = 0.05;
+/// Where a point spread that half an album told is wrong by more of the light of usual spots than this, though they are not full, points have no one shape: it is
+/// not worth while to look for what full ones hide.
+const ODD: f32 = 0.06;
 /// A pixel that reads no further below the level of full ones, sigmas of noise, may be full.
 const FULL_SIGMAS: f64 = 2.0;
 /// So many sigmas of noise are from the mean level of full pixels to the lowest.
@@ -226,10 +227,7 @@ impl Fitter {
         self.belief.learn(&told);
         let misfit = album.median_misfit(&mut self.widths).unwrap_or(0.0);
         let usual = self.learn_noise(album.pages(), USUAL * misfit);
-        self.is_odd = album.is_half_full()
-            && album.unsaturated() < FEWEST_UNSATURATED
-            && usual.are_told()
-            && usual.noise.shape > ODD;
+        self.is_odd = album.is_half_full() && usual.are_told() && usual.noise.shape > ODD;
         self.is_unexplained = !self.noise_bins.are_told() && misfit > UNEXPLAINED;
         album.was_looked_at(everywhere);
     }
@@ -314,12 +312,13 @@ impl Fitter {
     }
 
     /// Learns the noise of pixels from what all spots of the album leave but those beside each other: any of these may be two. Says what those tell of it
-    /// whose misfit is no more than `most`.
+    /// that are not full and whose misfit is no more than `most`.
     fn learn_noise(&mut self, pages: &mut [Page], most: f64) -> NoiseBins {
         let mut all_and_usual = [NoiseBins::new(self.noise); 2];
         for page in pages.iter_mut().filter(|page| page.opened.beside().is_empty()) {
             let Some(misfit) = page.misfit else { continue };
-            let bins = if misfit <= most { &mut all_and_usual[..] } else { &mut all_and_usual[..1] };
+            let is_usual = page.copied.full_px == 0 && misfit <= most;
+            let bins = if is_usual { &mut all_and_usual[..] } else { &mut all_and_usual[..1] };
             self.window.trade(&mut page.copied);
             self.add_left(bins, page.opened.around, page.guess(), page.motion);
             self.window.trade(&mut page.copied);

@@ -121,10 +121,14 @@ pub(super) struct Spill {
     pub(super) numbers: Option<[usize; 2]>,
 }
 
-/// Rounds in which charge spills on, at most; how far each goes past its answer; a change by which all is done, grey levels.
+/// Rounds in which charge spills on, at most; a change by which all is done, grey levels.
 const ROUNDS: usize = 16;
-const OVER_RELAXED: f32 = 1.5;
 const DONE_DN: f32 = 0.5;
+/// What spills all around a pixel comes back to it less by so much, where as many pixels give as spots have full ones.
+const COMES_BACK: f64 = 0.95;
+/// Rounds in which slopes of what spills are worked out, at most, and what is left of their errors.
+const SLOPE_ROUNDS: usize = 8;
+const LEFT_OF_SLOPES: f64 = 0.004;
 /// Rows of a window with one before and one after.
 const MOST_ROWS: usize = 2 * WIDEST_PX + 3;
 /// Fours of pixels of a window, and pixels with those around it, at most.
@@ -132,8 +136,6 @@ const MOST_FOURS: usize = (MOST_ROWS - 2) * (MOST_ROWS - 2).div_ceil(LANES);
 const MOST_CHARGES: usize = MOST_ROWS * (MOST_ROWS - 2 + LANES + 1);
 /// Unknowns of a fit, at most.
 const MOST_UNKNOWNS: usize = 15;
-/// Rounds in which slopes of what spills are worked out.
-const SLOPE_ROUNDS: usize = 8;
 
 impl Window {
     /// Reads the disc of `radius_px` around the pixel nearest to `place`, less the background; a pixel of `full_from` grey levels or
@@ -349,10 +351,13 @@ impl Window {
         }));
         given_by.clear();
         given_by.resize(given.len(), Lanes::ZERO);
-        let (quarter, over_relaxed) = (Lanes::splat(quarter(spill.share)), Lanes::splat(OVER_RELAXED));
+        let quarter = Lanes::splat(quarter(spill.share));
+        let over_relaxed = over_relaxed(spill.share);
+        let rounds = libm::ceil(libm::log(LEFT_OF_SLOPES) / libm::log(over_relaxed - 1.0)) as usize + 1;
+        let over_relaxed = Lanes::splat(over_relaxed as f32);
         let received =
             |by: &[Lanes], at: usize| quarter * (by[at - 1] + by[at + 1] + by[at - stride] + by[at + stride]);
-        for round in 0..SLOPE_ROUNDS {
+        for round in 0..rounds.min(SLOPE_ROUNDS) {
             for step in 0..giving.len() {
                 let step = if round % 2 == 0 { step } else { giving.len() - 1 - step };
                 let at = giving[step].at;
@@ -394,7 +399,7 @@ impl Window {
     /// Works out what each pixel gives on so that none holds more than a well: given = max(0, charge - well + what the neighbours
     /// give), by over-relaxation, there and back, so that no side is preferred.
     fn spill(&mut self, share: f64, well_dn: f32, stride: usize) {
-        let quarter = quarter(share);
+        let (quarter, over_relaxed) = (quarter(share), over_relaxed(share) as f32);
         let Self { charge, given, .. } = self;
         let rows = charge.len() / stride;
         // By row: pixels that hold more than a well, and those that give. What is away from both gives nothing.
@@ -415,7 +420,7 @@ impl Window {
                     let received =
                         quarter * (given[at - 1] + given[at + 1] + given[at - stride] + given[at + stride]);
                     let wanted = charge[at] - well_dn + received;
-                    let new = (given[at] + OVER_RELAXED * (wanted - given[at])).max(0.0);
+                    let new = (given[at] + over_relaxed * (wanted - given[at])).max(0.0);
                     most = most.max((new - given[at]).abs());
                     given[at] = new;
                 }
@@ -539,6 +544,12 @@ impl Columns {
 /// What each neighbour gets of charge of which this share spills.
 fn quarter(share: f64) -> f32 {
     0.25 * share.clamp(0.0, 1.0) as f32
+}
+
+/// How far a round goes past its answer: as far as makes the largest error the smallest (D. M. Young, Iterative Solution of Large Linear Systems, 1971).
+fn over_relaxed(share: f64) -> f64 {
+    let comes_back = COMES_BACK * share.clamp(0.0, 1.0);
+    2.0 / (1.0 + (1.0 - comes_back * comes_back).sqrt())
 }
 
 pub(super) fn nearest_pixel(place: Pixel) -> (i32, i32) {

@@ -91,6 +91,10 @@ fn within<const N: usize>(
         for Limit { pixel, precision, shift } in limits.iter_mut().flatten() {
             let along = covariance * pixel.slopes;
             let (own, variance) = (pixel.slopes.dot(&mean), pixel.slopes.dot(&along));
+            // What gives its charge on reads as full whatever the numbers are.
+            if variance <= 0.0 {
+                continue;
+            }
             // Without what it told so far.
             let left = 1.0 / variance - *precision;
             if left <= 0.0 {
@@ -253,6 +257,19 @@ mod tests {
                 prop_assert!((ratio - 1.0).abs() < 0.12, "{told_covariance} not {covariance}");
             }
         }
+    }
+
+    #[test]
+    fn a_full_pixel_that_no_number_changes_tells_nothing() {
+        let [zero, along_u] = [[0.0; 3], [1.0, 0.0, 0.0]].map(SVector::from);
+        let limit = |slopes, residual| {
+            let pixel = FullPixel { slopes, residual, variance: 0.01 };
+            Some(Limit { pixel, precision: 0.0, shift: 0.0 })
+        };
+        let told = |limits: &mut [Option<Limit<3>>]| within(limits, SVector::zeros(), SMatrix::identity());
+        let with = told(&mut [limit(zero, -100.0), limit(along_u, 0.5)]);
+        assert_eq!(with, told(&mut [limit(along_u, 0.5)]));
+        assert!(with.0[0] > 0.5);
     }
 
     #[test]

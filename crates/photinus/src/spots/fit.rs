@@ -502,23 +502,35 @@ fn sums<const N: usize>(
         }
         let weighted = weight * residual;
         chi2 += weighted * residual;
-        for i in 0..N {
-            right[i] += weighted * columns[i];
-            let scaled = weight * columns[i];
-            for j in 0..=i {
-                products[i][j] += scaled * columns[j];
-            }
+        for (right, column) in right.iter_mut().zip(columns) {
+            *right += weighted * column;
         }
+        add_products(&mut products, &columns, weight);
     }
     let sum = |lanes_of: Lanes| f64::from(lanes::sum(lanes_of));
-    let matrix = SMatrix::from_fn(|i, j| sum(products[i.max(j)][i.min(j)]));
     Sums {
-        matrix,
+        matrix: summed(&products),
         right: SVector::from_fn(|i, _| sum(right[i])),
         chi2: sum(chi2),
         log_variances: sum(log_variances),
         pixels: sum(pixels),
     }
+}
+
+/// Adds the weighted products of what four pixels say of each number.
+#[inline(always)]
+fn add_products<const N: usize>(products: &mut [[Lanes; N]; N], columns: &[Lanes; N], weight: Lanes) {
+    for i in 0..N {
+        let scaled = weight * columns[i];
+        for j in 0..=i {
+            products[i][j] += scaled * columns[j];
+        }
+    }
+}
+
+/// The sums of such products over lanes.
+fn summed<const N: usize>(products: &[[Lanes; N]; N]) -> SMatrix<f64, N, N> {
+    SMatrix::from_fn(|i, j| f64::from(lanes::sum(products[i.max(j)][i.min(j)])))
 }
 
 /// The share of light 1 in four pixels, its slopes, and those of what spills into them.
@@ -620,21 +632,26 @@ pub(super) struct FullPixel<const N: usize> {
     pub(super) variance: f64,
 }
 
-/// Tells of the full pixels at the answer of a fit.
+/// Tells of the full pixels at the answer of a fit. Says how well the others and what is believed beforehand tell the numbers.
 pub(super) fn each_full_pixel<const N: usize>(
     window: &mut Window,
     shape: &mut impl Shape<N>,
     fitted: &Fitted<N>,
     noise: PixelNoise,
     mut with: impl FnMut(FullPixel<N>),
-) {
+) -> SMatrix<f64, N, N> {
     let numbers = &fitted.numbers;
     shape.place(numbers, window.reach);
     overflow(window, shape, numbers);
     let model = PixelModel::new(numbers, noise, window);
-    for (place, four) in window.fours.iter().enumerate().filter(|(_, four)| four.full != Lanes::ZERO) {
+    let mut products = [[Lanes::ZERO; N]; N];
+    for (place, four) in window.fours.iter().enumerate() {
         let Modelled { columns, residual, variance, .. } =
             modelled(four, light_of(place, shape, numbers, window), &model);
+        add_products(&mut products, &columns, four.counts * (Lanes::ONE - four.full) / variance);
+        if four.full == Lanes::ZERO {
+            continue;
+        }
         let columns = columns.map(Lanes::to_array);
         let (residual, variance) = (residual.to_array(), variance.to_array());
         let full = (four.full * four.counts).to_array();
@@ -646,6 +663,12 @@ pub(super) fn each_full_pixel<const N: usize>(
             });
         }
     }
+    let mut information = summed(&products);
+    information[(LEVEL, LEVEL)] += LEVEL_WEIGHT;
+    for number in WIDTH..N {
+        information[(number, number)] += shape.believed(number).1;
+    }
+    information
 }
 
 /// What a fit left of a pixel.

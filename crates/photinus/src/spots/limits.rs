@@ -27,6 +27,9 @@ const MOST_FULL: usize = 16;
 const SWEEPS: usize = 4;
 /// Full pixels that tell less of the light than this share do not hold it up.
 const HOLDS: f64 = 1e-3;
+/// How far from its fit a spot may be of which full pixels alone tell, px, and its light from that, over it.
+const NEAR_PX: f64 = 1.0;
+const NEAR_SHARE: f64 = 3.0;
 
 /// [`fit::fit`] with its light and centre told anew where full pixels hold them.
 pub(super) fn fit<const N: usize>(
@@ -49,11 +52,10 @@ fn held<const N: usize>(
     if window.full_px == 0 {
         return fitted;
     }
-    let (mut matrix, mut right) = (SMatrix::<f64, N, N>::zeros(), SVector::<f64, N>::zeros());
+    let mut right = SVector::<f64, N>::zeros();
     let (mut full, mut count) = ([const { None }; MOST_FULL], 0);
-    fit::each_full_pixel(window, shape, &fitted, noise, |pixel| {
+    let others = fit::each_full_pixel(window, shape, &fitted, noise, |pixel| {
         if pixel.residual > 0.0 {
-            matrix += pixel.slopes * pixel.slopes.transpose() / pixel.variance;
             right += pixel.slopes * (pixel.residual / pixel.variance);
         }
         if let Some(place) = full.get_mut(count) {
@@ -61,8 +63,7 @@ fn held<const N: usize>(
         }
         count += 1;
     });
-    let others = fitted.covariance.try_inverse().and_then(|all| (all - matrix).cholesky());
-    let Some(others) = others else { return fitted };
+    let Some(others) = (others + anywhere_near(&fitted)).cholesky() else { return fitted };
     let (step, covariance) = (-others.solve(&right), others.inverse());
     let free = Normal { mean: fitted.light() + step[LIGHT], variance: covariance[(LIGHT, LIGHT)] };
     let all = Normal { mean: fitted.light(), variance: fitted.light_variance() };
@@ -72,6 +73,16 @@ fn held<const N: usize>(
     let (step, covariance) = within(limits, step, covariance);
     let centre = [U, V].map(|axis| fitted.numbers[axis] + step[axis]);
     told.with_centre(centre, &covariance.fixed_view::<2, 2>(0, 0).into_owned())
+}
+
+/// What is known of a spot of which no pixel tells that is not full: information that is little beside that of any pixel.
+fn anywhere_near<const N: usize>(fitted: &Fitted<N>) -> SMatrix<f64, N, N> {
+    let sigmas = [(U, NEAR_PX), (V, NEAR_PX), (LIGHT, NEAR_SHARE * fitted.light())];
+    let mut information = SMatrix::zeros();
+    for (number, sigma) in sigmas {
+        information[(number, number)] = 1.0 / (sigma * sigma);
+    }
+    information
 }
 
 /// A full pixel with the normal factor that stands for it.
@@ -248,13 +259,17 @@ mod tests {
             prop_assume!(sum > 3000.0);
             let mean = first / sum;
             let covariance = second / sum - mean * mean.transpose();
+            // Limits that are nearly one count more than once (J. P. Cunningham et al., "Gaussian Probabilities and Expectation Propagation", 2011).
+            let along: Vec<_> = slopes.iter().map(|slopes| (root.transpose() * SVector::from(*slopes)).normalize()).collect();
+            let are_alike = (1..along.len()).any(|i| along[..i].iter().any(|other| along[i].dot(other) > 0.8));
+            let least_ratio = if are_alike { 0.75 } else { 0.88 };
             let (told, told_covariance) = within(&mut limits, SVector::zeros(), root * root.transpose());
             for axis in 0..3 {
                 let sigma = covariance[(axis, axis)].sqrt();
                 let off = (told[axis] - mean[axis]) / sigma;
                 prop_assert!(off.abs() < 0.15, "{told} not {mean}");
                 let ratio = told_covariance[(axis, axis)].sqrt() / sigma;
-                prop_assert!((ratio - 1.0).abs() < 0.12, "{told_covariance} not {covariance}");
+                prop_assert!((least_ratio..1.12).contains(&ratio), "{told_covariance} not {covariance}");
             }
         }
     }

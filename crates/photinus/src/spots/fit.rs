@@ -632,23 +632,28 @@ pub(super) struct FullPixel<const N: usize> {
     pub(super) variance: f64,
 }
 
-/// Tells of the full pixels at the answer of a fit. Says how well the others and what is believed beforehand tell the numbers.
+/// Tells of the full pixels at the answer of a fit. What the others and what is believed beforehand say of the numbers: their information, and its product with
+/// how far the answer is off.
 pub(super) fn each_full_pixel<const N: usize>(
     window: &mut Window,
     shape: &mut impl Shape<N>,
     fitted: &Fitted<N>,
     noise: PixelNoise,
     mut with: impl FnMut(FullPixel<N>),
-) -> SMatrix<f64, N, N> {
+) -> (SMatrix<f64, N, N>, SVector<f64, N>) {
     let numbers = &fitted.numbers;
     shape.place(numbers, window.reach);
     overflow(window, shape, numbers);
     let model = PixelModel::new(numbers, noise, window);
-    let mut products = [[Lanes::ZERO; N]; N];
+    let (mut products, mut right) = ([[Lanes::ZERO; N]; N], [Lanes::ZERO; N]);
     for (place, four) in window.fours.iter().enumerate() {
         let Modelled { columns, residual, variance, .. } =
             modelled(four, light_of(place, shape, numbers, window), &model);
-        add_products(&mut products, &columns, four.counts * (Lanes::ONE - four.full) / variance);
+        let weight = four.counts * (Lanes::ONE - four.full) / variance;
+        for (right, column) in right.iter_mut().zip(columns) {
+            *right += weight * residual * column;
+        }
+        add_products(&mut products, &columns, weight);
         if four.full == Lanes::ZERO {
             continue;
         }
@@ -664,11 +669,15 @@ pub(super) fn each_full_pixel<const N: usize>(
         }
     }
     let mut information = summed(&products);
+    let mut right = SVector::from_fn(|i, _| f64::from(lanes::sum(right[i])));
     information[(LEVEL, LEVEL)] += LEVEL_WEIGHT;
+    right[LEVEL] -= LEVEL_WEIGHT * numbers[LEVEL];
     for number in WIDTH..N {
-        information[(number, number)] += shape.believed(number).1;
+        let (mean, weight) = shape.believed(number);
+        information[(number, number)] += weight;
+        right[number] += weight * (mean - numbers[number]);
     }
-    information
+    (information, right)
 }
 
 /// What a fit left of a pixel.

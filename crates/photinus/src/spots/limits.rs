@@ -52,19 +52,15 @@ fn held<const N: usize>(
     if window.full_px == 0 {
         return fitted;
     }
-    let mut right = SVector::<f64, N>::zeros();
     let (mut full, mut count) = ([const { None }; MOST_FULL], 0);
-    let others = fit::each_full_pixel(window, shape, &fitted, noise, |pixel| {
-        if pixel.residual > 0.0 {
-            right += pixel.slopes * (pixel.residual / pixel.variance);
-        }
+    let (information, right) = fit::each_full_pixel(window, shape, &fitted, noise, |pixel| {
         if let Some(place) = full.get_mut(count) {
             *place = Some(Limit { pixel, precision: 0.0, shift: 0.0 });
         }
         count += 1;
     });
-    let Some(others) = (others + anywhere_near(&fitted)).cholesky() else { return fitted };
-    let (step, covariance) = (-others.solve(&right), others.inverse());
+    let Some(others) = (information + anywhere_near(&fitted)).cholesky() else { return fitted };
+    let (step, covariance) = (others.solve(&right), others.inverse());
     let free = Normal { mean: fitted.light() + step[LIGHT], variance: covariance[(LIGHT, LIGHT)] };
     let all = Normal { mean: fitted.light(), variance: fitted.light_variance() };
     let Some(light) = above_limit(free, all) else { return fitted };

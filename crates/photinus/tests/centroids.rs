@@ -183,20 +183,12 @@ fn saturated_spots_are_placed_by_what_is_not_full_where_the_camera_is_known() {
     hold(knowing, &[(300.0, 0.0047), (600.0, 0.0037), (3000.0, 0.0027), (20_000.0, 0.0023)]);
 }
 
-/// Nobody tells how much charge spills from full pixels into those beside them: that it may makes claims wider than the scatter.
 #[test]
-fn saturated_spots_of_a_camera_that_nobody_measured_are_placed_about_as_well() {
-    for width in [0.8, 1.0, 1.5, 2.1, 2.5] {
-        for (height, rms_px) in [(300.0, 0.0047), (600.0, 0.0037), (3000.0, 0.0027)] {
-            let errors = measure(width, height, 40);
-            assert!(errors.rms() < 2.0 * rms_px, "width {width}, height {height}: rms {}", errors.rms());
-            assert!(
-                (0.85..4.0).contains(&errors.honesty()),
-                "width {width}, height {height}: {}",
-                errors.honesty()
-            );
-        }
-    }
+fn saturated_spots_of_a_camera_that_nobody_measured_are_placed_as_well() {
+    hold(
+        |_| Detector::new(Settings::default()).unwrap(),
+        &[(300.0, 0.0047), (600.0, 0.0037), (3000.0, 0.0027)],
+    );
 }
 
 #[test]

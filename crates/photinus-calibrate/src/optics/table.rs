@@ -226,7 +226,9 @@ mod tests {
     fn shares_are_those_of_the_method_and_slopes_their_differences() {
         let parts = [Gaussian { share: 0.7, sigma_px: 0.4 }, Gaussian { share: 0.3, sigma_px: 2.0 }];
         let table = Table::gaussians(&parts);
-        let spread = PointSpread::gaussians(&parts).unwrap();
+        // Of as few samples as the table has.
+        let samples = PointSpread::gaussians(&parts).unwrap().samples().to_vec();
+        let spread = PointSpread::new(samples).unwrap();
         let shares = |u: f64, v: f64, reach: usize| {
             let mut shares = Shares::default();
             table.window(u, v, reach, &mut shares);

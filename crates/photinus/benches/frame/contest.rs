@@ -3,7 +3,7 @@
 use std::hint::black_box;
 use std::time::Instant;
 
-use crate::frames::{self, PAPER, Scene};
+use crate::frames::{self, Look, PAPER, Scene};
 
 const ROUNDS: usize = 100;
 const CALLS_PER_ROUND: usize = 32;
@@ -70,7 +70,7 @@ impl<'a> Contest<'a> {
     /// A table whose floor is a pass over an empty frame that only takes its maximum.
     pub(crate) fn beside_maximum(title: &str) -> Self {
         let mut contest = Self::new(title, "maximum of the frame");
-        let empty = frames::markers(&Scene { size: PAPER, markers: 0, sun: false });
+        let empty = frames::markers(&Scene { size: PAPER, markers: 0, look: Look::Disc, sun: false });
         contest.add("maximum of the frame", move |i| {
             let frame = &empty[i % empty.len()];
             black_box(frame.iter().fold(0, |high: u8, &pixel| high.max(pixel)));

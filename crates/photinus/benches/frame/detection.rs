@@ -11,15 +11,21 @@ use photinus::frame::FrameView;
 use photinus::spots::{Brightness, Detector, Settings};
 
 use crate::contest::{self, Contender, Contest};
-use crate::frames::{self, PAPER, Scene, Size};
+use crate::frames::{self, Look, PAPER, Scene, Size};
 
 /// Taken for the size of the last-level cache where the system does not tell it, bytes.
 const UNTOLD_CACHE: usize = 64 << 20;
 /// Pixels that a contender sees in a round, about.
 const PIXELS_PER_ROUND: usize = 1 << 23;
 
-const SCENES: [(&str, usize, bool); 4] =
-    [("empty", 0, false), ("30 markers", 30, false), ("120 markers", 120, false), ("30, the sun", 30, true)];
+const SCENES: [(&str, usize, Look, bool); 6] = [
+    ("empty", 0, Look::Disc, false),
+    ("30 markers", 30, Look::Disc, false),
+    ("120 markers", 120, Look::Disc, false),
+    ("30, the sun", 30, Look::Disc, true),
+    ("30 points", 30, Look::Point, false),
+    ("120 points", 120, Look::Point, false),
+];
 
 pub(crate) fn run() {
     if contest::is_counting() {
@@ -40,8 +46,8 @@ pub(crate) fn run() {
                 "x maximum",
                 "x copy"
             );
-            for (name, markers, sun) in SCENES {
-                row(name, &Supply::new(frames::markers(&Scene { size, markers, sun }), size, bytes));
+            for (name, markers, look, sun) in SCENES {
+                row(name, &Supply::new(frames::markers(&Scene { size, markers, look, sun }), size, bytes));
             }
         }
     }
@@ -50,8 +56,8 @@ pub(crate) fn run() {
 /// The detectors alone, for their instructions to be counted.
 fn count() {
     let mut contest = Contest::beside_maximum("Detecting, 752x480");
-    for (name, markers, sun) in SCENES {
-        let frames = frames::markers(&Scene { size: PAPER, markers, sun });
+    for (name, markers, look, sun) in SCENES {
+        let frames = frames::markers(&Scene { size: PAPER, markers, look, sun });
         for (law, mut detector) in ["fixed", "contrast"].into_iter().zip(detectors()) {
             let frames = frames.clone();
             contest.add(&format!("{name}, {law}"), move |i| {

@@ -26,19 +26,34 @@ impl Size {
     }
 }
 
-/// So many spots of 1 to 30 px (log-uniform), at least 16 px apart, with the sun on demand.
+/// So many spots at least 16 px apart, with the sun on demand.
+#[derive(Clone, Copy)]
 pub(crate) struct Scene {
     pub(crate) size: Size,
     pub(crate) markers: usize,
+    pub(crate) look: Look,
     pub(crate) sun: bool,
 }
+
+#[derive(Clone, Copy)]
+pub(crate) enum Look {
+    /// Saturated discs of 1 to 30 px (log-uniform).
+    Disc,
+    /// Points behind a lens with a core and a halo, whose summits are [`SUMMIT_DN`] (log-uniform): from what is barely seen to what is full.
+    Point,
+}
+
+/// Summits of points, grey levels above darkness.
+const SUMMIT_DN: [f64; 2] = [20.0, 4000.0];
+/// Core and halo: shares of the summit, and sigmas, px.
+const LENS: [(f64, f64); 2] = [(0.97, 0.6), (0.03, 1.8)];
 
 /// Frames of a scene, each with its own places and noise.
 pub(crate) fn markers(scene: &Scene) -> Vec<Vec<u8>> {
     (0..FRAMES as u64).map(|seed| frame(scene, &mut Pcg64::new(seed.into(), 5))).collect()
 }
 
-fn frame(&Scene { size, markers, sun }: &Scene, rng: &mut Pcg64) -> Vec<u8> {
+fn frame(&Scene { size, markers, look, sun }: &Scene, rng: &mut Pcg64) -> Vec<u8> {
     let background = Normal::new(5.0, 2.0).expect("a distribution");
     let mut light: Vec<f64> = (0..size.pixels()).map(|_| background.sample(rng)).collect();
     let (across, down) = (
@@ -46,6 +61,8 @@ fn frame(&Scene { size, markers, sun }: &Scene, rng: &mut Pcg64) -> Vec<u8> {
         Uniform::new(20.0, size.height as f64 - 20.0).expect("a distribution"),
     );
     let log_area = Uniform::new(0.0, libm::log(30.0)).expect("a distribution");
+    let [low, high] = SUMMIT_DN.map(libm::log);
+    let log_summit = Uniform::new(low, high).expect("a distribution");
     let mut places: Vec<(f64, f64)> = Vec::new();
     if sun {
         places.push((560.0, 120.0));
@@ -58,8 +75,15 @@ fn frame(&Scene { size, markers, sun }: &Scene, rng: &mut Pcg64) -> Vec<u8> {
             libm::hypot(place.0 - other.0, place.1 - other.1) > if i == 0 { clear } else { 16.0 }
         });
         if free {
-            let radius = (libm::exp(log_area.sample(rng)) / std::f64::consts::PI).sqrt();
-            add_disc(&mut light, size.width, place, radius, 1.0);
+            match look {
+                Look::Disc => {
+                    let radius = (libm::exp(log_area.sample(rng)) / std::f64::consts::PI).sqrt();
+                    add_disc(&mut light, size.width, place, radius, 1.0);
+                }
+                Look::Point => {
+                    add_point(&mut light, size.width, place, libm::exp(log_summit.sample(rng)));
+                }
+            }
             places.push(place);
         }
     }
@@ -73,6 +97,19 @@ fn add_disc(light: &mut [f64], width: usize, (u, v): (f64, f64), radius: f64, ed
         for column in (u as usize).saturating_sub(reach)..(u as usize + reach + 1).min(width) {
             let beyond = libm::hypot(column as f64 - u, row as f64 - v) - radius;
             light[row * width + column] += 300.0 / (1.0 + libm::exp(beyond / (0.35 * edge)));
+        }
+    }
+}
+
+fn add_point(light: &mut [f64], width: usize, (u, v): (f64, f64), summit_dn: f64) {
+    let reach = 9;
+    for row in (v as usize).saturating_sub(reach)..(v as usize + reach + 1).min(light.len() / width) {
+        for column in (u as usize).saturating_sub(reach)..(u as usize + reach + 1).min(width) {
+            let (du, dv) = (column as f64 - u, row as f64 - v);
+            let of_summit = |&(share, sigma): &(f64, f64)| {
+                share * libm::exp(-0.5 * (du * du + dv * dv) / (sigma * sigma))
+            };
+            light[row * width + column] += summit_dn * LENS.iter().map(of_summit).sum::<f64>();
         }
     }
 }

@@ -16,7 +16,7 @@ mod spline;
 mod spread;
 mod vignetting;
 
-pub(crate) use spread::{Placed, Profile, Shares};
+pub(crate) use spread::{GaussianShares, Placed, PlacedGaussian, Profile, Shares};
 
 pub use field::SpreadField;
 pub use hot_pixels::{HotPixel, HotPixels};

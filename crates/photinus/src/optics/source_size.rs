@@ -41,6 +41,13 @@ impl SourceSize {
         within("the scatter of sources", self.scatter_px2, 0.0, 10.0, "0 to 10 px^2")
     }
 
+    /// The same of one that seems to have this variance: what is brighter is no smaller, so that what seems to be is so by scatter alone.
+    pub(crate) fn believed_near(&self, light_dn: f64, variance_px2: f64) -> Measured {
+        let believed = self.believed(light_dn);
+        let is_smaller = variance_px2 < 0.0 && believed.value > 0.0;
+        if is_smaller { Measured { value: 0.0, sigma: self.scatter_px2 } } else { believed }
+    }
+
     /// The variance of a source of this much light, px^2.
     pub fn believed(&self, light_dn: f64) -> Measured {
         let from = (light_dn / self.light_dn - 1.0).clamp(-1.0, FARTHEST);
@@ -74,6 +81,18 @@ mod tests {
             if light_dn(seen_m) < FARTHEST * light_dn(learnt_m) {
                 prop_assert!((size.believed(light_dn(seen_m)).value - wider).abs() < 1e-9);
             }
+        }
+
+        #[test]
+        fn brighter_ones_are_not_believed_to_be_smaller(light_dn in 501.0..1e6_f64, variance_px2 in 1e-3..0.1_f64) {
+            let size = SourceSize::UNKNOWN;
+            let unlikely = |variance_px2: f64| {
+                let Measured { value, sigma } = size.believed_near(light_dn, variance_px2);
+                (variance_px2 - value) * (variance_px2 - value) / (sigma * sigma)
+            };
+            let smaller = variance_px2 / size.scatter_px2;
+            prop_assert!((unlikely(-variance_px2) - smaller * smaller).abs() < 1e-9 * smaller * smaller);
+            prop_assert!(unlikely(variance_px2) < unlikely(-variance_px2) || variance_px2 < size.believed(light_dn).value);
         }
 
         #[test]

@@ -13,7 +13,7 @@
 
 use nalgebra::{Matrix2, SMatrix, SVector};
 
-use super::window::{Four, Spill, Window};
+use super::window::{Four, Scale, Spill, Window};
 #[cfg(not(feature = "std"))]
 use crate::float::Float as _;
 use crate::lanes::{self, Lanes};
@@ -43,8 +43,9 @@ const WHOLLY_SEEN: f32 = 0.98;
 const MOST_TAKEN: f64 = 0.7;
 /// No source's own variance is known better than this, px^2.
 const LEAST_SIZE_PX2: f64 = 1e-4;
-/// How far the level of the background is known beforehand, grey levels.
+/// How far the level of the background is known beforehand, grey levels, and one over the variance.
 const LEVEL_KNOWN_DN: f64 = 3.0;
+const LEVEL_WEIGHT: f64 = 1.0 / (LEVEL_KNOWN_DN * LEVEL_KNOWN_DN);
 
 pub(super) const U: usize = 0;
 pub(super) const V: usize = 1;
@@ -101,8 +102,8 @@ pub(super) fn first<const M: usize, const N: usize>(numbers: &SVector<f64, N>) -
 /// Keeps what a shape has in each four pixels of the window, and tells it what spills over from those that the model makes full.
 fn overflow<const N: usize>(window: &mut Window, shape: &impl Shape<N>, numbers: &SVector<f64, N>) {
     window.keep(|four| shape.shares(four.row, four.column, numbers));
-    let (light, level) = (Lanes::splat(numbers[LIGHT] as f32), Lanes::splat(numbers[LEVEL] as f32));
-    window.overflow(&shape.spill(numbers), |share| light * share + level);
+    let (light, level) = (numbers[LIGHT] as f32, numbers[LEVEL] as f32);
+    window.overflow::<N>(&shape.spill(numbers), Scale { light, level, numbers: [LIGHT, LEVEL] });
 }
 
 /// A spot as fitted.
@@ -203,35 +204,39 @@ pub(super) fn fit<const N: usize>(
 ) -> Option<Fitted<N>> {
     let mut found: [Option<Fitted<N>>; BRIGHTER.len() + 2] = [None; BRIGHTER.len() + 2];
     if let Some(seen) = light_there(window, shape, (u, v)) {
-        found[0] = fit_from(window, shape, (u, v), seen, noise);
+        found[0] = fit_from(window, shape, guessed(shape, (u, v), seen), noise);
     }
     // What keeps its charge, or hides little, has one answer.
     let is_plain = window.full_px < HIDING_PX || shape.spill(&believed(shape, (u, v))).share <= SPILLS;
     if found[0].as_ref().is_some_and(|first| window.full_px == 0 || (is_plain && first.fits())) {
         return found[0];
     }
-    found[1] = fit_from(window, shape, (u, v), (light, 0.0), noise);
+    found[1] = fit_from(window, shape, guessed(shape, (u, v), (light, 0.0)), noise);
     for (tried, brighter) in BRIGHTER.into_iter().enumerate() {
         if window.full_px < HIDING_PX || found.iter().flatten().any(Fitted::fits) {
             break;
         }
-        found[tried + 2] = fit_from(window, shape, (u, v), (brighter * light, 0.0), noise);
+        let guess = guessed(shape, (u, v), (brighter * light, 0.0));
+        found[tried + 2] = fit_from(window, shape, guess, noise);
     }
-    // Where nothing fits well, misfits count for less.
+    better(found)
+}
+
+/// The one of several fits that explains most; where nothing fits well, misfits count for less.
+pub(super) fn better<const N: usize, const M: usize>(found: [Option<Fitted<N>>; M]) -> Option<Fitted<N>> {
     let misfits = found.iter().flatten().map(|fitted| fitted.chi2 / fitted.freedom);
     let least = misfits.fold(f64::INFINITY, f64::min).max(1.0);
     found.into_iter().flatten().min_by(|a, b| a.cost(least).total_cmp(&b.cost(least)))
 }
 
-fn fit_from<const N: usize>(
+/// Fits `shape` from numbers near the answer; `None` where it does not settle.
+pub(super) fn fit_from<const N: usize>(
     window: &mut Window,
     shape: &mut impl Shape<N>,
-    (u, v): (f64, f64),
-    (light, level): (f64, f64),
+    mut numbers: SVector<f64, N>,
     noise: PixelNoise,
 ) -> Option<Fitted<N>> {
-    let mut numbers = believed(shape, (u, v));
-    (numbers[LIGHT], numbers[LEVEL]) = (light, level);
+    let (u, v) = (numbers[U], numbers[V]);
     let steps = if window.full_px > 0 { STEPS_OF_FULL } else { STEPS };
     let (mut last, mut previous, mut gain) = (None, SVector::<f64, N>::zeros(), 1.0_f64);
     for step_number in 0..steps {
@@ -239,13 +244,12 @@ fn fit_from<const N: usize>(
         if window.full_px > 0 {
             overflow(window, shape, &numbers);
         }
-        let sums = sums(window, shape, &numbers, noise);
+        let sums = sums(window, shape, &numbers, noise, window.full_px > 0);
         let mut matrix = sums.matrix;
         let mut right = sums.right;
         let own = matrix[(LIGHT, LIGHT)] * numbers[LIGHT] * numbers[LIGHT];
-        let level = 1.0 / (LEVEL_KNOWN_DN * LEVEL_KNOWN_DN);
-        matrix[(LEVEL, LEVEL)] += level;
-        right[LEVEL] -= level * numbers[LEVEL];
+        matrix[(LEVEL, LEVEL)] += LEVEL_WEIGHT;
+        right[LEVEL] -= LEVEL_WEIGHT * numbers[LEVEL];
         // A step changes the light by no more than this much: where light, level and widths tell little apart, sums in 32 bits do not.
         matrix[(LIGHT, LIGHT)] += 1.0 / (LIGHT_STEP * LIGHT_STEP * numbers[LIGHT] * numbers[LIGHT]);
         // Where charge spills, full pixels and what they give on say the same of much light and of light without bounds. While it is being learnt how much
@@ -318,6 +322,130 @@ fn fit_from<const N: usize>(
     })
 }
 
+/// What a spot says of numbers of width that it shares with others.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Said<const C: usize> {
+    /// Its information on them, and its product with how far they are off.
+    pub(super) information: SMatrix<f64, C, C>,
+    pub(super) weighted: SVector<f64, C>,
+    /// Squared residuals over their variances, and the pixels that count less the numbers of the spot's own.
+    pub(super) chi2: f64,
+    pub(super) freedom: f64,
+    /// Twice the negative log-likelihood, but for a constant and the squared residuals.
+    pub(super) rest_of_cost: f64,
+}
+
+/// What a spot says of the first `C` numbers of width at these numbers, of which its own are those that fit best; `None` where pixels say too little of
+/// its own.
+pub(super) fn said<const N: usize, const C: usize>(
+    window: &mut Window,
+    shape: &mut impl Shape<N>,
+    numbers: &SVector<f64, N>,
+    noise: PixelNoise,
+) -> Option<Said<C>> {
+    let Sums { mut matrix, mut right, chi2, log_variances, pixels } =
+        with_beliefs::<N, C>(window, shape, numbers, noise);
+    let mut rest_of_cost = log_variances + LEVEL_WEIGHT * numbers[LEVEL] * numbers[LEVEL];
+    if window.full_px > 0 {
+        rest_of_cost += COUNTS * libm::log(numbers[LIGHT]);
+    }
+    for number in WIDTH + C..N {
+        let (mean, weight) = shape.believed(number);
+        rest_of_cost += weight * (mean - numbers[number]) * (mean - numbers[number]);
+    }
+    let left = chi2 - eliminate::<N, C>(&mut matrix, &mut right)?;
+    let freedom = pixels - (N - C) as f64;
+    (freedom >= 1.0).then(|| Said {
+        information: matrix.fixed_view::<C, C>(WIDTH, WIDTH).into_owned(),
+        weighted: right.fixed_rows::<C>(WIDTH).into_owned(),
+        chi2: left.max(0.0),
+        freedom,
+        rest_of_cost,
+    })
+}
+
+/// A fit whose first four numbers are as much less sure as the `C` numbers of width that follow them in `shape` leave them, of which this is the covariance:
+/// those were taken for given (consider covariance; S. F. Schmidt, Advances in Control Systems 3, 1966).
+pub(super) fn considered<const M: usize, const N: usize, const C: usize>(
+    window: &mut Window,
+    shape: &mut impl Shape<N>,
+    fitted: Fitted<M>,
+    noise: PixelNoise,
+    covariance: &SMatrix<f64, C, C>,
+) -> Fitted<M> {
+    let mut numbers = SVector::<f64, N>::zeros();
+    numbers.fixed_rows_mut::<WIDTH>(0).copy_from(&fitted.numbers.fixed_rows::<WIDTH>(0));
+    let Sums { mut matrix, mut right, .. } = with_beliefs::<N, C>(window, shape, &numbers, noise);
+    if eliminate::<N, C>(&mut matrix, &mut right).is_none() {
+        return fitted;
+    }
+    let gain = matrix.fixed_view::<WIDTH, C>(0, WIDTH);
+    let mut all = fitted.covariance;
+    let mut own = all.fixed_view_mut::<WIDTH, WIDTH>(0, 0);
+    own += gain * covariance * gain.transpose();
+    Fitted { covariance: all, ..fitted }
+}
+
+/// What pixels say of the numbers, and what is believed of all but the first `C` numbers of width.
+fn with_beliefs<const N: usize, const C: usize>(
+    window: &mut Window,
+    shape: &mut impl Shape<N>,
+    numbers: &SVector<f64, N>,
+    noise: PixelNoise,
+) -> Sums<N> {
+    shape.place(numbers, window.reach);
+    if window.full_px > 0 {
+        overflow(window, shape, numbers);
+    }
+    let mut sums = sums(window, shape, numbers, noise, true);
+    sums.matrix[(LEVEL, LEVEL)] += LEVEL_WEIGHT;
+    sums.right[LEVEL] -= LEVEL_WEIGHT * numbers[LEVEL];
+    // What full pixels hide may be anything: a narrow core as bright as one likes beneath them, say.
+    if window.full_px > 0 {
+        sums.right[LIGHT] -= 0.5 * COUNTS / numbers[LIGHT];
+    }
+    for number in WIDTH + C..N {
+        let (mean, weight) = shape.believed(number);
+        sums.matrix[(number, number)] += weight;
+        sums.right[number] += weight * (mean - numbers[number]);
+    }
+    sums
+}
+
+/// Takes a spot's own numbers out of what is said of all of them, one after the other (Gauss and Jordan): of the first `C` numbers of width that leaves what the
+/// spot says of them, and in their columns how far its own follow them. What a last step of its own numbers gains; `None` where too little is said of them.
+fn eliminate<const N: usize, const C: usize>(
+    matrix: &mut SMatrix<f64, N, N>,
+    right: &mut SVector<f64, N>,
+) -> Option<f64> {
+    let mut gain = 0.0;
+    for own in (0..N).filter(|number| !(WIDTH..WIDTH + C).contains(number)) {
+        let pivot = matrix[(own, own)];
+        if pivot.is_nan() || pivot <= 0.0 {
+            return None;
+        }
+        let (row, off) = (matrix.row(own) / pivot, right[own] / pivot);
+        gain += right[own] * off;
+        let along = matrix.column(own).into_owned();
+        *matrix -= along * row;
+        *right -= along * off;
+        matrix.set_row(own, &row);
+        right[own] = off;
+    }
+    Some(gain)
+}
+
+/// What is believed beforehand of a spot at a place, with a guess of its light and level.
+fn guessed<const N: usize>(
+    shape: &impl Shape<N>,
+    place: (f64, f64),
+    (light, level): (f64, f64),
+) -> SVector<f64, N> {
+    let mut numbers = believed(shape, place);
+    (numbers[LIGHT], numbers[LEVEL]) = (light, level);
+    numbers
+}
+
 /// What is believed beforehand of a spot at a place.
 fn believed<const N: usize>(shape: &impl Shape<N>, (u, v): (f64, f64)) -> SVector<f64, N> {
     let mut numbers = SVector::<f64, N>::zeros();
@@ -351,46 +479,78 @@ fn light_there<const N: usize>(
     (light > 0.0 && light.is_finite()).then_some((light, level))
 }
 
+/// What pixels say of the numbers, with the logarithms of their variances where these are asked for.
 fn sums<const N: usize>(
     window: &Window,
     shape: &impl Shape<N>,
     numbers: &SVector<f64, N>,
     noise: PixelNoise,
+    logs: bool,
 ) -> Sums<N> {
-    let (light, level) = (Lanes::splat(numbers[LIGHT] as f32), Lanes::splat(numbers[LEVEL] as f32));
-    let model = PixelModel { light, level, noise, spilling: shape.spill(numbers).numbers, window };
+    let model = PixelModel::new(numbers, noise, window);
     let [mut chi2, mut pixels, mut log_variances] = [Lanes::ZERO; 3];
     let mut products = [[Lanes::ZERO; N]; N];
     let mut right = [Lanes::ZERO; N];
     for (place, four) in window.fours.iter().enumerate() {
-        let shares = match window.kept(place) {
-            Some(kept) if window.full_px > 0 => kept,
-            _ => shape.shares(four.row, four.column, numbers),
-        };
-        let (columns, residual, weight) = weighed(four, shares, &model);
+        let Modelled { columns, residual, variance, .. } =
+            modelled(four, light_of(place, shape, numbers, window), &model);
+        let weight = weight(four, residual, variance);
         let counts = lanes::less(Lanes::ZERO, weight);
         pixels += counts;
-        if window.full_px > 0 {
+        if logs {
             log_variances -= counts * lanes::ln(weight + (Lanes::ONE - counts));
         }
         let weighted = weight * residual;
         chi2 += weighted * residual;
-        for i in 0..N {
-            right[i] += weighted * columns[i];
-            let scaled = weight * columns[i];
-            for j in 0..=i {
-                products[i][j] += scaled * columns[j];
-            }
+        for (right, column) in right.iter_mut().zip(columns) {
+            *right += weighted * column;
         }
+        add_products(&mut products, &columns, weight);
     }
     let sum = |lanes_of: Lanes| f64::from(lanes::sum(lanes_of));
-    let matrix = SMatrix::from_fn(|i, j| sum(products[i.max(j)][i.min(j)]));
     Sums {
-        matrix,
+        matrix: summed(&products),
         right: SVector::from_fn(|i, _| sum(right[i])),
         chi2: sum(chi2),
         log_variances: sum(log_variances),
         pixels: sum(pixels),
+    }
+}
+
+/// Adds the weighted products of what four pixels say of each number.
+#[inline(always)]
+fn add_products<const N: usize>(products: &mut [[Lanes; N]; N], columns: &[Lanes; N], weight: Lanes) {
+    for i in 0..N {
+        let scaled = weight * columns[i];
+        for j in 0..=i {
+            products[i][j] += scaled * columns[j];
+        }
+    }
+}
+
+/// The sums of such products over lanes.
+fn summed<const N: usize>(products: &[[Lanes; N]; N]) -> SMatrix<f64, N, N> {
+    SMatrix::from_fn(|i, j| f64::from(lanes::sum(products[i.max(j)][i.min(j)])))
+}
+
+/// The share of light 1 in four pixels, its slopes, and those of what spills into them.
+type Light<'a, const N: usize> = (Lanes, [Lanes; N], Option<&'a [Lanes; N]>);
+
+/// What the four pixels of this number get: as it was kept, where charge may spill.
+#[inline(always)]
+fn light_of<'a, const N: usize>(
+    place: usize,
+    shape: &impl Shape<N>,
+    numbers: &SVector<f64, N>,
+    window: &'a Window,
+) -> Light<'a, N> {
+    match window.kept(place) {
+        Some((share, slopes)) if window.full_px > 0 => (share, slopes, window.spilled_slopes(place)),
+        _ => {
+            let four = &window.fours[place];
+            let (share, slopes) = shape.shares(four.row, four.column, numbers);
+            (share, slopes, None)
+        }
     }
 }
 
@@ -399,40 +559,49 @@ struct PixelModel<'a> {
     light: Lanes,
     level: Lanes,
     noise: PixelNoise,
-    spilling: Option<[usize; 2]>,
     window: &'a Window,
 }
 
-/// Slopes, residual and weight of four pixels.
-#[inline(always)]
-fn weighed<const N: usize>(
-    four: &Four,
-    shares: (Lanes, [Lanes; N]),
-    model: &PixelModel<'_>,
-) -> ([Lanes; N], Lanes, Lanes) {
-    let (columns, residual, variance) = modelled(four, shares, model);
-    // A full pixel counts where the model has less than it reads.
-    let tells = Lanes::ONE - four.full * lanes::less(residual, Lanes::ZERO);
-    (columns, residual, four.counts * tells / variance)
+impl<'a> PixelModel<'a> {
+    fn new<const N: usize>(numbers: &SVector<f64, N>, noise: PixelNoise, window: &'a Window) -> Self {
+        let [light, level] = [LIGHT, LEVEL].map(|number| Lanes::splat(numbers[number] as f32));
+        Self { light, level, noise, window }
+    }
 }
 
-/// Slopes, residual and variance of four pixels.
+/// One over the variance of four pixels, 0 where they do not count: a full pixel does where the model has less than it reads.
+#[inline(always)]
+fn weight(four: &Four, residual: Lanes, variance: Lanes) -> Lanes {
+    let tells = Lanes::ONE - four.full * lanes::less(residual, Lanes::ZERO);
+    four.counts * tells / variance
+}
+
+/// Four pixels as a model has them.
+struct Modelled<const N: usize> {
+    /// How they change with each number.
+    columns: [Lanes; N],
+    residual: Lanes,
+    variance: Lanes,
+    /// The light of the spot in them.
+    own: Lanes,
+    /// The share of their noise that is not cut off.
+    seen: Lanes,
+}
+
 #[inline(always)]
 fn modelled<const N: usize>(
     four: &Four,
-    (share, mut columns): (Lanes, [Lanes; N]),
-    &PixelModel { light, level, noise, spilling, window }: &PixelModel<'_>,
-) -> ([Lanes; N], Lanes, Lanes) {
+    (share, mut columns, spilled): Light<'_, N>,
+    &PixelModel { light, level, noise, window }: &PixelModel<'_>,
+) -> Modelled<N> {
     let own = light * share;
     for column in &mut columns {
         *column *= light;
     }
     columns[LIGHT] = share;
     columns[LEVEL] = Lanes::ONE;
-    if let Some(spilling) = spilling {
-        for (number, by_spill) in spilling.into_iter().zip(four.by_spill) {
-            columns[number] = by_spill;
-        }
+    for (column, spilled) in columns.iter_mut().zip(spilled.into_iter().flatten()) {
+        *column += *spilled;
     }
     let mut model = own + level + four.others + four.spilled;
     let wrong = Lanes::splat(noise.shape) * own;
@@ -441,16 +610,18 @@ fn modelled<const N: usize>(
         + wrong * wrong
         + four.others_variance
         + four.spilled_variance;
+    let mut seen = Lanes::ONE;
     if let Some(floor) = window.floor_dn {
         let floor = Lanes::splat(floor);
         let read = window.cut_off.read(model - floor, variance.sqrt());
         model = floor + read.mean;
         variance *= read.variance;
+        seen = read.slope;
         for column in &mut columns {
-            *column *= read.slope;
+            *column *= seen;
         }
     }
-    (columns, four.signal - model, variance)
+    Modelled { columns, residual: four.signal - model, variance, own, seen }
 }
 
 /// A full pixel near the answer of a fit: model + `slopes` step is no less than what it reads, but for noise.
@@ -461,22 +632,31 @@ pub(super) struct FullPixel<const N: usize> {
     pub(super) variance: f64,
 }
 
-/// Tells of the full pixels at the answer of a fit.
+/// Tells of the full pixels at the answer of a fit. What the others and what is believed beforehand say of the numbers: their information, and its product with
+/// how far the answer is off.
 pub(super) fn each_full_pixel<const N: usize>(
     window: &mut Window,
     shape: &mut impl Shape<N>,
     fitted: &Fitted<N>,
     noise: PixelNoise,
     mut with: impl FnMut(FullPixel<N>),
-) {
+) -> (SMatrix<f64, N, N>, SVector<f64, N>) {
     let numbers = &fitted.numbers;
     shape.place(numbers, window.reach);
     overflow(window, shape, numbers);
-    let (light, level) = (Lanes::splat(numbers[LIGHT] as f32), Lanes::splat(numbers[LEVEL] as f32));
-    let model = PixelModel { light, level, noise, spilling: shape.spill(numbers).numbers, window };
-    for (place, four) in window.fours.iter().enumerate().filter(|(_, four)| four.full != Lanes::ZERO) {
-        let Some(shares) = window.kept::<N>(place) else { continue };
-        let (columns, residual, variance) = modelled(four, shares, &model);
+    let model = PixelModel::new(numbers, noise, window);
+    let (mut products, mut right) = ([[Lanes::ZERO; N]; N], [Lanes::ZERO; N]);
+    for (place, four) in window.fours.iter().enumerate() {
+        let Modelled { columns, residual, variance, .. } =
+            modelled(four, light_of(place, shape, numbers, window), &model);
+        let weight = four.counts * (Lanes::ONE - four.full) / variance;
+        for (right, column) in right.iter_mut().zip(columns) {
+            *right += weight * residual * column;
+        }
+        add_products(&mut products, &columns, weight);
+        if four.full == Lanes::ZERO {
+            continue;
+        }
         let columns = columns.map(Lanes::to_array);
         let (residual, variance) = (residual.to_array(), variance.to_array());
         let full = (four.full * four.counts).to_array();
@@ -488,6 +668,16 @@ pub(super) fn each_full_pixel<const N: usize>(
             });
         }
     }
+    let mut information = summed(&products);
+    let mut right = SVector::from_fn(|i, _| f64::from(lanes::sum(right[i])));
+    information[(LEVEL, LEVEL)] += LEVEL_WEIGHT;
+    right[LEVEL] -= LEVEL_WEIGHT * numbers[LEVEL];
+    for number in WIDTH..N {
+        let (mean, weight) = shape.believed(number);
+        information[(number, number)] += weight;
+        right[number] += weight * (mean - numbers[number]);
+    }
+    (information, right)
 }
 
 /// What a fit left of a pixel.
@@ -516,13 +706,16 @@ struct Counted<const N: usize> {
 
 /// Tells what a fit left of each pixel that tells of noise: residuals are noise less what of it the fit took away, r = (1 - J C J' W) n.
 pub(super) fn residuals<const N: usize>(
-    window: &Window,
+    window: &mut Window,
     shape: &mut impl Shape<N>,
     fitted: &Fitted<N>,
     noise: PixelNoise,
     mut with: impl FnMut(Left),
 ) {
     shape.place(&fitted.numbers, window.reach);
+    if window.full_px > 0 {
+        overflow(window, shape, &fitted.numbers);
+    }
     let parts = |pixel: &Counted<N>| [1.0, pixel.light, pixel.light * pixel.light, pixel.known];
     let mut taken_by_all = [SMatrix::<f64, N, N>::zeros(); 4];
     each_counted(window, shape, fitted, noise, |pixel| {
@@ -554,16 +747,14 @@ fn each_counted<const N: usize>(
     mut with: impl FnMut(Counted<N>),
 ) {
     let numbers = &fitted.numbers;
-    let (light, level) = (Lanes::splat(numbers[LIGHT] as f32), Lanes::splat(numbers[LEVEL] as f32));
-    let model = PixelModel { light, level, noise, spilling: shape.spill(numbers).numbers, window };
-    for four in &window.fours {
-        let shares = shape.shares(four.row, four.column, numbers);
-        let (columns, residual, weight) = weighed(four, shares, &model);
-        let own = (light * columns[LIGHT]).to_array();
-        let seen = columns[LEVEL].to_array();
+    let model = PixelModel::new(numbers, noise, window);
+    for (place, four) in window.fours.iter().enumerate() {
+        let Modelled { columns, residual, variance, own, seen } =
+            modelled(four, light_of(place, shape, numbers, window), &model);
+        let weight = weight(four, residual, variance).to_array();
         let known = (four.others_variance + four.spilled_variance).to_array();
         let columns = columns.map(Lanes::to_array);
-        let (residual, weight, full) = (residual.to_array(), weight.to_array(), four.full.to_array());
+        let [own, seen, residual, full] = [own, seen, residual, four.full].map(Lanes::to_array);
         for lane in (0..lanes::LANES).filter(|&lane| weight[lane] > 0.0) {
             with(Counted {
                 slopes: SVector::from_fn(|i, _| f64::from(columns[i][lane])),
@@ -605,7 +796,7 @@ impl Shape<5> for PointSource<'_> {
 
     fn place(&mut self, numbers: &SVector<f64, 5>, reach: usize) {
         self.placed = Some(self.spread.placed(numbers[U] as f32, numbers[V] as f32, reach));
-        let Measured { value, sigma } = self.size.believed(numbers[LIGHT]);
+        let Measured { value, sigma } = self.size.believed_near(numbers[LIGHT], numbers[WIDTH]);
         self.believed = (value, 1.0 / (sigma * sigma).max(LEAST_SIZE_PX2 * LEAST_SIZE_PX2));
     }
 

@@ -9,16 +9,18 @@ use alloc::vec::Vec;
 
 use nalgebra::Matrix2;
 
+use super::album::Album;
 use super::centroid::PixelVariance;
 use super::cut_off::CutOff;
 use super::detection_limit::{self, Step};
 use super::fit::{self, Fitted, PixelNoise, PointSource};
 use super::full_level::FullLevel;
 use super::hot_pixel::{self, Lone, LonePixels};
-use super::learning::{Belief, UNKNOWNS};
+use super::learning::{Beginning, Belief, UNKNOWNS};
 use super::lessons::LEARNT_FRAMES;
 use super::limits;
 use super::neighbourhood::Neighbourhood;
+use super::noise_bins::NoiseBins;
 use super::part::Part;
 use super::patch::{self, Dark, Surroundings};
 use super::settings::{Brightness, Noise, Settings};
@@ -31,8 +33,8 @@ use crate::float::Float as _;
 use crate::frame::FrameView;
 use crate::optics::{LogLight, Measured, Optics, PointSpread, Sensor, SourceSize};
 
-/// Error of measured charge that spills into a pixel, over that.
-const SPILL_ERROR: f64 = 0.1;
+/// Error of charge that spills into a pixel, over that, where it is known how much does: no sensor keeps to the law.
+pub(super) const SPILL_ERROR: f64 = 0.1;
 /// A part whose disc is wider than this is no point's light, px.
 pub(super) const WIDEST_POINT_PX: f64 = 6.5;
 /// Room around a part that a window takes in, px.
@@ -52,17 +54,13 @@ pub(super) const WHOLE: f64 = 0.4;
 const WINGS: f64 = 1.0;
 /// Error of a centre that a wrong shape makes, px; it grows with the square of the shape's error.
 const MISSHAPEN_PX: f64 = 1.0;
-/// Error of the light of a spot whose charge spills, over the light and the share that spills: where that share was measured, and where it
-/// was learnt from such spots, most of whose light and spill are told by the same few pixels.
-const SPILT_LIGHT: f64 = 0.1;
-const SPILT_LEARNT: f64 = 0.5;
-/// Error of a centre that a share that was learnt makes, px, over how much of what is seen has spilled.
-const SPILT_PX: f64 = 0.2;
+/// Error of a centre that a share that was learnt makes, px, over how much of what is seen has spilled and the error of charge that spills.
+const SPILT_PX: f64 = 0.7;
 /// How often the light of others is taken away: their places are better known the second time.
 const PASSES_BESIDE: usize = 2;
 
 /// So many spots that are not full tell the core of the point spread.
-const FEWEST_UNSATURATED: u32 = 4;
+const FEWEST_UNSATURATED: usize = 4;
 
 /// Where the point spread is wrong by more of the light than this, it is none of the shapes that are known.
 const SHAPELESS: f32 = 0.15;
@@ -98,14 +96,24 @@ pub(super) struct Fitter {
     pub(super) lone_pixels: LonePixels,
     /// Whether parts are fitted at all: it takes time.
     pub(super) fits: bool,
-    /// Frames that have told something of the camera by spots that stand alone, and by such beside each other; spots that did and were not full.
+    /// Spots that tell something of the camera, and what they leave.
+    pub(super) album: Album,
+    pub(super) noise_bins: NoiseBins,
+    /// Frames with spots that stand alone, and such that told something of it by spots beside each other; those of either kind that told nothing
+    /// (frames in vain); spots that told something and were not full.
     pub(super) frames: u32,
     pub(super) frames_beside: u32,
-    pub(super) unsaturated: u32,
-    /// The share of the excess that spills from which the point spread was looked for once more.
-    pub(super) begun_again_at: Option<f64>,
+    pub(super) frames_in_vain: u32,
+    pub(super) frames_beside_in_vain: u32,
+    /// Whether usual spots leave more of their light than points do.
+    pub(super) is_odd: bool,
+    /// Whether charge that spills hides that, and they leave far more than noise.
+    pub(super) is_unexplained: bool,
+    pub(super) unsaturated: usize,
     pub(super) window: Window,
     pub(super) widths: Vec<f64>,
+    /// Where the point spread was looked for at first.
+    pub(super) as_wide: Beginning,
     pub(super) telling: Vec<Telling>,
     models: Vec<Option<Model>>,
     /// Whether light moved in this frame while the shutter was open.
@@ -120,19 +128,26 @@ pub(super) struct Fitter {
 
 impl Fitter {
     pub(super) fn new(settings: &Settings, optics: Option<Arc<Optics>>) -> Self {
+        let fits = matches!(settings.brightness, Brightness::Contrast(_));
         Self {
+            album: if fits && optics.is_none() { Album::roomy() } else { Album::default() },
             optics,
             noise: settings.noise,
-            belief: Belief::new(settings.noise, u8::MAX),
+            belief: Belief::new(NoiseBins::new(settings.noise).noise, u8::MAX),
             full_level: FullLevel::default(),
             lone_pixels: LonePixels::default(),
-            fits: matches!(settings.brightness, Brightness::Contrast(_)),
+            fits,
+            noise_bins: NoiseBins::new(settings.noise),
             frames: 0,
             frames_beside: 0,
+            frames_in_vain: 0,
+            frames_beside_in_vain: 0,
+            is_odd: false,
+            is_unexplained: false,
             unsaturated: 0,
-            begun_again_at: None,
             window: Window::default(),
             widths: Vec::new(),
+            as_wide: Belief::believed(),
             telling: Vec::new(),
             models: Vec::new(),
             is_smeared: false,
@@ -152,10 +167,11 @@ impl Fitter {
         self.optics.is_some() || self.belief.is_sure()
     }
 
-    /// Whether a part may be a point's light, as far as that can be told: where nobody measured the point spread, not what the border cuts, and
-    /// nothing at all where points are of no shape that is known.
+    /// Whether a part may be a point's light, as far as that can be told: where nobody measured the point spread, not what the border cuts,
+    /// nothing that is full where spots are odd, and nothing at all where points are of no shape that is known.
     pub(super) fn may_be_point(&self, part: &Part) -> bool {
-        let knows_shape = || !part.outline.cut && self.unknown_shape() == 0.0;
+        let tells_shape = || !self.is_odd || part.outline.peak < self.lowest_full(part.noise_dn);
+        let knows_shape = || !part.outline.cut && !self.is_spread_unknown() && tells_shape();
         part.reason.is_none() && part.radius_px <= WIDEST_POINT_PX && (self.optics.is_some() || knows_shape())
     }
 
@@ -319,9 +335,15 @@ impl Fitter {
 
     /// How wrong any point spread is, as a share of the light in a pixel, where points are of no shape that is known; 0 where they are.
     pub(super) fn unknown_shape(&self) -> f32 {
-        let shape = self.belief.noise().shape;
-        let is_unknown = shape >= SHAPELESS || self.belief.is_too_sharp();
-        if self.optics.is_none() && is_unknown { shape.max(SHAPELESS) } else { 0.0 }
+        let is_unknown = self.optics.is_none() && (self.is_odd || self.is_spread_unknown());
+        if is_unknown { self.belief.noise().shape.max(SHAPELESS) } else { 0.0 }
+    }
+
+    /// Whether what frames told of the point spread is wrong: not even how high its summit is.
+    fn is_spread_unknown(&self) -> bool {
+        let is_in_vain = 2 * self.frames_in_vain > self.frames;
+        let explains_nothing = is_in_vain || self.is_unexplained;
+        self.belief.noise().shape >= SHAPELESS || explains_nothing || self.belief.is_too_sharp()
     }
 
     /// How wrong the point spread is, as a share of the light in a pixel.
@@ -380,7 +402,7 @@ impl Fitter {
     pub(super) fn detection_limit(&self, step: Step, place: Pixel) -> LogLight {
         match &self.optics {
             Some(optics) => detection_limit::of_spread(optics.spread.at(place), 1.0, 0.0, step),
-            None if self.unsaturated < FEWEST_UNSATURATED || self.unknown_shape() > 0.0 => {
+            None if self.unsaturated < FEWEST_UNSATURATED || self.is_spread_unknown() => {
                 detection_limit::of_any_lens(step)
             }
             None => {
@@ -430,7 +452,12 @@ impl Fitter {
                     (_, still) => self.told(&still?, noise, part),
                 };
             }
-            let fitted = limits::fit(&mut self.window, &mut point, guess, noise)?;
+            let mut fitted = limits::fit(&mut self.window, &mut point, guess, noise)?;
+            // What full pixels hide the others tell by the point spread.
+            if self.optics.is_none() && self.window.full_px > 0 {
+                let (mut free, covariance) = (self.belief.free(), self.belief.covariance());
+                fitted = fit::considered(&mut self.window, &mut free, fitted, noise, covariance);
+            }
             self.told(&fitted, noise, part)
         } else if let Some(motion) = self.motion {
             let mut streak = Smeared::new(self.belief.free(), motion);
@@ -493,15 +520,15 @@ impl Fitter {
         let strange2 = (WHOLE * WHOLE) * fitted.strange_share2();
         let is_full = self.window.full_px > 0;
         let spills = if is_full { self.window.spilled_share() } else { 0.0 };
-        let (spilt, spilt_light, seen) = match self.optics {
-            Some(_) => (0.0, SPILT_LIGHT, 1.0),
-            None => (spills, SPILT_LEARNT, self.belief.seen_share()),
+        let (spilt, spill_error, seen) = match self.optics {
+            Some(_) => (0.0, SPILL_ERROR, 1.0),
+            None => (spills, self.belief.spill().relative_error, self.belief.seen_share()),
         };
-        let unsure = point.light * (shape * if is_full { WINGS } else { WHOLE } + spilt_light * spills);
+        let unsure = point.light * (shape * if is_full { WINGS } else { WHOLE } + spill_error * spills);
         let full_px = f64::from(self.window.full_px);
         let blur_px2 = 0.25 * spills * SATURATION_BLUR_PX * SATURATION_BLUR_PX / (full_px + 4.0)
             + (MISSHAPEN_PX * shape * shape) * (MISSHAPEN_PX * shape * shape)
-            + (SPILT_PX * spilt) * (SPILT_PX * spilt);
+            + (SPILT_PX * spill_error * spilt) * (SPILT_PX * spill_error * spilt);
         Some(Model {
             centre: point.centre,
             covariance_px2: point.covariance_px2 * noisier + Matrix2::from_diagonal_element(blur_px2),

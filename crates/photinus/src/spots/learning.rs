@@ -1,20 +1,18 @@
 //! What the frames themselves tell of the camera, where nobody measured it.
 //!
-//! In: spots as fitted, frame after frame. Out: the point spread (a core and a halo around it, both Gaussians), the noise of a
-//! pixel by its light, how wrong the point spread is, and the level at which pixels are full. All begin with what is believed of
-//! any camera, and each frame's spots count like more pixels of one great fit: the same frames in the same order
-//! give the same belief.
+//! In: what spots say of the numbers that all of them share. Out: the point spread (a core and a halo around it, both Gaussians), what becomes of charge
+//! above a full well, the noise of a pixel by its light, and how wrong the point spread is. All begin with what is believed of any camera; the same frames
+//! in the same order give the same belief.
 
 use nalgebra::{SMatrix, SVector};
 
-use super::fit::{PixelNoise, Shape, U, V, WIDTH};
-use super::noise_bins::NoiseBins;
-use super::settings::Noise;
+use super::fit::{self, PixelNoise, Shape, U, V, WIDTH};
+use super::fitting::{NO_POINT, SPILL_ERROR};
 use super::window::Spill;
 #[cfg(not(feature = "std"))]
 use crate::float::Float as _;
 use crate::lanes::Lanes;
-use crate::optics::{Placed, PointSpread, Profile, Shares};
+use crate::optics::{GaussianShares, PlacedGaussian, PointSpread, Profile};
 
 /// Numbers that are learnt ...
 pub(super) const NUMBERS: usize = 5;
@@ -32,16 +30,22 @@ const MOST: [f64; NUMBERS] = [1.1, 0.9, 2.5, 1.0, 3.0];
 /// A belief this sure, per number, is good enough to fit spots with alone.
 const SURE: [f64; NUMBERS] = [0.03, 0.1, 0.5, f64::INFINITY, f64::INFINITY];
 
-/// The number that says how much spills, and how wrong the charge is that spills into a pixel, as a share of it.
+/// The numbers that say how much spills.
 const SPILL: usize = WIDTH + 3;
 const WELL: usize = WIDTH + 4;
-const SPILL_ERROR: f64 = 0.3;
+/// Error of charge that spills into a pixel, over that: where it is not known how much does, and while that is being learnt. Then an error as large as the
+/// spill itself would make what spills least the likeliest, for its pixels would be the least noisy ones.
+const UNKNOWN_ERROR: f64 = 0.3;
+const LEARNING_ERROR: f64 = 0.03;
 
-/// What a spot says nothing of seems to be told by no more than this share of what was known of it.
-const ROUNDING: f64 = 1e-6;
+/// A step is no longer than this, in any number.
+const LONGEST: f64 = 0.5;
 
 /// How far windows see, about, px.
 const SEEN_PX: f64 = 3.5;
+
+/// A halo says how wide it is as if it had no less of the light than this.
+const LEAST_HALO: f32 = 0.02;
 
 type Numbers = SVector<f64, NUMBERS>;
 pub(super) type Information = SMatrix<f64, NUMBERS, NUMBERS>;
@@ -55,36 +59,45 @@ pub(super) struct Beginning {
     pub(super) spill: f64,
 }
 
+/// What a spot says of the numbers.
+pub(super) type Said = fit::Said<NUMBERS>;
+
 /// What is believed of a camera's optics.
 #[derive(Debug)]
 pub(super) struct Belief {
     numbers: Numbers,
-    /// Information on the numbers and its product with them, from all frames.
-    information: Information,
-    weighted: Numbers,
+    /// What is believed of any camera, and one over the variance of each number.
+    believed: Numbers,
+    known: Numbers,
+    /// Covariance of the numbers, from all spots.
+    covariance: Information,
+    core: Profile,
+    halo: Profile,
+    /// The point spread that was learnt last.
     spread: PointSpread,
-    by_number: [PointSpread; 3],
-    noise: NoiseBins,
+    noise: PixelNoise,
 }
 
 impl Belief {
-    /// What is believed before a frame is seen of a camera whose full pixels read `full_from` or more: where that is less than the
+    /// What is believed before a frame is seen of a camera with pixels of such noise whose full ones read `full_from` or more: where that is less than the
     /// converter's end, it is the well that is full.
-    pub(super) fn new(noise: Noise, full_from: u8) -> Self {
+    pub(super) fn new(noise: PixelNoise, full_from: u8) -> Self {
         let (mut numbers, mut known) = (Numbers::from(BELIEVED), KNOWN);
         if full_from < u8::MAX {
             (numbers[NUMBERS - 1], known[NUMBERS - 1]) = (0.0, SAME_WELL);
         }
-        let weights = known.map(|sigma| 1.0 / (sigma * sigma));
-        let information = Information::from_diagonal(&Numbers::from(weights));
+        let known = Numbers::from(known.map(|sigma| 1.0 / (sigma * sigma)));
         let mut belief = Self {
             numbers,
-            information,
-            weighted: information * numbers,
+            believed: numbers,
+            known,
+            covariance: Information::from_diagonal(&known.map(|weight| 1.0 / weight)),
+            core: Profile::new(1.0),
+            halo: Profile::new(1.0),
             spread: PointSpread::dark(),
-            by_number: core::array::from_fn(|_| PointSpread::dark()),
-            noise: NoiseBins::new(noise),
+            noise,
         };
+        belief.go(numbers);
         belief.draw();
         belief
     }
@@ -102,11 +115,18 @@ impl Belief {
 
     /// The share of the excess of full pixels that spills.
     pub(super) fn spill(&self) -> Spill {
-        Spill { share: self.numbers[3], ln_well: self.numbers[4], relative_error: SPILL_ERROR, numbers: None }
+        let share = self.numbers[3];
+        let relative_error = SPILL_ERROR.max(self.sigmas()[3] / share.max(1e-3)).min(UNKNOWN_ERROR);
+        Spill { share, ln_well: self.numbers[4], relative_error, numbers: None }
     }
 
     pub(super) fn noise(&self) -> PixelNoise {
-        self.noise.noise
+        self.noise
+    }
+
+    /// Believes in such noise from now on.
+    pub(super) fn set_noise(&mut self, noise: PixelNoise) {
+        self.noise = noise;
     }
 
     /// Whether the core is as narrow as any that is tried, or cannot be told from it: what is sharper than that is none of the shapes that are known.
@@ -133,13 +153,22 @@ impl Belief {
     }
 
     fn sigmas(&self) -> [f64; NUMBERS] {
-        let covariance = self.information.try_inverse().unwrap_or_else(Information::zeros);
-        core::array::from_fn(|i| covariance[(i, i)].max(0.0).sqrt())
+        core::array::from_fn(|i| self.covariance[(i, i)].max(0.0).sqrt())
+    }
+
+    /// Covariance of the numbers.
+    pub(super) fn covariance(&self) -> &Information {
+        &self.covariance
     }
 
     /// How surely the numbers are known, each by itself: one over its variance.
     pub(super) fn weights(&self) -> [f64; NUMBERS] {
         self.sigmas().map(|sigma| 1.0 / (sigma * sigma))
+    }
+
+    /// A point of the spread as it stands.
+    pub(super) fn known(&self) -> KnownSpread<'_> {
+        KnownSpread { belief: self, placed: None }
     }
 
     /// The spread with its numbers free.
@@ -152,114 +181,147 @@ impl Belief {
         Beginning { core_px: libm::exp(BELIEVED[0]), spill: BELIEVED[3] }
     }
 
-    /// Begins to look for the numbers there, before a frame has told anything.
+    /// Begins to look for the numbers there.
     pub(super) fn begin(&mut self, Beginning { core_px, spill }: Beginning) {
-        let Some(covariance) = self.information.try_inverse() else { return };
-        self.numbers = covariance * self.weighted;
-        self.numbers[0] = libm::log(core_px.clamp(0.3, 2.5));
-        self.numbers[3] = spill;
-        self.draw();
+        let mut numbers = self.believed;
+        (numbers[0], numbers[3]) = (libm::log(core_px.clamp(0.3, 2.5)), spill);
+        self.go(numbers);
     }
 
-    /// How far the numbers are from what was believed before, squared, in sigmas.
-    pub(super) fn strain(&self) -> f64 {
-        let off = self.information * self.numbers - self.weighted;
-        self.information.try_inverse().map_or(0.0, |covariance| off.dot(&(covariance * off)))
-    }
-
-    /// Takes in what a frame's spots say: their information on the numbers and its product with them, differences from the numbers of
-    /// now. Says whether the spread has moved by more than its sigma allows.
-    pub(super) fn take(&mut self, told: &Told) -> bool {
-        let information = self.information + told.information;
-        let weighted = self.weighted + told.weighted + told.information * self.numbers;
-        let Some(covariance) = information.try_inverse() else { return false };
-        let mut numbers = covariance * weighted;
-        for i in 0..NUMBERS {
-            numbers[i] =
-                numbers[i].clamp(LEAST[i], MOST[i]).clamp(self.numbers[i] - 0.5, self.numbers[i] + 0.5);
-        }
-        let moved = (0..NUMBERS).any(|i| {
-            let sigma = covariance[(i, i)].max(0.0).sqrt();
-            (numbers[i] - self.numbers[i]).abs() > (0.5 * sigma).max(0.002)
-        });
-        if moved {
-            self.numbers = numbers;
-            self.draw();
-        }
-        moved
-    }
-
-    /// Keeps what a frame's spots said for good.
-    pub(super) fn keep(&mut self, told: &Told, numbers: Numbers) {
-        self.information += told.information;
-        self.weighted += told.weighted + told.information * numbers;
+    /// Takes these numbers for true.
+    pub(super) fn go(&mut self, numbers: Numbers) {
+        self.numbers = numbers;
+        let core_px = self.core_px();
+        self.core = Profile::new(core_px);
+        self.halo = Profile::new(core_px * libm::exp(numbers[2]));
     }
 
     pub(super) fn numbers(&self) -> Numbers {
         self.numbers
     }
 
-    pub(super) fn noise_bins(&mut self) -> &mut NoiseBins {
-        &mut self.noise
+    /// How far the numbers are from what was believed before, squared, in sigmas.
+    pub(super) fn strain(&self) -> f64 {
+        let off = self.numbers - self.believed;
+        self.known.dot(&off.component_mul(&off))
+    }
+
+    /// The numbers to which what spots say of these leads, held back by a share of the diagonal; `None` where it leads nowhere.
+    pub(super) fn stepped(&self, told: &Told, damping: f64) -> Option<Numbers> {
+        let mut matrix = told.information + Information::from_diagonal(&self.known);
+        let mut right = told.weighted + self.known.component_mul(&(self.believed - self.numbers));
+        for i in 0..NUMBERS {
+            matrix[(i, i)] *= 1.0 + damping;
+            let is_out = |right: f64| {
+                right < 0.0 && self.numbers[i] <= LEAST[i] || right > 0.0 && self.numbers[i] >= MOST[i]
+            };
+            if is_out(right[i]) {
+                right[i] = 0.0;
+                matrix.row_mut(i).fill(0.0);
+                matrix.column_mut(i).fill(0.0);
+                matrix[(i, i)] = 1.0;
+            }
+        }
+        let step = matrix.cholesky()?.solve(&right);
+        let number = |i: usize| (self.numbers[i] + step[i].clamp(-LONGEST, LONGEST)).clamp(LEAST[i], MOST[i]);
+        step.iter().all(|step| step.is_finite()).then(|| Numbers::from_fn(|i, _| number(i)))
+    }
+
+    /// Believes what spots say of the numbers as they stand.
+    pub(super) fn learn(&mut self, told: &Told) {
+        let information = told.information + Information::from_diagonal(&self.known);
+        self.covariance = information.try_inverse().unwrap_or(self.covariance);
+        self.draw();
     }
 
     fn draw(&mut self) {
-        let [core_px, share, wider] =
-            [libm::exp(self.numbers[0]), self.numbers[1], libm::exp(self.numbers[2])];
-        let (core, halo) = (Profile::new(core_px), Profile::new(core_px * wider));
-        let mut add = |of: usize, terms: &[(f64, &Profile, bool)]| {
-            let spread = if of == 3 { &mut self.spread } else { &mut self.by_number[of] };
-            spread.clear();
-            for &(weight, profile, is_slope) in terms {
-                if is_slope {
-                    spread.add_product(weight, &profile.by_ln_sigma, &profile.shares);
-                    spread.add_product(weight, &profile.shares, &profile.by_ln_sigma);
-                } else {
-                    spread.add_product(weight, &profile.shares, &profile.shares);
-                }
-            }
-            spread.sort_coefficients();
+        let share = self.numbers[1];
+        self.spread.become_sum(&[(1.0 - share, &self.core), (share, &self.halo)]);
+    }
+
+    /// The point spread around a point that is (u, v) px from the middle of a window.
+    fn placed(&self, u: f64, v: f64, reach: usize) -> PlacedSpread {
+        let placed = |profile: &Profile| PlacedGaussian {
+            across: profile.placed(u as f32, reach),
+            down: profile.placed(v as f32, reach),
         };
-        add(3, &[(1.0 - share, &core, false), (share, &halo, false)]);
-        add(0, &[(1.0 - share, &core, true), (share, &halo, true)]);
-        add(1, &[(1.0, &halo, false), (-1.0, &core, false)]);
-        add(2, &[(share.max(0.02), &halo, true)]);
+        PlacedSpread { share: self.numbers[1] as f32, core: placed(&self.core), halo: placed(&self.halo) }
     }
 }
 
-/// What the spots of a frame say of the numbers.
+/// A core and a halo around a point.
+#[derive(Clone, Copy)]
+struct PlacedSpread {
+    /// Share of the halo.
+    share: f32,
+    core: PlacedGaussian,
+    halo: PlacedGaussian,
+}
+
+impl PlacedSpread {
+    /// Shares in four pixels, how they change with the place of the point, and with the first three numbers.
+    #[inline(always)]
+    fn four(&self, row: usize, column: usize) -> (Lanes, [Lanes; 2], [Lanes; 3]) {
+        let (core, halo): (GaussianShares, GaussianShares) =
+            (self.core.four(row, column), self.halo.four(row, column));
+        let (most, rest) = (Lanes::splat(1.0 - self.share), Lanes::splat(self.share));
+        let both = |core: Lanes, halo: Lanes| most * core + rest * halo;
+        let by_place = [both(core.by_u, halo.by_u), both(core.by_v, halo.by_v)];
+        let by_wider = Lanes::splat(self.share.max(LEAST_HALO)) * halo.by_ln_sigma;
+        let by_number = [both(core.by_ln_sigma, halo.by_ln_sigma), halo.share - core.share, by_wider];
+        (both(core.share, halo.share), by_place, by_number)
+    }
+}
+
+/// What spots say of the numbers.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Told {
     information: Information,
     weighted: Numbers,
+    /// Twice the negative log-likelihood, but for a constant.
+    pub(super) cost: f64,
 }
 
 impl Told {
-    /// Adds a spot that was fitted with the numbers free: its answer and covariance, with what was believed beforehand taken out.
-    pub(super) fn add(
-        &mut self,
-        answer: &Numbers,
-        covariance: &Information,
-        weights: [f64; NUMBERS],
-        trust: f64,
-    ) {
-        let Some(information) = covariance.try_inverse() else { return };
-        let mut own = information - Information::from_diagonal(&Numbers::from(weights));
-        let mut weighted = information * answer;
-        for i in 0..NUMBERS {
-            let rounding = ROUNDING * weights[i];
-            // No fit takes away what was known.
-            if own[(i, i)] < -rounding {
-                return;
-            }
-            if own[(i, i)] < rounding {
-                own.row_mut(i).fill(0.0);
-                own.column_mut(i).fill(0.0);
-                weighted[i] = 0.0;
-            }
-        }
-        self.information += own * trust;
-        self.weighted += weighted * trust;
+    /// Adds what a spot says. What misfits counts as if its pixels were as much noisier, to be told by nothing else: that is what the logarithm of its misfit costs.
+    pub(super) fn add(&mut self, said: &Said) {
+        let misfit = (said.chi2 / said.freedom).max(1.0);
+        self.information += said.information / misfit;
+        self.weighted += said.weighted / misfit;
+        self.cost += said.chi2 / misfit + said.freedom * libm::log(misfit) + said.rest_of_cost;
+    }
+
+    /// Adds a spot of so many pixels that fits no point: each is as far off as may be.
+    pub(super) fn add_misfit(&mut self, pixels: f64) {
+        self.cost += pixels * (2.0 + libm::log(NO_POINT));
+    }
+}
+
+/// A point whose spread is as believed.
+#[derive(Clone, Copy)]
+pub(super) struct KnownSpread<'a> {
+    belief: &'a Belief,
+    placed: Option<PlacedSpread>,
+}
+
+impl Shape<WIDTH> for KnownSpread<'_> {
+    #[inline(always)]
+    fn shares(&self, row: usize, column: usize, _: &SVector<f64, WIDTH>) -> (Lanes, [Lanes; WIDTH]) {
+        let Some(placed) = &self.placed else { return (Lanes::ZERO, [Lanes::ZERO; WIDTH]) };
+        let (share, [by_u, by_v], _) = placed.four(row, column);
+        (share, [by_u, by_v, Lanes::ZERO, Lanes::ZERO])
+    }
+
+    fn place(&mut self, numbers: &SVector<f64, WIDTH>, reach: usize) {
+        self.placed = Some(self.belief.placed(numbers[U], numbers[V], reach));
+    }
+
+    fn believed(&self, _: usize) -> (f64, f64) {
+        (0.0, 0.0)
+    }
+
+    fn spill(&self, _: &SVector<f64, WIDTH>) -> Spill {
+        Spill { relative_error: LEARNING_ERROR, ..self.belief.spill() }
     }
 }
 
@@ -268,7 +330,7 @@ impl Told {
 pub(super) struct FreeSpread<'a> {
     belief: &'a Belief,
     weights: [f64; NUMBERS],
-    placed: Option<[Placed<'a>; 4]>,
+    placed: Option<PlacedSpread>,
 }
 
 impl Shape<UNKNOWNS> for FreeSpread<'_> {
@@ -279,24 +341,19 @@ impl Shape<UNKNOWNS> for FreeSpread<'_> {
         column: usize,
         numbers: &SVector<f64, UNKNOWNS>,
     ) -> (Lanes, [Lanes; UNKNOWNS]) {
-        let Some([spread, by_number @ ..]) = &self.placed else {
-            return (Lanes::ZERO, [Lanes::ZERO; UNKNOWNS]);
-        };
-        let Shares { mut share, by_u, by_v, .. } = spread.four(row, column);
+        let Some(placed) = &self.placed else { return (Lanes::ZERO, [Lanes::ZERO; UNKNOWNS]) };
+        let (mut share, [by_u, by_v], by_number) = placed.four(row, column);
         let mut columns = [Lanes::ZERO; UNKNOWNS];
-        (columns[0], columns[1]) = (by_u, by_v);
-        for (i, by_number) in by_number.iter().enumerate() {
-            columns[WIDTH + i] = by_number.four(row, column).share;
-            share += Lanes::splat(numbers[WIDTH + i] as f32) * columns[WIDTH + i];
+        (columns[U], columns[V]) = (by_u, by_v);
+        for (i, by_number) in by_number.into_iter().enumerate() {
+            columns[WIDTH + i] = by_number;
+            share += Lanes::splat(numbers[WIDTH + i] as f32) * by_number;
         }
         (share, columns)
     }
 
     fn place(&mut self, numbers: &SVector<f64, UNKNOWNS>, reach: usize) {
-        let (u, v) = (numbers[U], numbers[V]);
-        let [a, b, c] = &self.belief.by_number;
-        let spreads = [&self.belief.spread, a, b, c];
-        self.placed = Some(spreads.map(|spread| spread.placed(u as f32, v as f32, reach)));
+        self.placed = Some(self.belief.placed(numbers[U], numbers[V], reach));
     }
 
     fn believed(&self, number: usize) -> (f64, f64) {
@@ -307,45 +364,8 @@ impl Shape<UNKNOWNS> for FreeSpread<'_> {
         Spill {
             share: self.belief.numbers[3] + numbers[SPILL],
             ln_well: (self.belief.numbers[4] + numbers[WELL]).max(0.0),
-            relative_error: SPILL_ERROR,
+            relative_error: LEARNING_ERROR,
             numbers: Some([SPILL, WELL]),
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use proptest::prelude::*;
-
-    proptest! {
-        /// A spot that says nothing of what spills does so but for rounding, to either side.
-        #[test]
-        fn a_spot_tells_what_it_tells_whatever_it_says_nothing_of(
-            sigmas in prop::array::uniform5(0.01..1.0f64), told in 1.0..1e6f64, off in -0.1..0.1f64,
-        ) {
-            let weights = sigmas.map(|sigma| 1.0 / (sigma * sigma));
-            let mut information = Information::from_diagonal(&Numbers::from(weights));
-            information[(0, 0)] += told;
-            let covariance = information.try_inverse().unwrap();
-            let mut answer = Numbers::zeros();
-            answer[0] = off * told / information[(0, 0)];
-            let mut all = Told::default();
-            all.add(&answer, &covariance, weights, 1.0);
-            prop_assert!((all.information[(0, 0)] / told - 1.0).abs() < 1e-6 * weights[0]);
-            prop_assert!((all.weighted[0] - off * told).abs() < 1e-9 * told * (1.0 + weights[0]));
-            prop_assert_eq!(all.information.fixed_view::<4, 4>(1, 1), SMatrix::<f64, 4, 4>::zeros());
-            prop_assert_eq!(all.weighted.fixed_rows::<4>(1), SVector::<f64, 4>::zeros());
-        }
-    }
-
-    #[test]
-    fn a_fit_that_would_take_away_what_was_known_tells_nothing() {
-        let weights = [4.0; NUMBERS];
-        let mut information = Information::from_diagonal(&Numbers::from(weights)) * 2.0;
-        information[(4, 4)] = 3.0;
-        let mut all = Told::default();
-        all.add(&Numbers::zeros(), &information.try_inverse().unwrap(), weights, 1.0);
-        assert_eq!(all.information, Information::zeros());
     }
 }

@@ -1,25 +1,26 @@
 //! What the spots of a frame teach of the camera, where nobody measured it.
 //!
 //! In: the parts of a frame, and the fitter. Out: the fitter's belief of the point spread and of noise, and the level of full pixels, one frame
-//! wiser. Spots and point spread are fitted to each other in turn; which spots tell is `telling`'s. After some frames there is nothing left to
-//! learn.
+//! wiser. Which spots tell is `telling`'s; their pixels go into the `album`, and whenever there are some more all of its spots and the point spread
+//! are fitted to each other anew. After some frames there is nothing left to learn.
 
-use nalgebra::SVector;
+use core::{mem, slice};
 
+use super::album::{Album, Page};
 use super::beside::Beside;
 use super::fit::{self, Left, PixelNoise, PointSource, Shape, WIDTH};
 use super::fitting::{Fitter, NO_POINT};
-use super::learning::{Beginning, Belief, Information, NUMBERS, Told, UNKNOWNS};
+use super::learning::{Beginning, Belief, Said, Told, UNKNOWNS};
 use super::neighbourhood::Neighbourhood;
+use super::noise_bins::NoiseBins;
 use super::part::Part;
-use super::patch::NOISY_DN;
-use super::smear::Smeared;
-use super::telling::{self, Opened, TELLING_DN, Telling};
-use super::window::{Spill, Window};
+use super::patch::{NOISY_DN, Surroundings};
+use super::smear::{Motion, Smeared};
+use super::telling::{self, Telling};
+use super::window::Window;
 #[cfg(not(feature = "std"))]
 use crate::float::Float as _;
 use crate::frame::FrameView;
-use crate::optics::SourceSize;
 
 /// Levels of full pixels that differ by no more are one, grey levels.
 const SAME_LEVEL_DN: u8 = 4;
@@ -28,23 +29,29 @@ const LEAST_AROUND: f32 = 0.12;
 /// Share of spilled charge in a spot from which its residuals say nothing of noise.
 pub(super) const LEAST_SPILT: f64 = 0.02;
 /// Spots of a frame that are learnt from, at most.
-pub(super) const MOST_TELLING: usize = 40;
-/// Rounds in which a frame's spots and the point spread are fitted to each other.
-const ROUNDS: usize = 5;
+const MOST_TELLING: usize = 12;
+/// Steps in which spots and the point spread are fitted to each other, at most; how far the first is held back, a share of the diagonal, and how much
+/// further or less far the next ones are. What one gains that is the last, twice the negative log-likelihood.
+const STEPS: usize = 12;
+const HELD_BACK: f64 = 1e-3;
+const FURTHER: f64 = 8.0;
+const LESS_FAR: f64 = 0.1;
+const SMALL_GAIN: f64 = 0.1;
+/// Shares of the excess that spill, from each of which the point spread is looked for.
+const SPILLS: [f64; 3] = [0.1, 0.5, 0.9];
 /// Frames after which a belief that is sure of itself learns no more of the spread.
 pub(super) const LEARNT_FRAMES: u32 = 32;
-/// After so many frames noise that is so many times what is expected, as variance, is none.
-const DOUBTED_FRAMES: u32 = 8;
-const IMPLAUSIBLE: f64 = 4.0;
-/// Share of the excess that spills where most of it does.
-const SPILLS: f64 = 0.9;
+/// Where no pixel tells noise, spots of which the one in the middle leaves more than this (squared residuals over degrees of freedom) are no points.
+const UNEXPLAINED: f64 = 2.0;
+/// Spots that leave no more than this, over what the one in the middle leaves, are usual: others may be two, or stand in a smear.
+const USUAL: f64 = 1.5;
+/// Where a point spread that half an album told is wrong by more of the light of usual spots than this, though they are not full, points have no one shape: it is
+/// not worth while to look for what full ones hide.
+const ODD: f32 = 0.06;
 /// A pixel that reads no further below the level of full ones, sigmas of noise, may be full.
 const FULL_SIGMAS: f64 = 2.0;
 /// So many sigmas of noise are from the mean level of full pixels to the lowest.
 const LEVEL_SIGMAS: f64 = 2.5;
-
-/// While the point spread is being learnt a spot's own variance takes in how wide it is not known to be.
-const UNLEARNT: SourceSize = SourceSize { scatter_px2: 0.05, ..SourceSize::UNKNOWN };
 
 impl Fitter {
     /// Whether frames still tell something of the camera.
@@ -64,8 +71,12 @@ impl Fitter {
     pub(super) fn unlearn(&mut self, noise_dn: f64) {
         let lowest = self.full_level.lowest();
         let is_end = is_noisy(noise_dn) && f64::from(lowest) + LEVEL_SIGMAS * noise_dn >= f64::from(u8::MAX);
-        self.belief = Belief::new(self.noise, if is_end { u8::MAX } else { lowest });
+        self.noise_bins = NoiseBins::new(self.noise);
+        self.belief = Belief::new(self.noise_bins.noise, if is_end { u8::MAX } else { lowest });
+        self.album.clear();
         (self.frames, self.frames_beside, self.unsaturated) = (0, 0, 0);
+        (self.frames_in_vain, self.frames_beside_in_vain, self.is_unexplained, self.is_odd) =
+            (0, 0, false, false);
     }
 
     /// The same with what a frame tells.
@@ -110,35 +121,34 @@ impl Fitter {
             return;
         }
         self.look_for_hot_pixels(frame, parts, full_from);
-        let mut telling = core::mem::take(&mut self.telling);
+        let mut telling = mem::take(&mut self.telling);
         telling::find(parts, near, &mut telling);
         let stand_alone = !telling.is_empty();
-        if !stand_alone && self.motion.is_none() && self.frames_beside < LEARNT_FRAMES {
+        let learns_beside =
+            self.frames_beside < LEARNT_FRAMES && self.frames_beside_in_vain < 4 * LEARNT_FRAMES;
+        if !stand_alone && self.motion.is_none() && learns_beside {
             telling::find_beside(parts, near, full_from, &mut telling);
         }
         if self.frames == 0 && self.frames_beside == 0 {
-            self.begin(frame, parts, &telling, full_from);
+            self.begin(parts, &telling, full_from);
         }
-        let most = &telling[..telling.len().min(MOST_TELLING)];
-        let lesson = self.settle(frame, parts, most, full_from);
-        if lesson.tells {
-            self.belief.keep(&lesson.told, lesson.at);
-            self.unsaturated += lesson.unsaturated;
-            if stand_alone {
-                self.learn_noise(frame, parts, most, full_from);
+        let mut album = mem::take(&mut self.album);
+        // What stands alone and fits nothing is of no shape that is known; what lies beside each other may be more than was told apart.
+        match (self.taught(frame, parts, &telling, full_from, &mut album), stand_alone) {
+            (Taught::Nothing, _) => {}
+            (taught, true) => {
                 self.frames += 1;
-                self.begin_again(noise_of(parts));
-            } else {
-                // What they leave is no noise: any of them may be two.
-                self.frames_beside += 1;
+                self.frames_in_vain += u32::from(taught == Taught::InVain);
             }
+            (Taught::InVain, false) => self.frames_beside_in_vain += 1,
+            (Taught::Something, false) => self.frames_beside += 1,
         }
-        self.telling = telling;
+        (self.album, self.telling) = (album, telling);
     }
 
-    /// Begins to look for the point spread at a core as wide as the first spots that are not full. What is full is wider than that: where all are, it begins
-    /// at what explains them better, their width or what is believed of any lens. In noise how wide faint ones are is noise: all spots tell, full or not.
-    fn begin(&mut self, frame: &FrameView<'_>, parts: &[Part], telling: &[Telling], full_from: u8) {
+    /// Begins to look for the point spread at a core as wide as the first spots that are not full; what is full is wider than that. In noise how wide faint
+    /// ones are is noise: all spots tell, full or not.
+    fn begin(&mut self, parts: &[Part], telling: &[Telling], full_from: u8) {
         let is_noisy = is_noisy(noise_of(parts));
         let is_too_wide = |part: &Part| !is_noisy && part.outline.peak >= full_from;
         let all = telling.iter().flat_map(|telling| telling.parts(parts));
@@ -147,82 +157,143 @@ impl Fitter {
         self.widths.clear();
         self.widths.extend(beginning.map(|part| part.width_px(f32::from(part.level))));
         self.widths.sort_unstable_by(f64::total_cmp);
-        let Some(&width_px) = self.widths.get(self.widths.len() / 2) else { return };
-        let most = &telling[..telling.len().min(MOST_TELLING)];
-        let believed = Belief::believed();
-        let believed = Beginning { spill: self.begun_again_at.unwrap_or(believed.spill), ..believed };
-        let as_wide = Beginning { core_px: width_px, ..believed };
-        let other = if all_too_wide { believed } else { as_wide };
-        let mut cost = |beginning: Beginning| {
-            self.belief.begin(beginning);
-            self.settle(frame, parts, most, full_from).cost + self.belief.strain()
-        };
-        let is_as_wide = other == as_wide || cost(as_wide) < cost(other);
-        self.belief.begin(if is_as_wide { as_wide } else { other });
-    }
-
-    /// Begins anew, once, where what is left after some frames is far more than noise: the numbers were found where they explain little. There are two such
-    /// places, and it is the spill that they are looked for from that decides between them.
-    fn begin_again(&mut self, noise_dn: f64) {
-        if self.frames != DOUBTED_FRAMES || self.begun_again_at.is_some() {
-            return;
-        }
-        let variance = |noise: &PixelNoise| f64::from(noise.dark) + TELLING_DN * f64::from(noise.shot);
-        let expected = noise_dn * noise_dn + 1.0 / 12.0 + TELLING_DN * self.noise.shot;
-        if variance(&self.belief.noise()) > IMPLAUSIBLE * expected {
-            let Spill { share, .. } = self.belief.spill();
-            self.unlearn(noise_dn);
-            self.begun_again_at = Some(if share < 0.5 { SPILLS } else { 1.0 - SPILLS });
+        if let Some(&core_px) = self.widths.get(self.widths.len() / 2) {
+            self.as_wide = Beginning { core_px, ..Belief::believed() };
+            self.belief.begin(self.as_wide);
         }
     }
 
-    /// Fits the frame's spots and the point spread to each other.
-    fn settle(
+    /// Takes in what the frame's spots look like, and what that says of the camera. What fits nothing is not kept.
+    fn taught(
         &mut self,
         frame: &FrameView<'_>,
         parts: &[Part],
         telling: &[Telling],
         full_from: u8,
-    ) -> Lesson {
-        let mut lesson = Lesson::default();
-        for _ in 0..ROUNDS {
-            lesson = Lesson { at: self.belief.numbers(), ..Lesson::default() };
-            for spots in telling {
-                let opened = self.open_telling(frame, parts, spots, full_from);
-                if !self.is_light(self.pixel_noise(opened.around)) {
-                    continue;
-                }
-                let Some(spot) = self.fit_freely(&opened) else {
-                    // It is no point's light: each pixel is as far off as may be.
-                    lesson.cost += NO_POINT * (4 * self.window.fours.len()) as f64;
-                    continue;
-                };
-                lesson.told.add(&spot.numbers, &spot.covariance, self.belief.weights(), spot.trust);
-                lesson.unsaturated += u32::from(self.window.full_px == 0);
-                lesson.cost += spot.cost;
-                lesson.tells = true;
+        album: &mut Album,
+    ) -> Taught {
+        if album.is_full() {
+            if telling.iter().all(Telling::is_alone) {
+                self.learn_more_noise(frame, parts, telling, full_from);
             }
-            if !lesson.tells || !self.belief.take(&lesson.told) {
+            return if telling.is_empty() { Taught::Nothing } else { Taught::Something };
+        }
+        let before = album.len();
+        for spots in telling.iter().take(MOST_TELLING) {
+            let opened = self.open_telling(frame, parts, spots, full_from);
+            if album.is_full() {
                 break;
             }
+            if self.is_light(self.pixel_noise(opened.around)) {
+                let mut copied = album.blank();
+                self.window.trade(&mut copied);
+                album.add(Page::new(copied, opened, self.motion));
+            }
         }
-        lesson
+        if album.len() == before {
+            return Taught::Nothing;
+        }
+        if album.has_grown() {
+            self.revise(album);
+        } else {
+            self.look(album.from(before));
+        }
+        let tells = album.from(before).iter().any(Page::fits);
+        if !tells {
+            album.leave(before);
+        }
+        self.unsaturated = album.unsaturated();
+        album.drop_what_fits_nothing();
+        if tells { Taught::Something } else { Taught::InVain }
     }
 
-    /// Fits the window with the numbers of the point spread free.
-    fn fit_freely(&mut self, opened: &Opened) -> Option<FreelyFitted> {
-        let noise = self.pixel_noise(opened.around);
-        let (window, shape, guess) = (&mut self.window, self.belief.free(), opened.guess);
-        match (opened.beside(), self.motion) {
-            ([], None) => told_by::<UNKNOWNS>(window, shape, guess, noise),
-            ([], Some(motion)) => {
-                told_by::<{ UNKNOWNS + 2 }>(window, Smeared::new(shape, motion), guess, noise)
+    /// Fits all spots of the album and the point spread to each other anew. Whenever there are twice as many the point spread is looked for from elsewhere,
+    /// too: there is more than one place where it explains something.
+    fn revise(&mut self, album: &mut Album) {
+        let everywhere = album.has_doubled();
+        let mut least = self.settle(album);
+        let mut numbers = self.belief.numbers();
+        let believed = SPILLS.map(|spill| Beginning { spill, ..Belief::believed() });
+        let elsewhere = believed.into_iter().chain([self.as_wide]);
+        for beginning in elsewhere.filter(|_| everywhere) {
+            self.belief.begin(beginning);
+            let cost = self.settle(album);
+            if cost < least {
+                (least, numbers) = (cost, self.belief.numbers());
             }
-            (&[one], _) => told_by::<{ UNKNOWNS + 3 }>(window, Beside::new(shape, shape, one), guess, noise),
+        }
+        self.belief.go(numbers);
+        let told = self.look(album.pages());
+        self.belief.learn(&told);
+        let misfit = album.median_misfit(&mut self.widths).unwrap_or(0.0);
+        let usual = self.learn_noise(album.pages(), USUAL * misfit);
+        self.is_odd = album.is_half_full() && usual.are_told() && usual.noise.shape > ODD;
+        self.is_unexplained = !self.noise_bins.are_told() && misfit > UNEXPLAINED;
+        album.was_looked_at(everywhere);
+    }
+
+    /// Finds the numbers of the point spread that explain the album best, near those of now, by Levenberg and Marquardt's way down; what is left costs so
+    /// much.
+    fn settle(&mut self, album: &mut Album) -> f64 {
+        let mut damping = HELD_BACK;
+        let mut told = self.look(album.pages());
+        let mut cost = told.cost + self.belief.strain();
+        for _ in 0..STEPS {
+            let before = self.belief.numbers();
+            let Some(numbers) = self.belief.stepped(&told, damping) else { break };
+            self.belief.go(numbers);
+            let next = self.look(album.pages());
+            let gain = cost - (next.cost + self.belief.strain());
+            if gain > 0.0 {
+                (told, cost) = (next, cost - gain);
+                damping *= LESS_FAR;
+                if gain < SMALL_GAIN {
+                    break;
+                }
+            } else {
+                self.belief.go(before);
+                damping *= FURTHER;
+            }
+        }
+        cost
+    }
+
+    /// Fits spots with the point spread as it stands: what they say of it.
+    fn look(&mut self, pages: &mut [Page]) -> Told {
+        let mut told = Told::default();
+        for page in pages {
+            self.window.trade(&mut page.copied);
+            let said = self.says(page);
+            match said {
+                Some(said) => told.add(&said),
+                None => told.add_misfit((4 * self.window.fours.len()) as f64),
+            }
+            self.window.trade(&mut page.copied);
+        }
+        told
+    }
+
+    /// What the spot in the window says of the point spread as it stands.
+    fn says(&mut self, page: &mut Page) -> Option<Said> {
+        let noise = self.pixel_noise(page.opened.around);
+        let (window, known, free) = (&mut self.window, self.belief.known(), self.belief.free());
+        match (page.opened.beside(), page.motion) {
+            ([], None) => page.says::<WIDTH, UNKNOWNS>(window, known, free, noise),
+            ([], Some(motion)) => {
+                let (known, free) = (Smeared::new(known, motion), Smeared::new(free, motion));
+                page.says::<{ WIDTH + 2 }, { UNKNOWNS + 2 }>(window, known, free, noise)
+            }
+            (&[one], _) => {
+                let (known, free) = (Beside::new(known, known, one), Beside::new(free, free, one));
+                page.says::<{ WIDTH + 3 }, { UNKNOWNS + 3 }>(window, known, free, noise)
+            }
             (&[one, other, ..], _) => {
-                let both =
-                    Beside::<_, _, { UNKNOWNS + 3 }, _>::new(Beside::new(shape, shape, one), shape, other);
-                told_by::<{ UNKNOWNS + 6 }>(window, both, guess, noise)
+                type Both<S, const M: usize, const N: usize> = Beside<Beside<S, S, M, M>, S, N, M>;
+                let known_both: Both<_, WIDTH, { WIDTH + 3 }> =
+                    Beside::new(Beside::new(known, known, one), known, other);
+                let free_both: Both<_, UNKNOWNS, { UNKNOWNS + 3 }> =
+                    Beside::new(Beside::new(free, free, one), free, other);
+                page.says::<{ WIDTH + 6 }, { UNKNOWNS + 6 }>(window, known_both, free_both, noise)
             }
         }
     }
@@ -240,31 +311,78 @@ impl Fitter {
         self.lone_pixels.end();
     }
 
-    fn learn_noise(&mut self, frame: &FrameView<'_>, parts: &[Part], telling: &[Telling], full_from: u8) {
-        // What was left by a spread that frames had told less of says little of today's: frame k counts as k of the first.
-        let frames = f64::from(self.frames);
-        let mut bins = *self.belief.noise_bins();
-        bins.fade(frames / (frames + 1.0));
-        for spots in telling {
+    /// Learns the noise of pixels from what all spots of the album leave but those beside each other: any of these may be two. Says what those tell of it
+    /// that are not full and whose misfit is no more than `most`.
+    fn learn_noise(&mut self, pages: &mut [Page], most: f64) -> NoiseBins {
+        let mut all_and_usual = [NoiseBins::new(self.noise); 2];
+        for page in pages.iter_mut().filter(|page| page.opened.beside().is_empty()) {
+            let Some(misfit) = page.misfit else { continue };
+            let is_usual = page.copied.full_px == 0 && misfit <= most;
+            let bins = if is_usual { &mut all_and_usual[..] } else { &mut all_and_usual[..1] };
+            self.window.trade(&mut page.copied);
+            self.add_left(bins, page.opened.around, page.guess(), page.motion);
+            self.window.trade(&mut page.copied);
+        }
+        let [all, mut usual] = all_and_usual;
+        usual.solve();
+        self.solve_noise(all);
+        usual
+    }
+
+    /// Learns the noise of pixels from what a frame's spots leave, too.
+    fn learn_more_noise(
+        &mut self,
+        frame: &FrameView<'_>,
+        parts: &[Part],
+        telling: &[Telling],
+        full_from: u8,
+    ) {
+        let mut bins = self.noise_bins;
+        for spots in telling.iter().take(MOST_TELLING) {
             let opened = self.open_telling(frame, parts, spots, full_from);
-            let around = opened.around;
-            if !self.is_light(self.pixel_noise(around)) {
-                continue;
-            }
-            // Wings beside a spot make its frame no noisier: what is cut off does.
-            let noise = if around.is_cut_off { self.pixel_noise(around) } else { self.belief.noise() };
-            let known = f64::from((noise.dark - self.belief.noise().dark).max(0.0));
-            let shape = PointSource::new(self.belief.spread(), UNLEARNT, self.belief.spill());
-            let add = |left| bins.add(&left, known);
-            let (window, guess) = (&mut self.window, opened.guess);
-            match self.motion {
-                None => tell_noise::<5>(window, shape, guess, noise, add),
-                Some(motion) => tell_noise::<7>(window, Smeared::new(shape, motion), guess, noise, add),
+            if self.is_light(self.pixel_noise(opened.around)) {
+                self.add_left(slice::from_mut(&mut bins), opened.around, opened.guess, self.motion);
             }
         }
-        bins.solve();
-        *self.belief.noise_bins() = bins;
+        self.solve_noise(bins);
     }
+
+    /// Adds what the spot in the window leaves of each pixel.
+    fn add_left(
+        &mut self,
+        bins: &mut [NoiseBins],
+        around: Surroundings,
+        guess: (f64, f64, f64),
+        motion: Option<Motion>,
+    ) {
+        // Wings beside a spot make its frame no noisier: what is cut off does.
+        let noise = if around.is_cut_off { self.pixel_noise(around) } else { self.belief.noise() };
+        let known = f64::from((noise.dark - self.belief.noise().dark).max(0.0));
+        let shape = PointSource::new(self.belief.spread(), self.source_size(), self.belief.spill());
+        let add = |left| bins.iter_mut().for_each(|bins| bins.add(&left, known));
+        match motion {
+            None => tell_noise::<5>(&mut self.window, shape, guess, noise, add),
+            Some(motion) => {
+                tell_noise::<7>(&mut self.window, Smeared::new(shape, motion), guess, noise, add);
+            }
+        }
+    }
+
+    fn solve_noise(&mut self, mut bins: NoiseBins) {
+        bins.solve();
+        self.belief.set_noise(bins.noise);
+        self.noise_bins = bins;
+    }
+}
+
+/// What a frame taught of the camera.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Taught {
+    /// It has no spot that might tell.
+    Nothing,
+    /// It has, but none fits a point.
+    InVain,
+    Something,
 }
 
 /// Noise of a frame in the dark, about, grey levels.
@@ -275,44 +393,6 @@ pub(super) fn noise_of(parts: &[Part]) -> f64 {
 /// Whether so much noise changes what pixels tell by themselves.
 fn is_noisy(noise_dn: f64) -> bool {
     noise_dn >= f64::from(NOISY_DN)
-}
-
-/// What the spots of a frame say of the point spread.
-#[derive(Default)]
-struct Lesson {
-    /// Whether any spot says something.
-    tells: bool,
-    told: Told,
-    /// The numbers of the spread that they were fitted from.
-    at: SVector<f64, NUMBERS>,
-    /// Spots that say something and are not full.
-    unsaturated: u32,
-    /// Twice the negative log-likelihood.
-    cost: f64,
-}
-
-/// What a spot that was fitted with the spread's numbers free says of them, and how far it is to be trusted.
-struct FreelyFitted {
-    numbers: SVector<f64, NUMBERS>,
-    covariance: Information,
-    trust: f64,
-    cost: f64,
-}
-
-fn told_by<const N: usize>(
-    window: &mut Window,
-    mut shape: impl Shape<N>,
-    guess: (f64, f64, f64),
-    noise: PixelNoise,
-) -> Option<FreelyFitted> {
-    let fitted = fit::fit(window, &mut shape, guess, noise)?;
-    let misfit = fitted.chi2 / fitted.freedom;
-    (misfit < NO_POINT).then(|| FreelyFitted {
-        numbers: fitted.numbers.fixed_rows::<NUMBERS>(WIDTH).into_owned(),
-        covariance: fitted.covariance.fixed_view::<NUMBERS, NUMBERS>(WIDTH, WIDTH).into_owned(),
-        trust: 1.0 / misfit.max(1.0),
-        cost: fitted.cost(1.0),
-    })
 }
 
 /// Tells what a spot leaves of each pixel, unless it is no point or its charge spills.

@@ -12,7 +12,8 @@
 //! rejection      what is not a marker by its outline, and why
 //! neighbourhood  how far a part's light is its own                -> room for a window
 //! cut_off        what noisy pixels read where darkness is cut off at 0
-//! lessons        what the frame tells of the camera               -> point spread (learning), noise (noise_bins), full_level
+//! lessons        what the frame tells of the camera (telling), kept as pixels (album)
+//!                                                                -> point spread (learning), noise (noise_bins), full_level
 //! fitting        a window on each part, less its background (window, patch), and the camera's point spread in it (fit), along a segment where it moved (smear)
 //!                two at once where neither is seen alone (pairs); what full pixels say of its light (limits)
 //!                -> centre and light of a point, with covariances
@@ -27,6 +28,7 @@
 //! [`Rejected`] with its [`Reason`]; nothing is dropped in silence. What may be a marker is a spot, however unlikely:
 //! whoever looks at a frame as a whole decides.
 
+mod album;
 mod background;
 mod beside;
 mod centroid;

@@ -23,8 +23,6 @@ pub(super) struct NoiseBins {
     pub(super) noise: PixelNoise,
     believed: [f64; 3],
     bins: [Bin; BINS],
-    pixels: f64,
-    solved_at: f64,
 }
 
 #[derive(Clone, Copy, Debug, Default)]
@@ -42,23 +40,12 @@ impl NoiseBins {
         let dark = noise.read_dn * noise.read_dn + 1.0 / 12.0;
         let believed = [dark, noise.shot.max(1e-4), SHAPE * SHAPE];
         let noise = PixelNoise { dark: dark as f32, shot: noise.shot as f32, shape: SHAPE as f32 };
-        Self { noise, believed, bins: [Bin::default(); BINS], pixels: 0.0, solved_at: 0.0 }
-    }
-
-    /// Lets each pixel so far count for so much of one.
-    pub(super) fn fade(&mut self, share: f64) {
-        for bin in &mut self.bins {
-            let Bin { count, squares, of: [one, light, light2], known } = bin;
-            for sum in [count, squares, one, light, light2, known] {
-                *sum *= share;
-            }
-        }
-        self.pixels *= share;
+        Self { noise, believed, bins: [Bin::default(); BINS] }
     }
 
     /// Adds a pixel, in a frame that has so much noise beyond the camera's.
     pub(super) fn add(&mut self, left: &Left, known: f64) {
-        let octave = (left.light as u32 + 1).ilog2() as usize;
+        let octave = (left.light as u32).saturating_add(1).ilog2() as usize;
         let bin = &mut self.bins[octave.min(BINS - 1)];
         bin.count += 1.0;
         bin.squares += left.square;
@@ -66,15 +53,15 @@ impl NoiseBins {
             *sum += of;
         }
         bin.known += left.of[0] * known + left.known;
-        self.pixels += 1.0;
     }
 
-    /// Solves for the three parts of the noise, once a tenth more pixels are known: Fisher's scoring on their logarithms.
+    /// Whether any pixel was added.
+    pub(super) fn are_told(&self) -> bool {
+        self.bins.iter().any(|bin| bin.count > 0.0)
+    }
+
+    /// Solves for the three parts of the noise: Fisher's scoring on their logarithms.
     pub(super) fn solve(&mut self) {
-        if self.pixels < 1.1 * self.solved_at || self.pixels <= 0.0 {
-            return;
-        }
-        self.solved_at = self.pixels;
         let believed = self.believed.map(libm::log);
         let mut logs = Vector3::new(f64::from(self.noise.dark), f64::from(self.noise.shot), {
             f64::from(self.noise.shape) * f64::from(self.noise.shape)

@@ -7,7 +7,6 @@ use alloc::vec::Vec;
 
 use super::beside::Guess;
 use super::fitting::{Fitter, WIDEST_POINT_PX, radius_px, surroundings_at};
-use super::lessons::MOST_TELLING;
 use super::neighbourhood::Neighbourhood;
 use super::pairs::gap_px;
 use super::part::Part;
@@ -17,7 +16,7 @@ use crate::camera::Pixel;
 use crate::frame::FrameView;
 
 /// A spot with less contrast than this says little of the spread, grey levels.
-pub(super) const TELLING_DN: f64 = 30.0;
+const TELLING_DN: f64 = 30.0;
 /// Nor one that noise may have made, sigmas.
 const TELLING_SIGMAS: f64 = 6.0;
 /// The light of a spot reaches no further than this, px.
@@ -25,7 +24,7 @@ const ALONE_PX: f64 = 9.0;
 /// So many are fitted together at most, ...
 const MOST_TOGETHER: usize = 3;
 /// ... looked for among so many, for where there are more it is clutter, ...
-const MOST_LOOKED_AT: usize = 8 * MOST_TELLING;
+const MOST_LOOKED_AT: usize = 320;
 /// ... no nearer to each other than this, px: there may be more of them than were told apart.
 const APART_PX: f64 = 3.0;
 
@@ -39,6 +38,11 @@ pub(super) struct Telling {
 impl Telling {
     fn alone(index: usize) -> Self {
         Self { indices: [index; MOST_TOGETHER], count: 1 }
+    }
+
+    /// Whether it is a spot by itself.
+    pub(super) fn is_alone(&self) -> bool {
+        self.count == 1
     }
 
     fn indices(&self) -> &[usize] {
@@ -132,10 +136,9 @@ impl Fitter {
         full_from: u8,
     ) -> Opened {
         let (first, all) = (&parts[telling.indices[0]], telling.parts(parts));
-        let nothing = [Guess::NOWHERE; MOST_TOGETHER - 1];
-        if telling.count == 1 {
+        if telling.is_alone() {
             let (_, around) = self.open(frame, first, f64::INFINITY, full_from);
-            return Opened { around, guess: self.guess(first), beside: nothing, count: 0 };
+            return Opened::alone(around, self.guess(first));
         }
         let (middle, window_px) = telling.window(parts);
         let around = surroundings_at(frame, first, middle, window_px, &self.window.cut_off);
@@ -143,7 +146,7 @@ impl Fitter {
         let light = |part: &Part| part.seeming_light(around.level, false);
         let share = self.window.flux().max(telling.count as f64) / all.clone().map(light).sum::<f64>();
         let (u, v) = self.window.local(first.guess);
-        let mut beside = nothing;
+        let mut beside = [Guess::NOWHERE; MOST_TOGETHER - 1];
         for (guess, part) in beside.iter_mut().zip(all.skip(1)) {
             let ln_ratio = libm::log(light(part) / light(first));
             *guess = Guess { place_px: self.window.local(part.guess), ln_ratio };
@@ -153,6 +156,7 @@ impl Fitter {
 }
 
 /// A window on what tells.
+#[derive(Debug)]
 pub(super) struct Opened {
     pub(super) around: Surroundings,
     /// Where the first spot is, px from the middle of the window, and its light.
@@ -162,6 +166,11 @@ pub(super) struct Opened {
 }
 
 impl Opened {
+    /// On one that stands alone.
+    pub(super) fn alone(around: Surroundings, guess: (f64, f64, f64)) -> Self {
+        Self { around, guess, beside: [Guess::NOWHERE; MOST_TOGETHER - 1], count: 0 }
+    }
+
     /// The others.
     pub(super) fn beside(&self) -> &[Guess] {
         &self.beside[..self.count]

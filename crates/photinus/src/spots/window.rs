@@ -5,6 +5,7 @@
 //! same on every machine.
 
 use alloc::vec::Vec;
+use core::mem;
 
 use super::cut_off::CutOff;
 use super::patch::Surroundings;
@@ -32,11 +33,42 @@ pub(super) struct Four {
     /// Light that is not this spot's, grey levels, and its variance.
     pub(super) others: Lanes,
     pub(super) others_variance: Lanes,
-    /// Charge that spills over from full pixels, grey levels, its variance, and how it grows with the share that
-    /// spills and with the logarithm of the well.
+    /// Charge that spills over from full pixels, grey levels, and its variance.
     pub(super) spilled: Lanes,
     pub(super) spilled_variance: Lanes,
-    pub(super) by_spill: [Lanes; 2],
+}
+
+/// What was read into a window, to be looked at again.
+#[derive(Debug, Default)]
+pub(super) struct Copied {
+    middle: (i32, i32),
+    reach: usize,
+    pub(super) full_px: u32,
+    fours: Vec<Four>,
+    floor_dn: Option<f32>,
+    full_dn: f32,
+    given: Vec<f32>,
+}
+
+impl Copied {
+    /// Nothing, with room for the widest window.
+    pub(super) fn blank() -> Self {
+        Self {
+            fours: Vec::with_capacity(MOST_FOURS),
+            given: Vec::with_capacity(MOST_CHARGES),
+            ..Self::default()
+        }
+    }
+}
+
+/// A model that pixels are read with: where the numbers of a point are among its unknowns, as `fit` has them.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Scale {
+    /// The light of the first point and the level of the background, grey levels, ...
+    pub(super) light: f32,
+    pub(super) level: f32,
+    /// ... and which unknowns they are.
+    pub(super) numbers: [usize; 2],
 }
 
 /// The pixels around a spot.
@@ -60,6 +92,20 @@ pub(super) struct Window {
     charge: Vec<f32>,
     /// What each pixel gives on.
     given: Vec<f32>,
+    /// How what spills into each four pixels changes with the numbers, those of one after those of another.
+    spilled_slopes: Vec<Lanes>,
+    giving: Vec<Giving>,
+    /// How what each pixel gives on changes with four of the numbers, by what light adds to it and in all.
+    own_by: Vec<Lanes>,
+    given_by: Vec<Lanes>,
+}
+
+/// A pixel that gives charge on: where it is among all, which four it is of, and which of these.
+#[derive(Clone, Copy, Debug)]
+struct Giving {
+    at: usize,
+    four: usize,
+    lane: usize,
 }
 
 /// What becomes of charge above a full well.
@@ -75,14 +121,21 @@ pub(super) struct Spill {
     pub(super) numbers: Option<[usize; 2]>,
 }
 
-/// Rounds in which charge spills on, at most; how far each goes past its answer; a change by which all is done, grey levels.
+/// Rounds in which charge spills on, at most; a change by which all is done, grey levels.
 const ROUNDS: usize = 16;
-const OVER_RELAXED: f32 = 1.5;
 const DONE_DN: f32 = 0.5;
+/// What spills all around a pixel comes back to it less by so much, where as many pixels give as spots have full ones.
+const COMES_BACK: f64 = 0.95;
+/// Rounds in which slopes of what spills are worked out, at most, and what is left of their errors.
+const SLOPE_ROUNDS: usize = 8;
+const LEFT_OF_SLOPES: f64 = 0.004;
 /// Rows of a window with one before and one after.
 const MOST_ROWS: usize = 2 * WIDEST_PX + 3;
-/// Step of the share of charge that spills and of the logarithm of the well, for slopes.
-const SPILL_STEP: f64 = 0.05;
+/// Fours of pixels of a window, and pixels with those around it, at most.
+const MOST_FOURS: usize = (MOST_ROWS - 2) * (MOST_ROWS - 2).div_ceil(LANES);
+const MOST_CHARGES: usize = MOST_ROWS * (MOST_ROWS - 2 + LANES + 1);
+/// Unknowns of a fit, at most.
+const MOST_UNKNOWNS: usize = 15;
 
 impl Window {
     /// Reads the disc of `radius_px` around the pixel nearest to `place`, less the background; a pixel of `full_from` grey levels or
@@ -95,6 +148,7 @@ impl Window {
         around: &Surroundings,
         full_from: u8,
     ) {
+        self.make_room();
         let (u, v) = nearest_pixel(place);
         let reach = (radius_px.max(1.0) as usize).min(WIDEST_PX) as i32;
         (self.middle, self.reach, self.full_px) = ((u, v), reach as usize, 0);
@@ -144,6 +198,23 @@ impl Window {
                 self.fours.push(four);
             }
         }
+    }
+
+    /// Takes all room that it will ever need, once.
+    fn make_room(&mut self) {
+        if self.giving.capacity() > 0 {
+            return;
+        }
+        self.shares.reserve(MOST_FOURS);
+        for slopes in [&mut self.slopes, &mut self.spilled_slopes] {
+            slopes.reserve(MOST_UNKNOWNS * MOST_FOURS);
+        }
+        for charges in [&mut self.charge, &mut self.given] {
+            charges.reserve(MOST_CHARGES);
+        }
+        self.giving.reserve(LANES * MOST_FOURS);
+        self.own_by.reserve(LANES * MOST_FOURS);
+        self.given_by.reserve(MOST_CHARGES);
     }
 
     /// Takes pixels out that are bright without light.
@@ -196,17 +267,17 @@ impl Window {
         Some((*self.shares.get(four)?, *slopes))
     }
 
-    /// Lets charge above a full well spill: a share of it into the four neighbours and the rest away, until no pixel has more; `model` is
-    /// the light of pixels without that, by the share that was kept. Slopes by the share that spills and by the logarithm of the well are worked out on
-    /// demand.
-    pub(super) fn overflow(&mut self, spill: &Spill, model: impl Fn(Lanes) -> Lanes) {
+    /// Lets charge above a full well spill: a share of it into the four neighbours and the rest away, until no pixel has more; the light of pixels without
+    /// that is by the share that was kept. Says how what spills changes with each of `N` numbers, too.
+    pub(super) fn overflow<const N: usize>(&mut self, spill: &Spill, scale: Scale) {
         let side = 2 * self.reach + 1;
         let stride = side + LANES + 1;
         self.charge.clear();
         self.charge.resize((side + 2) * stride, 0.0);
+        let (of_all, level) = (Lanes::splat(scale.light), Lanes::splat(scale.level));
         for (four, &share) in self.fours.iter().zip(&self.shares) {
             let at = (four.row + 1) * stride + four.column + 1;
-            let light = (model(share) + four.others).to_array();
+            let light = (of_all * share + level + four.others).to_array();
             // Beside the pixels that count a model may be without bounds.
             let charge = light.map(|light| if light.is_finite() { light } else { 0.0 });
             self.charge[at..at + LANES].copy_from_slice(&charge);
@@ -219,29 +290,116 @@ impl Window {
             self.given.resize(self.charge.len(), 0.0);
         }
         self.spill(spill.share, well_dn, stride);
-        self.told(spill.share, stride, |four, spilled| {
-            four.spilled = spilled;
-            four.spilled_variance = (spilled * relative_error) * (spilled * relative_error);
-            four.by_spill = [Lanes::ZERO; 2];
-        });
-        if spill.numbers.is_none() {
-            return;
+        let quarter = Lanes::splat(quarter(spill.share));
+        for four in &mut self.fours {
+            let at = (four.row + 1) * stride + four.column + 1;
+            let read = |at: usize| {
+                self.given[at..].first_chunk::<LANES>().map_or(Lanes::ZERO, |&four| Lanes::new(four))
+            };
+            let received = read(at - 1) + read(at + 1) + read(at - stride) + read(at + stride);
+            // What is full reads as full whatever it gives on.
+            four.spilled = lanes::positive(quarter * received - read(at));
+            four.spilled_variance = (four.spilled * relative_error) * (four.spilled * relative_error);
         }
-        let per_step = Lanes::splat((1.0 / SPILL_STEP) as f32);
-        self.spill(spill.share + SPILL_STEP, well_dn, stride);
-        self.told(spill.share + SPILL_STEP, stride, |four, spilled| {
-            four.by_spill[0] = (spilled - four.spilled) * per_step;
-        });
-        self.spill(spill.share, well_dn * (1.0 + SPILL_STEP as f32), stride);
-        self.told(spill.share, stride, |four, spilled| {
-            four.by_spill[1] = (spilled - four.spilled) * per_step;
-        });
+        self.spilled_slopes.clear();
+        self.spilled_slopes.resize(self.fours.len() * N, Lanes::ZERO);
+        self.find_giving(stride);
+        if !self.giving.is_empty() {
+            for first in (0..N).step_by(LANES) {
+                self.slope::<N>(first, spill, scale, well_dn, stride);
+            }
+        }
+    }
+
+    /// Finds the pixels that give charge on.
+    fn find_giving(&mut self, stride: usize) {
+        self.giving.clear();
+        for (number, four) in self.fours.iter().enumerate() {
+            for lane in 0..LANES {
+                let at = (four.row + 1) * stride + four.column + 1 + lane;
+                if self.given[at] > 0.0 {
+                    self.giving.push(Giving { at, four: number, lane });
+                }
+            }
+        }
+    }
+
+    /// Works out how what spills changes with the four numbers from `first` on: where pixels give, given = charge - well + what the neighbours give, all of
+    /// it linear.
+    fn slope<const N: usize>(
+        &mut self,
+        first: usize,
+        spill: &Spill,
+        scale: Scale,
+        well_dn: f32,
+        stride: usize,
+    ) {
+        let share_and_well = spill.numbers.unwrap_or([N; 2]);
+        let Self { fours, shares, slopes, given, giving, own_by, given_by, spilled_slopes, .. } = self;
+        let around = |at: usize| given[at - 1] + given[at + 1] + given[at - stride] + given[at + stride];
+        own_by.clear();
+        own_by.extend(giving.iter().map(|&Giving { at, four, lane }| {
+            let own = |number: usize| match number {
+                _ if number >= N => 0.0,
+                _ if number == scale.numbers[0] => shares[four].to_array()[lane],
+                _ if number == scale.numbers[1] => 1.0,
+                _ if number == share_and_well[0] => 0.25 * around(at),
+                _ if number == share_and_well[1] => -well_dn,
+                _ => scale.light * slopes[four * N + number].to_array()[lane],
+            };
+            Lanes::new(core::array::from_fn(|number| own(first + number)))
+        }));
+        given_by.clear();
+        given_by.resize(given.len(), Lanes::ZERO);
+        let quarter = Lanes::splat(quarter(spill.share));
+        let over_relaxed = over_relaxed(spill.share);
+        let rounds = libm::ceil(libm::log(LEFT_OF_SLOPES) / libm::log(over_relaxed - 1.0)) as usize + 1;
+        let over_relaxed = Lanes::splat(over_relaxed as f32);
+        let received =
+            |by: &[Lanes], at: usize| quarter * (by[at - 1] + by[at + 1] + by[at - stride] + by[at + stride]);
+        for round in 0..rounds.min(SLOPE_ROUNDS) {
+            for step in 0..giving.len() {
+                let step = if round % 2 == 0 { step } else { giving.len() - 1 - step };
+                let at = giving[step].at;
+                let wanted = own_by[step] + received(given_by, at);
+                let before = given_by[at];
+                given_by[at] = before + over_relaxed * (wanted - before);
+            }
+        }
+        for (number, four) in fours.iter().enumerate() {
+            let spilled = four.spilled.to_array();
+            let mut by = [[0.0; LANES]; LANES];
+            for (lane, spilled) in spilled.into_iter().enumerate() {
+                let at = (four.row + 1) * stride + four.column + 1 + lane;
+                let (received_of_one, gives) = (around(at), given[at] > 0.0);
+                // What gives on and is full reads as full.
+                if received_of_one <= 0.0 || (gives && spilled <= 0.0) {
+                    continue;
+                }
+                let mut own = (received(given_by, at) - given_by[at]).to_array();
+                if let Some(of_share) = share_and_well[0].checked_sub(first).filter(|of| *of < LANES) {
+                    own[of_share] += 0.25 * received_of_one;
+                }
+                for (by, own) in by.iter_mut().zip(own) {
+                    by[lane] = own;
+                }
+            }
+            for (slope, by) in spilled_slopes[number * N..][first..N].iter_mut().zip(by) {
+                *slope = Lanes::new(by);
+            }
+        }
+    }
+
+    /// How what spills into the four pixels of this number changes with each of the numbers.
+    #[inline(always)]
+    pub(super) fn spilled_slopes<const N: usize>(&self, four: usize) -> Option<&[Lanes; N]> {
+        self.spilled_slopes.get(four * N..)?.first_chunk()
     }
 
     /// Works out what each pixel gives on so that none holds more than a well: given = max(0, charge - well + what the neighbours
     /// give), by over-relaxation, there and back, so that no side is preferred.
     fn spill(&mut self, share: f64, well_dn: f32, stride: usize) {
-        let quarter = 0.25 * share.clamp(0.0, 1.0) as f32;
+        let (quarter, over_relaxed) = (quarter(share), over_relaxed(share) as f32);
         let Self { charge, given, .. } = self;
         let rows = charge.len() / stride;
         // By row: pixels that hold more than a well, and those that give. What is away from both gives nothing.
@@ -262,7 +420,7 @@ impl Window {
                     let received =
                         quarter * (given[at - 1] + given[at + 1] + given[at - stride] + given[at + stride]);
                     let wanted = charge[at] - well_dn + received;
-                    let new = (given[at] + OVER_RELAXED * (wanted - given[at])).max(0.0);
+                    let new = (given[at] + over_relaxed * (wanted - given[at])).max(0.0);
                     most = most.max((new - given[at]).abs());
                     given[at] = new;
                 }
@@ -274,17 +432,15 @@ impl Window {
         }
     }
 
-    /// Tells every four pixels what they have been given; what is full reads as full whatever it gives on.
-    fn told(&mut self, share: f64, stride: usize, with: impl Fn(&mut Four, Lanes)) {
-        let quarter = Lanes::splat(0.25 * share.clamp(0.0, 1.0) as f32);
-        for four in &mut self.fours {
-            let at = (four.row + 1) * stride + four.column + 1;
-            let read = |at: usize| {
-                self.given[at..].first_chunk::<LANES>().map_or(Lanes::ZERO, |&four| Lanes::new(four))
-            };
-            let received = read(at - 1) + read(at + 1) + read(at - stride) + read(at + stride);
-            with(four, lanes::positive(quarter * received - read(at)));
-        }
+    /// Changes what was read for what was read another time.
+    pub(super) fn trade(&mut self, copied: &mut Copied) {
+        mem::swap(&mut self.middle, &mut copied.middle);
+        mem::swap(&mut self.reach, &mut copied.reach);
+        mem::swap(&mut self.full_px, &mut copied.full_px);
+        mem::swap(&mut self.fours, &mut copied.fours);
+        mem::swap(&mut self.floor_dn, &mut copied.floor_dn);
+        mem::swap(&mut self.full_dn, &mut copied.full_dn);
+        mem::swap(&mut self.given, &mut copied.given);
     }
 
     /// A place in the image as seen from the middle of the window.
@@ -385,6 +541,17 @@ impl Columns {
     }
 }
 
+/// What each neighbour gets of charge of which this share spills.
+fn quarter(share: f64) -> f32 {
+    0.25 * share.clamp(0.0, 1.0) as f32
+}
+
+/// How far a round goes past its answer: as far as makes the largest error the smallest (D. M. Young, Iterative Solution of Large Linear Systems, 1971).
+fn over_relaxed(share: f64) -> f64 {
+    let comes_back = COMES_BACK * share.clamp(0.0, 1.0);
+    2.0 / (1.0 + (1.0 - comes_back * comes_back).sqrt())
+}
+
 pub(super) fn nearest_pixel(place: Pixel) -> (i32, i32) {
     (place.u.round() as i32, place.v.round() as i32)
 }
@@ -392,7 +559,12 @@ pub(super) fn nearest_pixel(place: Pixel) -> (i32, i32) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::optics::{Gaussian, Shares};
     use proptest::prelude::*;
+    use rand_distr::{Distribution as _, Uniform};
+    use rand_pcg::rand_core::SeedableRng as _;
+
+    const AS_KEPT: Scale = Scale { light: 1.0, level: 0.0, numbers: [0, 1] };
 
     /// What each pixel gives on, by whole sweeps until nothing changes.
     fn swept(charge: &[f32], quarter: f32, well_dn: f32, stride: usize) -> Vec<f32> {
@@ -412,9 +584,9 @@ mod tests {
         let mut window = Window { reach: 3, full_dn: 200.0, ..Window::default() };
         let spill = Spill { share: 0.3, ln_well: 0.7, relative_error: 0.3, numbers: None };
         window.keep(|_| (Lanes::ZERO, []));
-        window.overflow(&spill, |share| share);
+        window.overflow::<0>(&spill, AS_KEPT);
         window.given[40] = f32::INFINITY;
-        window.overflow(&spill, |share| share);
+        window.overflow::<0>(&spill, AS_KEPT);
         assert!(window.given.iter().all(|&given| given == 0.0));
     }
 
@@ -427,12 +599,84 @@ mod tests {
             let mut light = [0.0; LANES];
             (light[0], light[LANES - 1]) = (1000.0, beside);
             window.keep(|_| (Lanes::new(light), []));
-            window.overflow(&spill, |share| share);
+            window.overflow::<0>(&spill, AS_KEPT);
             window.fours[0].spilled.to_array().map(f32::to_bits)
         };
         assert!(f32::from_bits(spilled(0.0)[1]) > 0.0);
         assert_eq!(spilled(f32::INFINITY), spilled(0.0));
         assert_eq!(spilled(f32::NAN), spilled(0.0));
+    }
+
+    /// A window of `2 reach + 1` pixels in which all count, without a background.
+    fn dark(reach: usize, full_dn: f32) -> Window {
+        let side = 2 * reach + 1;
+        let places = (0..side).flat_map(|row| (0..side).step_by(LANES).map(move |column| (row, column)));
+        let four = |(row, column): (usize, usize)| {
+            let counts = core::array::from_fn(|lane| if column + lane < side { 1.0 } else { 0.0 });
+            Four { row, column, counts: Lanes::new(counts), ..Four::default() }
+        };
+        Window { reach, full_dn, fours: places.map(four).collect(), ..Window::default() }
+    }
+
+    /// What spills into pixels of a point of a Gaussian at (u, v) with some light, and its slopes by u, v, light, level, share and well.
+    fn spilled(window: &mut Window, numbers: [f64; 6]) -> Vec<(f32, [f32; 6])> {
+        let spread = PointSpread::gaussians(&[Gaussian { share: 1.0, sigma_px: 0.8 }]).unwrap();
+        let [u, v, light, level, share, ln_well] = numbers;
+        let placed = spread.placed(u as f32, v as f32, window.reach);
+        window.keep(|four| {
+            let Shares { share, by_u, by_v, .. } = placed.four(four.row, four.column);
+            (share, [by_u, by_v, Lanes::ZERO, Lanes::ZERO, Lanes::ZERO, Lanes::ZERO])
+        });
+        let spill = Spill { share, ln_well, relative_error: 0.0, numbers: Some([4, 5]) };
+        let scale = Scale { light: light as f32, level: level as f32, numbers: [2, 3] };
+        // Both after the same first guess, and well past what few rounds leave.
+        for _ in 0..8 {
+            window.overflow::<6>(&spill, scale);
+        }
+        let mut all = Vec::new();
+        for (number, four) in window.fours.iter().enumerate() {
+            let slopes = window.spilled_slopes::<6>(number).unwrap().map(Lanes::to_array);
+            let spilled = four.spilled.to_array();
+            all.extend((0..LANES).map(|lane| (spilled[lane], slopes.map(|slope| slope[lane]))));
+        }
+        all
+    }
+
+    /// Single pixels begin and cease to give: what all of them get, in many spots, changes as slopes have it.
+    #[test]
+    fn slopes_of_what_spills_are_those_of_other_numbers() {
+        let mut window = dark(8, 200.0);
+        let steps = [0.01, 0.01, 40.0, 0.5, 0.01, 0.01];
+        let [mut off, mut change] = [[0.0; 6]; 2];
+        let mut rng = rand_pcg::Pcg64::seed_from_u64(5);
+        let mut uniform = |low: f64, high: f64| Uniform::new(low, high).unwrap().sample(&mut rng);
+        for _ in 0..200 {
+            let numbers = [
+                uniform(-0.5, 0.5),
+                uniform(-0.5, 0.5),
+                uniform(2000.0, 20000.0),
+                uniform(0.0, 2.0),
+                uniform(0.1, 0.95),
+                uniform(0.0, 0.7),
+            ];
+            let here = spilled(&mut window, numbers);
+            for (number, step) in steps.into_iter().enumerate() {
+                let mut at = |by: f64| {
+                    let mut other = numbers;
+                    other[number] += by;
+                    spilled(&mut window, other)
+                };
+                let (after, before) = (at(step), at(-step));
+                for ((here, after), before) in here.iter().zip(after).zip(before) {
+                    let slope = f64::from(after.0 - before.0) / (2.0 * step);
+                    off[number] += (slope - f64::from(here.1[number])).abs();
+                    change[number] += slope.abs();
+                }
+            }
+        }
+        for (number, (off, change)) in off.into_iter().zip(change).enumerate() {
+            assert!(change > 0.0 && off < 0.1 * change, "{number}: {off} of {change}");
+        }
     }
 
     proptest! {

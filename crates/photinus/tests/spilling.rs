@@ -226,6 +226,24 @@ fn light_beyond_full_pixels_that_keep_their_charge_is_told_by_the_wings() {
     }
 }
 
+/// Where a spot is a few full pixels and hardly anything beside them, these alone tell where it is: anywhere that leaves them full.
+#[test]
+fn spots_of_a_few_full_pixels_are_within_their_claim() {
+    let camera = Camera {
+        sigma_px: 0.3,
+        well_dn: 400.0,
+        spill: 0.0,
+        along_columns: 0.0,
+        spots: 4,
+        brightest: 4000.0,
+        disc_px: 0.0,
+    };
+    for found in all_claims(camera, &SEEDS[2..]) {
+        assert!(found.centres < 2.0 && found.rms_px < 0.05, "{} {} px", found.centres, found.rms_px);
+        assert!(found.lights < 2.5 && found.share_told > 0.98, "light {}", found.lights);
+    }
+}
+
 /// Where no pixel but of charge that spills tells that discs are no points, how badly they fit does.
 #[test]
 fn discs_that_spill_are_not_placed_as_points() {

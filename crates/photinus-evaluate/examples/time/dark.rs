@@ -94,9 +94,14 @@ pub(crate) fn whole(rows: &Rows) -> Row {
 
 /// The flights of these seeds, each signal of the vehicle with a word.
 pub(crate) fn of_seeds(seeds: RangeInclusive<u64>, airframe: Airframe, words: &[usize]) -> Rows {
-    seeds.map(|seed| fly(seed, airframe, words)).fold(Rows::default(), |mut rows, own| {
-        rows.iter_mut().zip(&own).for_each(|(row, own)| *row = row.with(own));
-        rows
+    together(&seeds.map(|seed| fly(seed, airframe, words)).collect::<Vec<_>>())
+}
+
+/// All frames of several flights.
+pub(crate) fn together(flights: &[Rows]) -> Rows {
+    flights.iter().fold(Rows::default(), |mut all, own| {
+        all.iter_mut().zip(own).for_each(|(row, own)| *row = row.with(own));
+        all
     })
 }
 

@@ -248,8 +248,7 @@ pub(super) fn fit_from<const N: usize>(
         let mut matrix = sums.matrix;
         let mut right = sums.right;
         let own = matrix[(LIGHT, LIGHT)] * numbers[LIGHT] * numbers[LIGHT];
-        matrix[(LEVEL, LEVEL)] += LEVEL_WEIGHT;
-        right[LEVEL] -= LEVEL_WEIGHT * numbers[LEVEL];
+        add_beliefs(shape, &numbers, WIDTH, &mut matrix, &mut right);
         // A step changes the light by no more than this much: where light, level and widths tell little apart, sums in 32 bits do not.
         matrix[(LIGHT, LIGHT)] += 1.0 / (LIGHT_STEP * LIGHT_STEP * numbers[LIGHT] * numbers[LIGHT]);
         // Where charge spills, full pixels and what they give on say the same of much light and of light without bounds. While it is being learnt how much
@@ -257,11 +256,6 @@ pub(super) fn fit_from<const N: usize>(
         let spill = shape.spill(&numbers);
         if window.full_px > 0 && spill.share > SPILLS && spill.numbers.is_none() {
             right[LIGHT] -= 0.5 * COUNTS / numbers[LIGHT];
-        }
-        for number in WIDTH..N {
-            let (mean, weight) = shape.believed(number);
-            matrix[(number, number)] += weight;
-            right[number] += weight * (mean - numbers[number]);
         }
         let factor = matrix.cholesky()?;
         let mut step = factor.solve(&right);
@@ -398,18 +392,29 @@ fn with_beliefs<const N: usize, const C: usize>(
         overflow(window, shape, numbers);
     }
     let mut sums = sums(window, shape, numbers, noise, true);
-    sums.matrix[(LEVEL, LEVEL)] += LEVEL_WEIGHT;
-    sums.right[LEVEL] -= LEVEL_WEIGHT * numbers[LEVEL];
+    add_beliefs(shape, numbers, WIDTH + C, &mut sums.matrix, &mut sums.right);
     // What full pixels hide may be anything: a narrow core as bright as one likes beneath them, say.
     if window.full_px > 0 {
         sums.right[LIGHT] -= 0.5 * COUNTS / numbers[LIGHT];
     }
-    for number in WIDTH + C..N {
-        let (mean, weight) = shape.believed(number);
-        sums.matrix[(number, number)] += weight;
-        sums.right[number] += weight * (mean - numbers[number]);
-    }
     sums
+}
+
+/// Adds what is believed beforehand of the level and of the numbers of width from `first` on.
+fn add_beliefs<const N: usize>(
+    shape: &impl Shape<N>,
+    numbers: &SVector<f64, N>,
+    first: usize,
+    matrix: &mut SMatrix<f64, N, N>,
+    right: &mut SVector<f64, N>,
+) {
+    matrix[(LEVEL, LEVEL)] += LEVEL_WEIGHT;
+    right[LEVEL] -= LEVEL_WEIGHT * numbers[LEVEL];
+    for number in first..N {
+        let (mean, weight) = shape.believed(number);
+        matrix[(number, number)] += weight;
+        right[number] += weight * (mean - numbers[number]);
+    }
 }
 
 /// Takes a spot's own numbers out of what is said of all of them, one after the other (Gauss and Jordan): of the first `C` numbers of width that leaves what the
@@ -502,23 +507,35 @@ fn sums<const N: usize>(
         }
         let weighted = weight * residual;
         chi2 += weighted * residual;
-        for i in 0..N {
-            right[i] += weighted * columns[i];
-            let scaled = weight * columns[i];
-            for j in 0..=i {
-                products[i][j] += scaled * columns[j];
-            }
+        for (right, column) in right.iter_mut().zip(columns) {
+            *right += weighted * column;
         }
+        add_products(&mut products, &columns, weight);
     }
     let sum = |lanes_of: Lanes| f64::from(lanes::sum(lanes_of));
-    let matrix = SMatrix::from_fn(|i, j| sum(products[i.max(j)][i.min(j)]));
     Sums {
-        matrix,
+        matrix: summed(&products),
         right: SVector::from_fn(|i, _| sum(right[i])),
         chi2: sum(chi2),
         log_variances: sum(log_variances),
         pixels: sum(pixels),
     }
+}
+
+/// Adds the weighted products of what four pixels say of each number.
+#[inline(always)]
+fn add_products<const N: usize>(products: &mut [[Lanes; N]; N], columns: &[Lanes; N], weight: Lanes) {
+    for i in 0..N {
+        let scaled = weight * columns[i];
+        for j in 0..=i {
+            products[i][j] += scaled * columns[j];
+        }
+    }
+}
+
+/// The sums of such products over lanes.
+fn summed<const N: usize>(products: &[[Lanes; N]; N]) -> SMatrix<f64, N, N> {
+    SMatrix::from_fn(|i, j| f64::from(lanes::sum(products[i.max(j)][i.min(j)])))
 }
 
 /// The share of light 1 in four pixels, its slopes, and those of what spills into them.
@@ -620,21 +637,31 @@ pub(super) struct FullPixel<const N: usize> {
     pub(super) variance: f64,
 }
 
-/// Tells of the full pixels at the answer of a fit.
+/// Tells of the full pixels at the answer of a fit. What the others and what is believed beforehand say of the numbers: their information, and its product with
+/// how far the answer is off.
 pub(super) fn each_full_pixel<const N: usize>(
     window: &mut Window,
     shape: &mut impl Shape<N>,
     fitted: &Fitted<N>,
     noise: PixelNoise,
     mut with: impl FnMut(FullPixel<N>),
-) {
+) -> (SMatrix<f64, N, N>, SVector<f64, N>) {
     let numbers = &fitted.numbers;
     shape.place(numbers, window.reach);
     overflow(window, shape, numbers);
     let model = PixelModel::new(numbers, noise, window);
-    for (place, four) in window.fours.iter().enumerate().filter(|(_, four)| four.full != Lanes::ZERO) {
+    let (mut products, mut right) = ([[Lanes::ZERO; N]; N], [Lanes::ZERO; N]);
+    for (place, four) in window.fours.iter().enumerate() {
         let Modelled { columns, residual, variance, .. } =
             modelled(four, light_of(place, shape, numbers, window), &model);
+        let weight = four.counts * (Lanes::ONE - four.full) / variance;
+        for (right, column) in right.iter_mut().zip(columns) {
+            *right += weight * residual * column;
+        }
+        add_products(&mut products, &columns, weight);
+        if four.full == Lanes::ZERO {
+            continue;
+        }
         let columns = columns.map(Lanes::to_array);
         let (residual, variance) = (residual.to_array(), variance.to_array());
         let full = (four.full * four.counts).to_array();
@@ -646,6 +673,10 @@ pub(super) fn each_full_pixel<const N: usize>(
             });
         }
     }
+    let mut information = summed(&products);
+    let mut right = SVector::from_fn(|i, _| f64::from(lanes::sum(right[i])));
+    add_beliefs(shape, numbers, WIDTH, &mut information, &mut right);
+    (information, right)
 }
 
 /// What a fit left of a pixel.

@@ -494,8 +494,7 @@ fn sums<const N: usize>(
 ) -> Sums<N> {
     let model = PixelModel::new(numbers, noise, window);
     let [mut chi2, mut pixels, mut log_variances] = [Lanes::ZERO; 3];
-    let mut products = [[Lanes::ZERO; N]; N];
-    let mut right = [Lanes::ZERO; N];
+    let mut equations = NormalEquations::<N>::ZERO;
     for (place, four) in window.fours.iter().enumerate() {
         let Modelled { columns, residual, variance, .. } =
             modelled(four, light_of(place, shape, numbers, window), &model);
@@ -505,37 +504,42 @@ fn sums<const N: usize>(
         if logs {
             log_variances -= counts * lanes::ln(weight + (Lanes::ONE - counts));
         }
-        let weighted = weight * residual;
-        chi2 += weighted * residual;
-        for (right, column) in right.iter_mut().zip(columns) {
-            *right += weighted * column;
-        }
-        add_products(&mut products, &columns, weight);
+        chi2 += weight * residual * residual;
+        equations.add(&columns, residual, weight);
     }
     let sum = |lanes_of: Lanes| f64::from(lanes::sum(lanes_of));
-    Sums {
-        matrix: summed(&products),
-        right: SVector::from_fn(|i, _| sum(right[i])),
-        chi2: sum(chi2),
-        log_variances: sum(log_variances),
-        pixels: sum(pixels),
-    }
+    let (matrix, right) = equations.summed();
+    Sums { matrix, right, chi2: sum(chi2), log_variances: sum(log_variances), pixels: sum(pixels) }
 }
 
-/// Adds the weighted products of what four pixels say of each number.
-#[inline(always)]
-fn add_products<const N: usize>(products: &mut [[Lanes; N]; N], columns: &[Lanes; N], weight: Lanes) {
-    for i in 0..N {
-        let scaled = weight * columns[i];
-        for j in 0..=i {
-            products[i][j] += scaled * columns[j];
+/// What pixels say of the numbers, lane by lane: products of the slopes, and of slopes and residual, over the variance.
+struct NormalEquations<const N: usize> {
+    products: [[Lanes; N]; N],
+    right: [Lanes; N],
+}
+
+impl<const N: usize> NormalEquations<N> {
+    const ZERO: Self = Self { products: [[Lanes::ZERO; N]; N], right: [Lanes::ZERO; N] };
+
+    /// Adds four pixels.
+    #[inline(always)]
+    fn add(&mut self, columns: &[Lanes; N], residual: Lanes, weight: Lanes) {
+        let weighted = weight * residual;
+        for i in 0..N {
+            self.right[i] += weighted * columns[i];
+            let scaled = weight * columns[i];
+            for (product, column) in self.products[i][..=i].iter_mut().zip(columns) {
+                *product += scaled * *column;
+            }
         }
     }
-}
 
-/// The sums of such products over lanes.
-fn summed<const N: usize>(products: &[[Lanes; N]; N]) -> SMatrix<f64, N, N> {
-    SMatrix::from_fn(|i, j| f64::from(lanes::sum(products[i.max(j)][i.min(j)])))
+    /// Of all lanes: the information, and its product with how far the numbers are off.
+    fn summed(&self) -> (SMatrix<f64, N, N>, SVector<f64, N>) {
+        let sum = |lanes_of: Lanes| f64::from(lanes::sum(lanes_of));
+        let information = SMatrix::from_fn(|i, j| sum(self.products[i.max(j)][i.min(j)]));
+        (information, SVector::from_fn(|i, _| sum(self.right[i])))
+    }
 }
 
 /// The share of light 1 in four pixels, its slopes, and those of what spills into them.
@@ -650,15 +654,12 @@ pub(super) fn each_full_pixel<const N: usize>(
     shape.place(numbers, window.reach);
     overflow(window, shape, numbers);
     let model = PixelModel::new(numbers, noise, window);
-    let (mut products, mut right) = ([[Lanes::ZERO; N]; N], [Lanes::ZERO; N]);
+    let mut others = NormalEquations::<N>::ZERO;
     for (place, four) in window.fours.iter().enumerate() {
         let Modelled { columns, residual, variance, .. } =
             modelled(four, light_of(place, shape, numbers, window), &model);
         let weight = four.counts * (Lanes::ONE - four.full) / variance;
-        for (right, column) in right.iter_mut().zip(columns) {
-            *right += weight * residual * column;
-        }
-        add_products(&mut products, &columns, weight);
+        others.add(&columns, residual, weight);
         if four.full == Lanes::ZERO {
             continue;
         }
@@ -673,8 +674,7 @@ pub(super) fn each_full_pixel<const N: usize>(
             });
         }
     }
-    let mut information = summed(&products);
-    let mut right = SVector::from_fn(|i, _| f64::from(lanes::sum(right[i])));
+    let (mut information, mut right) = others.summed();
     add_beliefs(shape, numbers, WIDTH, &mut information, &mut right);
     (information, right)
 }

@@ -27,8 +27,11 @@ const LEARNED_PX: f64 = 8.0;
 const ZONES_PER_NODE: usize = 2;
 /// Samples of less than this share of the summit are noise more than light.
 const FAINT: f64 = 0.01;
-/// Samples of no more than this share of it are the wings.
+/// Samples of no more than this share of it are the wings; down to that one they tell how unsure faint ones are.
 const WINGS: f64 = 0.3;
+const FAINTEST_WING: f64 = 1e-3;
+/// Rounds in which the errors of samples are weighed by what the round before has of them.
+const ROUNDS_OF_SCATTER: usize = 8;
 /// A sample counts as being of at least this share of the summit.
 const FAINTEST: f64 = 2e-4;
 
@@ -168,37 +171,82 @@ impl Field {
         self.of_zones = tables;
     }
 
-    /// How far the mean of two fields is off, as a share of the light in a pixel, by how they differ: each is of spots that the other knows
-    /// nothing of. Of all light, and of its wings, each sample of which counts alike.
-    pub(super) fn scatter([one, other]: &[Self; 2]) -> [f64; 2] {
+    /// How far the mean of two fields is off, by how they differ: each is of spots that the other knows nothing of.
+    pub(super) fn scatter([one, other]: &[Self; 2]) -> Scatter {
         let summit = summit(&one.whole);
-        let [mut all, mut wings] = [(0.0, 0.0); 2];
-        for (one, other) in one.whole.samples.iter().zip(&other.whole.samples) {
-            let mean = 0.5 * (one + other);
-            let square = (one - other) * (one - other) / (mean * mean);
-            if mean > FAINT * summit {
-                all = (all.0 + mean * square, all.1 + mean);
-            }
-            if mean > FAINT * summit && mean < WINGS * summit {
-                wings = (wings.0 + square, wings.1 + 1.0);
-            }
+        let samples = || {
+            one.whole.samples.iter().zip(&other.whole.samples).map(|(one, other)| {
+                let share = 0.5 * (one + other);
+                (share, 0.25 * (one - other) * (one - other) / (share * share))
+            })
+        };
+        let from = |least: f64, most: f64| {
+            samples().filter(move |(share, _)| (least * summit..most * summit).contains(share))
+        };
+        let (squares, light) = from(FAINT, f64::INFINITY)
+            .fold((0.0, 0.0), |(squares, light), (share, square)| (squares + share * square, light + share));
+        let (of_wings, count) = from(FAINT, WINGS)
+            .fold((0.0, 0.0), |(squares, count), (_, square)| (squares + square, count + 1.0));
+        Scatter {
+            all: f64::sqrt(squares / f64::max(light, f64::MIN_POSITIVE)),
+            wings: f64::sqrt(of_wings / f64::max(count, 1.0)),
+            unknown_below: unknown_below(&from(FAINTEST_WING, WINGS).collect::<Vec<_>>()),
         }
-        [all, wings].map(|(squares, count)| 0.5 * (squares / f64::max(count, f64::MIN_POSITIVE)).sqrt())
     }
 
     /// What the method takes.
-    pub(super) fn spread(&self, [shape_error, wings_error]: [f64; 2]) -> Result<SpreadField, OpticsError> {
+    pub(super) fn spread(&self, shape_error: f64) -> Result<SpreadField, OpticsError> {
         let is_even = self.belief.apart <= 2.0 * LEAST_APART;
         let tables = if is_even { std::slice::from_ref(&self.whole) } else { &self.of_zones };
         let spread = |table: &Table| PointSpread::new(table.samples.clone());
         if let [only] = tables {
-            return SpreadField::even(spread(only)?, shape_error)?.with_wings_error(wings_error);
+            return SpreadField::even(spread(only)?, shape_error);
         }
         let [width_px, height_px] = self.size_px;
         let zones = tables.iter().map(spread).collect::<Result<_, _>>()?;
-        SpreadField::new(zones, self.zones[0], width_px, height_px, shape_error)?
-            .with_wings_error(wings_error)
+        SpreadField::new(zones, self.zones[0], width_px, height_px, shape_error)
     }
+}
+
+/// How far a table is off: the error of a sample over its share of the light.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Scatter {
+    /// Of all light.
+    pub(super) all: f64,
+    /// Of the wings, each sample of which counts alike.
+    pub(super) wings: f64,
+    /// The share of the light that is as small as its error, where light tells samples as counts tell a rate.
+    pub(super) unknown_below: f64,
+}
+
+/// The share of the light that is as small as its error, by shares and squared errors of samples: these are even + `unknown_below` / share, told by weighted least
+/// squares, a square being as unsure as it is large.
+fn unknown_below(samples: &[(f64, f64)]) -> f64 {
+    let (mut even, mut below) = (0.0, 1.0);
+    for _ in 0..ROUNDS_OF_SCATTER {
+        let [mut ones, mut inverses, mut both, mut squares, mut squares_by_inverse] = [0.0; 5];
+        for (share, square) in samples {
+            let (inverse, expected) = (1.0 / share, even + below / share);
+            let weight = 1.0 / (expected * expected).max(f64::MIN_POSITIVE);
+            ones += weight;
+            both += weight * inverse;
+            inverses += weight * inverse * inverse;
+            squares += weight * square;
+            squares_by_inverse += weight * inverse * square;
+        }
+        let determinant = ones * inverses - both * both;
+        if !(determinant > 0.0 && determinant.is_finite()) {
+            return 0.0;
+        }
+        even = (inverses * squares - both * squares_by_inverse) / determinant;
+        below = (ones * squares_by_inverse - both * squares) / determinant;
+        if even < 0.0 {
+            (even, below) = (0.0, squares_by_inverse / inverses);
+        } else if below < 0.0 {
+            (even, below) = (squares / ones, 0.0);
+        }
+    }
+    below
 }
 
 fn summit(table: &Table) -> f64 {
@@ -252,8 +300,26 @@ fn scale(round: &Table) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use photinus::optics::Gaussian;
+    use rand_distr::{Distribution as _, StandardNormal};
+    use rand_pcg::rand_core::SeedableRng as _;
 
     use super::*;
+
+    #[test]
+    fn what_faint_samples_do_not_tell_is_told() {
+        for (seed, (even, below)) in (0..).zip([(0.02, 1e-4), (0.1, 1e-3), (0.0, 3e-5), (0.03, 0.0)]) {
+            let mut rng = rand_pcg::Pcg64::seed_from_u64(seed);
+            let sample = |number: u32| {
+                let share = 1e-3 * libm::exp(0.055 * f64::from(number % 100));
+                let error: f64 = StandardNormal.sample(&mut rng);
+                (share, error * error * (even * even + below / share))
+            };
+            let samples: Vec<(f64, f64)> = (0..4000).map(sample).collect();
+            let told = unknown_below(&samples);
+            assert!((told - below).abs() < 0.1 * below + 3e-6, "{told} not {below}");
+        }
+        assert!(unknown_below(&[]).abs() < 1e-12, "no samples say nothing");
+    }
 
     /// What a round table is believed to be is itself: were its profile sharper or flatter, tables would become so round by round.
     #[test]

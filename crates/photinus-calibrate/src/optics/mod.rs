@@ -161,9 +161,13 @@ pub fn learn(collection: &Collection) -> Result<Learned, LearnError> {
         vignetting::learn(&clear, &field, &light.noise, camera)
     });
     // Where spots are few, what they leave of the table that follows them says too little of how far that is off.
-    let [shape_error, wings_error] =
-        Field::scatter(&halves).map(|scatter| light.noise.shape.max(scatter).min(1.0));
-    let spread = field.spread([shape_error, wings_error.max(shape_error)])?;
+    let scatter = Field::scatter(&halves);
+    let shape_error = light.noise.shape.max(scatter.all).min(1.0);
+    let wings_error = scatter.wings.max(shape_error).min(1.0);
+    let spread = field
+        .spread(shape_error)?
+        .with_wings_error(wings_error)?
+        .with_unknown_below(scatter.unknown_below.min(1.0))?;
     let sources = source_size::learn(told, &field, &light.noise);
     let spread = match sources {
         Some(sources) => spread.with_source_size(sources.size)?,

@@ -16,7 +16,7 @@ use photinus_io::codes::read_codes;
 use photinus_io::kind::Kind;
 use photinus_io::{Error, Result};
 
-pub(crate) use optics::sources;
+pub(crate) use optics::{known_beside_summit, sources};
 
 use crate::aligned::{Aligned, Side};
 use crate::codes;

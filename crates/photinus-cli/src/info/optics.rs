@@ -1,6 +1,6 @@
 //! The optics of a camera: what was measured, and what was not.
 
-use photinus::optics::{Measured, Optics, SourceSize};
+use photinus::optics::{Measured, Optics, SourceSize, SpreadField};
 use photinus_io::camera::OpticsSummary;
 
 use super::Report;
@@ -9,8 +9,8 @@ use crate::calibrate::Width;
 pub(super) fn report(optics: &Optics, summary: Option<&OpticsSummary>, report: &mut Report) {
     let sensor = &optics.sensor;
     let error = 100.0 * optics.spread.shape_error();
-    let wings = 100.0 * optics.spread.wings_error();
-    let known = format!("known to {error:.2} % of a pixel's light, {wings:.1} % beside its summit");
+    let beside = known_beside_summit(&optics.spread);
+    let known = format!("known to {error:.2} % of a pixel's light, beside its summit {beside}");
     report.fact("point spread", format!("{}, {known}", widths(optics)));
     report.fact("sources", sources(optics.spread.source_size()));
     let plain = |measured: Measured| format!("{:.4} ± {:.4}", measured.value, measured.sigma);
@@ -66,6 +66,14 @@ pub(crate) fn sources(size: &SourceSize) -> String {
     format!(
         "wider by {value:.1} ± {sigma:.1}e-3 px^2 with every {light_dn:.0} grey levels of light, scatter {scatter:.1}e-3"
     )
+}
+
+/// How well a point spread is known where all of a saturated spot that can be seen lies.
+pub(crate) fn known_beside_summit(spread: &SpreadField) -> String {
+    let (wings, below) = (100.0 * spread.wings_error(), 100.0 * spread.unknown_below());
+    let faint =
+        if below > 0.0 { format!(", not at all below {below:.1e} % of the light") } else { String::new() };
+    format!("to {wings:.1} %{faint}")
 }
 
 /// Widths of the point spread over the image.

@@ -15,6 +15,7 @@ pub struct SpreadField {
     per_zone: [f64; 2],
     shape_error: f64,
     wings_error: f64,
+    unknown_below: f64,
     source_size: SourceSize,
 }
 
@@ -53,6 +54,7 @@ impl SpreadField {
             per_zone,
             shape_error,
             wings_error: shape_error,
+            unknown_below: 0.0,
             source_size: SourceSize::UNKNOWN,
         })
     }
@@ -65,6 +67,17 @@ impl SpreadField {
         let is_legal = (0.0..=1.0).contains(&wings_error);
         check("the error of the point spread's wings", wings_error, is_legal, "a share, 0 to 1")?;
         Ok(Self { wings_error, ..self })
+    }
+
+    /// The same, of which pixels with less than this share of a spot's light say nothing: beside the summit the error of a pixel's light over that light has the
+    /// square `wings_error`^2 + `unknown_below` / share.
+    ///
+    /// # Errors
+    /// [`OpticsError`] for a share that is not 0 to 1.
+    pub fn with_unknown_below(self, unknown_below: f64) -> Result<Self, OpticsError> {
+        let is_legal = (0.0..=1.0).contains(&unknown_below);
+        check("the share of light below which nothing is known", unknown_below, is_legal, "a share, 0 to 1")?;
+        Ok(Self { unknown_below, ..self })
     }
 
     /// The same, learnt from sources of this size.
@@ -103,6 +116,11 @@ impl SpreadField {
     /// How wrong it is beside its summit, where all of a saturated spot that can be seen lies.
     pub fn wings_error(&self) -> f64 {
         self.wings_error
+    }
+
+    /// Pixels with less than this share of a spot's light say nothing of a saturated one.
+    pub fn unknown_below(&self) -> f64 {
+        self.unknown_below
     }
 
     /// How wide sources are, beyond those that it was learnt from.

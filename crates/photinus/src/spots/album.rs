@@ -209,7 +209,7 @@ mod tests {
     const AROUND: Surroundings =
         Surroundings { level: LEVEL_DN as f32, slope: [0.0; 2], variance: 0.3, is_cut_off: false };
     /// Of one variance everywhere: what it is does not depend on the numbers.
-    const NOISE: PixelNoise = PixelNoise { dark: 0.3, shot: 0.0, shape: 0.0 };
+    const NOISE: PixelNoise = PixelNoise { dark: 0.3, shot: 0.0, shape: 0.0, faint: 0.0 };
 
     /// A page of a point beside the middle of a frame, behind a lens with a core and a halo, whose full pixels keep what is theirs.
     fn page(light: f64, window: &mut Window) -> Page {

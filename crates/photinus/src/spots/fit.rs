@@ -54,13 +54,15 @@ const LEVEL: usize = 3;
 /// The first of the numbers that say how wide the light is.
 pub(super) const WIDTH: usize = 4;
 
-/// Noise of a pixel with signal s from a spot that gives a share m of it: `dark` + `shot` s + (`shape` m)^2, grey levels^2.
+/// Noise of a pixel with signal s, m of it from a spot of light A: `dark` + `shot` s + (`shape` m)^2 + `faint` A m, grey levels^2.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PixelNoise {
     pub(super) dark: f32,
     pub(super) shot: f32,
     /// How wrong the point spread is, as a share of the light in a pixel.
     pub(super) shape: f32,
+    /// Share of a spot's light below which a pixel's is not known at all.
+    pub(super) faint: f32,
 }
 
 /// What a spot is fitted with.
@@ -617,6 +619,7 @@ fn modelled<const N: usize>(
     let mut variance = Lanes::splat(noise.dark)
         + Lanes::splat(noise.shot) * lanes::positive(own + four.others)
         + wrong * wrong
+        + Lanes::splat(noise.faint) * light * lanes::positive(own)
         + four.others_variance
         + four.spilled_variance;
     let mut seen = Lanes::ONE;

@@ -363,6 +363,7 @@ impl Fitter {
                     dark: (read_dn * read_dn + 1.0 / 12.0) as f32,
                     shot: optics.sensor.shot.value as f32,
                     shape: optics.spread.shape_error() as f32,
+                    faint: 0.0,
                 }
             }
         };
@@ -374,7 +375,9 @@ impl Fitter {
         let noise = self.pixel_noise(around);
         match &self.optics {
             Some(optics) if self.window.full_px > 0 => {
-                PixelNoise { shape: optics.spread.wings_error() as f32, ..noise }
+                let (shape, faint) =
+                    (optics.spread.wings_error() as f32, optics.spread.unknown_below() as f32);
+                PixelNoise { shape, faint, ..noise }
             }
             _ => noise,
         }

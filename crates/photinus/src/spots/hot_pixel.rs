@@ -131,7 +131,7 @@ mod tests {
     use crate::optics::Gaussian;
 
     const SIZE: [usize; 2] = [40, 30];
-    const NOISE: PixelNoise = PixelNoise { dark: 0.5, shot: 0.03, shape: 0.05 };
+    const NOISE: PixelNoise = PixelNoise { dark: 0.5, shot: 0.03, shape: 0.05, faint: 0.0 };
 
     #[test]
     fn a_pixel_with_nothing_around_it_is_hot_and_a_point_is_not() {

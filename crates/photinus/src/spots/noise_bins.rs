@@ -39,7 +39,8 @@ impl NoiseBins {
     pub(super) fn new(noise: Noise) -> Self {
         let dark = noise.read_dn * noise.read_dn + 1.0 / 12.0;
         let believed = [dark, noise.shot.max(1e-4), SHAPE * SHAPE];
-        let noise = PixelNoise { dark: dark as f32, shot: noise.shot as f32, shape: SHAPE as f32 };
+        let noise =
+            PixelNoise { dark: dark as f32, shot: noise.shot as f32, shape: SHAPE as f32, faint: 0.0 };
         Self { noise, believed, bins: [Bin::default(); BINS] }
     }
 
@@ -91,6 +92,7 @@ impl NoiseBins {
             dark: parts[0] as f32,
             shot: parts[1] as f32,
             shape: parts[2].sqrt().min(0.5) as f32,
+            faint: 0.0,
         };
     }
 }

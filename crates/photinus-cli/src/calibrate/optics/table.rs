@@ -30,7 +30,8 @@ impl fmt::Display for Told<'_> {
         }
         let error =
             Measured { value: 100.0 * spread.shape_error(), sigma: 100.0 * learned.shape_error_sigma };
-        let wings = format!("% of a pixel's light; beside its summit {:.1} %", 100.0 * spread.wings_error());
+        let wings =
+            format!("% of a pixel's light; beside its summit {}", crate::info::known_beside_summit(spread));
         line(f, "shape known to", error, &wings, "")?;
         let seen = |unseen: Unseen| {
             if learned.unseen.contains(&unseen) { "  (not measured: the usual value)" } else { "" }

@@ -56,6 +56,7 @@ struct PointSpreadTable {
     shape_error: Finite,
     shape_error_sigma: Option<Finite>,
     wings_error: Option<Finite>,
+    unknown_below: Option<Finite>,
     columns: usize,
     /// Row by row. Written by hand, so that rows are lines.
     #[serde(skip_serializing)]
@@ -97,6 +98,7 @@ impl OpticsTable {
                 shape_error: Finite(optics.spread.shape_error()),
                 shape_error_sigma: finite(summary.and_then(|summary| summary.shape_error_sigma)),
                 wings_error: Some(Finite(optics.spread.wings_error())),
+                unknown_below: Some(Finite(optics.spread.unknown_below())),
                 columns: optics.spread.columns(),
                 zones: Vec::new(),
             },
@@ -228,7 +230,10 @@ impl PointSpreadTable {
             }
         };
         let wings_error = self.wings_error.map_or(error, |error| error.0);
-        let field = field.and_then(|field| field.with_wings_error(wings_error));
+        let unknown_below = self.unknown_below.map_or(0.0, |share| share.0);
+        let field = field
+            .and_then(|field| field.with_wings_error(wings_error))
+            .and_then(|field| field.with_unknown_below(unknown_below));
         field.map_err(|error| wrong(path, KEY, &error))
     }
 }
@@ -280,7 +285,8 @@ mod tests {
                     [only] => SpreadField::even(only.clone(), error).unwrap(),
                     _ => SpreadField::new(zones, columns, 752.0, 480.0, error).unwrap(),
                 };
-                let spread = spread.with_wings_error(noise.value).unwrap();
+                let spread =
+                    spread.with_wings_error(noise.value).unwrap().with_unknown_below(spill.value).unwrap();
                 let sources =
                     SourceSize { light_dn: 100.0 + shot.value, growth_px2: shot, scatter_px2: noise.sigma };
                 let spread = spread.with_source_size(sources).unwrap();

@@ -194,11 +194,12 @@ impl Field {
         }
     }
 
-    /// What the method takes.
+    /// What the method takes: light, of which there is nowhere less than none.
     pub(super) fn spread(&self, shape_error: f64) -> Result<SpreadField, OpticsError> {
         let is_even = self.belief.apart <= 2.0 * LEAST_APART;
         let tables = if is_even { std::slice::from_ref(&self.whole) } else { &self.of_zones };
-        let spread = |table: &Table| PointSpread::new(table.samples.clone());
+        let spread =
+            |table: &Table| PointSpread::new(table.samples.iter().map(|share| share.max(0.0)).collect());
         if let [only] = tables {
             return SpreadField::even(spread(only)?, shape_error);
         }

@@ -139,10 +139,10 @@ impl<'a, const N: usize> Correction<'a, N> {
     }
 
     /// Changes a table.
-    pub(super) fn apply(&self, node: usize, table: &mut Table) {
+    pub(super) fn apply(&self, node: usize, table: &mut Table, noise: &Noise) {
         let changes = self.changes[node * COUNT..][..COUNT].iter().zip(self.scale);
         table.change(&changes.map(|(change, scale)| change * scale).collect::<Vec<_>>());
-        table.settle();
+        table.settle_in(noise);
     }
 
     /// How far tables lie apart from their mean, as the evidence has it (D. MacKay, Neural Computation 4, 1992): the mean

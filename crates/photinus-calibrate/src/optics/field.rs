@@ -93,7 +93,7 @@ impl Field {
         let all = |_: [f64; 2]| [(0, 1.0); 1];
         correction.gather(spots, self, noise, 0.1 * summit(&self.whole), all);
         correction.solve(&[&self.whole], &round);
-        correction.apply(0, &mut self.whole);
+        correction.apply(0, &mut self.whole, noise);
         self.become_whole(self.whole.clone());
     }
 
@@ -112,7 +112,7 @@ impl Field {
         correction.gather(spots, self, noise, 0.03 * summit(&self.whole), |place| self.corners(place));
         correction.solve(&self.of_nodes.iter().collect::<Vec<_>>(), &self.whole);
         for (node, table) in self.of_nodes.iter_mut().enumerate() {
-            correction.apply(node, table);
+            correction.apply(node, table, noise);
         }
         // how far the nodes lie apart tells how far they may
         let apart = correction.apart(&self.of_nodes, &self.whole).clamp(LEAST_APART, MOST_APART);
@@ -123,7 +123,7 @@ impl Field {
             samples.iter_mut().zip(&table.samples).for_each(|(sum, share)| *sum += share / count);
         }
         self.whole = Table::new(samples);
-        self.whole.settle();
+        self.whole.settle_in(noise);
         self.blend();
     }
 

@@ -13,6 +13,8 @@ pub(super) const ROUNDING: f64 = 1.0 / 12.0;
 
 /// A pixel this many sigmas above 0 is not cut off there.
 const SELDOM_CUT: f64 = 4.0;
+/// Steps from one grey level to the next show through noise of less, grey levels.
+const FINE: f64 = 0.5;
 /// Noise below this is rounding's alone, grey levels.
 const LEAST_SIGMA: f64 = 0.2;
 /// A pixel that is nearly always cut off tells something, and varies, by no less than this.
@@ -52,9 +54,9 @@ impl Noise {
     }
 }
 
-/// What a pixel reads that is sometimes cut off at 0.
+/// What a pixel reads on average, where that is not its level.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct CutOff {
+pub(super) struct Reading {
     pub(super) mean: f64,
     /// How the mean grows with the level.
     pub(super) slope: f64,
@@ -62,10 +64,16 @@ pub(super) struct CutOff {
 }
 
 impl Noise {
-    /// What a pixel of this level reads, rounded and cut off at 0; `None` where it is hardly ever cut off, or nothing is known of darkness.
-    pub(super) fn cut_off(&self, level: f64, variance: f64) -> Option<CutOff> {
+    /// What a pixel of this level reads, rounded and cut off at 0; `None` where that is its level on average, or nothing is known of darkness.
+    pub(super) fn read(&self, level: f64, variance: f64) -> Option<Reading> {
         let sigma = (variance - ROUNDING).max(LEAST_SIGMA * LEAST_SIGMA).sqrt();
-        if !self.is_dark_seen || level > SELDOM_CUT * sigma + 0.5 {
+        if !self.is_dark_seen {
+            return None;
+        }
+        if sigma < FINE {
+            return Some(step_by_step(level, sigma, variance));
+        }
+        if level > SELDOM_CUT * sigma + 0.5 {
             return None;
         }
         let level = level.max(-SELDOM_CUT * sigma);
@@ -84,11 +92,32 @@ impl Noise {
             square -= 2.0 * step * below * share;
             below += step;
         }
-        Some(CutOff {
+        Some(Reading {
             mean,
             slope: slope.max(LEAST_SLOPE),
             variance: (square - mean * mean).max(LEAST_VARIANCE * variance),
         })
+    }
+}
+
+/// What is read where steps show through noise: of every step from one grey level to the next, how often a pixel is above.
+fn step_by_step(level: f64, sigma: f64, variance: f64) -> Reading {
+    let first = (level - SELDOM_CUT * sigma).floor().max(0.0);
+    let (mut mean, mut slope, mut square) = (0.0, 0.0, 0.0);
+    for above in (0..).map(f64::from) {
+        let t = (first + above + 0.5 - level) / sigma;
+        if t > SELDOM_CUT {
+            break;
+        }
+        let share = 0.5 * libm::erfc(t * std::f64::consts::FRAC_1_SQRT_2);
+        mean += share;
+        square += (2.0 * above + 1.0) * share;
+        slope += libm::exp(-0.5 * t * t) / (sigma * (std::f64::consts::TAU).sqrt());
+    }
+    Reading {
+        mean: first + mean,
+        slope: slope.max(LEAST_SLOPE),
+        variance: (square - mean * mean).max(LEAST_VARIANCE * variance),
     }
 }
 
@@ -254,44 +283,46 @@ mod tests {
 
     /// Against pixels drawn, rounded and cut off one by one.
     #[test]
-    fn what_is_read_near_0_is_what_pixels_read_on_average() {
+    fn what_is_read_is_what_pixels_read_on_average() {
         let mut random = Pcg64::new(3, 7);
-        for sigma in [0.5, 1.0, 3.0] {
-            for level in [-1.5 * sigma, -0.3, 0.0, 0.4, 1.0, 2.5 * sigma] {
-                let noise = Noise {
-                    dark: sigma * sigma + ROUNDING,
-                    shot: 0.0,
-                    shape: 0.0,
-                    bend: 0.0,
-                    is_dark_seen: true,
-                };
-                let mut mean_near = |level: f64| {
-                    let draws = 200_000;
-                    let (mut sum, mut squares) = (0.0, 0.0);
-                    for _ in 0..draws {
-                        let normal: f64 = StandardNormal.sample(&mut random);
-                        let read = (level + sigma * normal).round().max(0.0);
-                        (sum, squares) = (sum + read, squares + read * read);
-                    }
-                    let mean = sum / f64::from(draws);
-                    (mean, squares / f64::from(draws) - mean * mean)
-                };
-                let read = noise.cut_off(level, noise.dark).unwrap();
-                let (mean, variance) = mean_near(level);
-                assert!((read.mean - mean).abs() < 0.015 * sigma, "{read:?} not {mean}, {level} +- {sigma}");
-                let least = variance.max(LEAST_VARIANCE * noise.dark);
-                assert!(
-                    (read.variance / least - 1.0).abs() < 0.08,
-                    "{read:?} not {variance}, {level} +- {sigma}"
-                );
-                let step = 0.25 * sigma;
-                let slope = (mean_near(level + step).0 - mean_near(level - step).0) / (2.0 * step);
-                assert!((read.slope - slope).abs() < 0.06, "{read:?} not {slope}, {level} +- {sigma}");
-            }
+        let near_0 =
+            |sigma: f64| [-1.5 * sigma, -0.3, 0.0, 0.4, 1.0, 2.5 * sigma].map(|level| (sigma, level));
+        let between = |sigma: f64| [6.0, 6.2, 6.5, 6.7].map(|level| (sigma, level));
+        let near_0 = [0.2, 0.5, 1.0, 3.0].into_iter().flat_map(near_0);
+        for (sigma, level) in near_0.chain([0.2, 0.3, 0.45].into_iter().flat_map(between)) {
+            let noise = Noise {
+                dark: sigma * sigma + ROUNDING,
+                shot: 0.0,
+                shape: 0.0,
+                bend: 0.0,
+                is_dark_seen: true,
+            };
+            let mut mean_near = |level: f64| {
+                let draws = 200_000;
+                let (mut sum, mut squares) = (0.0, 0.0);
+                for _ in 0..draws {
+                    let normal: f64 = StandardNormal.sample(&mut random);
+                    let read = (level + sigma * normal).round().max(0.0);
+                    (sum, squares) = (sum + read, squares + read * read);
+                }
+                let mean = sum / f64::from(draws);
+                (mean, squares / f64::from(draws) - mean * mean)
+            };
+            let read = noise.read(level, noise.dark).unwrap();
+            let (mean, variance) = mean_near(level);
+            assert!((read.mean - mean).abs() < 0.015 * sigma, "{read:?} not {mean}, {level} +- {sigma}");
+            let least = variance.max(LEAST_VARIANCE * noise.dark);
+            assert!(
+                (read.variance / least - 1.0).abs() < 0.08,
+                "{read:?} not {variance}, {level} +- {sigma}"
+            );
+            let step = 0.25 * sigma;
+            let slope = (mean_near(level + step).0 - mean_near(level - step).0) / (2.0 * step);
+            assert!((read.slope - slope).abs() < 0.06, "{read:?} not {slope}, {level} +- {sigma}");
         }
         let noise = Noise { dark: 1.0, shot: 0.0, shape: 0.0, bend: 0.0, is_dark_seen: true };
-        assert!(noise.cut_off(6.0, 1.0).is_none(), "nothing is cut off there");
-        assert!(noise.cut_off(-1e9, 1.0).unwrap().mean < 1e-3, "and all of it here");
+        assert!(noise.read(6.0, 1.0).is_none(), "nothing is cut off there");
+        assert!(noise.read(-1e9, 1.0).unwrap().mean < 1e-3, "and all of it here");
     }
 
     #[test]

@@ -74,5 +74,5 @@ pub(super) fn correct(table: &mut Table, spots: &[Spot<'_>], field: &Field, nois
     for (sample, share) in table.samples.iter_mut().enumerate() {
         *share = if radius_px(sample) < LAST_PX { *share - rest } else { 0.0 };
     }
-    table.settle();
+    table.settle_in(noise);
 }

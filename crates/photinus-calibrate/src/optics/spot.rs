@@ -147,7 +147,7 @@ impl<'a> Spot<'a> {
             let light = self.light * share.value;
             let level = self.level + self.ground.above_middle(column, row);
             let expected = level + light;
-            let (left, variance, slope) = match noise.cut_off(expected, noise.variance(light)) {
+            let (left, variance, slope) = match noise.read(expected, noise.variance(light)) {
                 Some(read) if value == 0 && read.slope < LEAST_TOLD => continue,
                 None if value == 0 && expected < 0.5 => continue,
                 Some(read) => (

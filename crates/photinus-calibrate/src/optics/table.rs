@@ -2,6 +2,7 @@
 
 use photinus::optics::{Gaussian, PointSpread};
 
+use super::noise::Noise;
 use super::window::REACH;
 
 /// Samples per pixel.
@@ -143,6 +144,14 @@ impl Table {
             v += share * place_px(index / SIDE);
         }
         [u / sum, v / sum]
+    }
+
+    /// Settles a table that was learnt in noise: where darkness is cut off nothing tells how far below it a sample is, and it is dark.
+    pub(super) fn settle_in(&mut self, noise: &Noise) {
+        if !noise.is_dark_seen {
+            self.samples.iter_mut().for_each(|share| *share = share.max(0.0));
+        }
+        self.settle();
     }
 
     /// Scales the light to 1, and moves its centroid to the point. Samples of no light are below 0 as often as above: were these cut off, noise would come out as

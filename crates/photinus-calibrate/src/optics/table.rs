@@ -146,16 +146,19 @@ impl Table {
         [u / sum, v / sum]
     }
 
-    /// Settles a table that was learnt in noise: where darkness is cut off nothing tells how far below it a sample is, and it is dark.
+    /// Settles a table that was learnt in noise. Where that is seen, samples of no light are below 0 as often as above (were these cut off, noise would come out as
+    /// light of the wings), and all of the light is seen; where darkness is cut off, nothing tells how far below it a sample is, and it is dark.
     pub(super) fn settle_in(&mut self, noise: &Noise) {
-        if !noise.is_dark_seen {
+        if noise.is_dark_seen {
+            self.settle();
+            self.become_even();
+        } else {
             self.samples.iter_mut().for_each(|share| *share = share.max(0.0));
+            self.settle();
         }
-        self.settle();
     }
 
-    /// Scales the light to 1, and moves its centroid to the point. Samples of no light are below 0 as often as above: were these cut off, noise would come out as
-    /// light of the wings.
+    /// Scales the light to 1, and moves its centroid to the point.
     pub(super) fn settle(&mut self) {
         let [u, v] = self.centroid_px();
         if u.abs().max(v.abs()) > 1e-6 {
@@ -164,6 +167,15 @@ impl Table {
         }
         let sum = self.samples.iter().sum::<f64>() / (PER_PX * PER_PX) as f64;
         self.samples.iter_mut().for_each(|share| *share /= sum);
+        self.renew();
+    }
+
+    /// All pixels together see as much light wherever in a pixel it falls: as the light of each spot is free, no frame tells otherwise.
+    fn become_even(&mut self) {
+        let phase = |sample: usize| sample / SIDE % PER_PX * PER_PX + sample % SIDE % PER_PX;
+        let mut sums = [0.0; PER_PX * PER_PX];
+        self.samples.iter().enumerate().for_each(|(sample, share)| sums[phase(sample)] += share);
+        self.samples.iter_mut().enumerate().for_each(|(sample, share)| *share /= sums[phase(sample)]);
         self.renew();
     }
 
@@ -263,18 +275,35 @@ mod tests {
         }
     }
 
+    const NOISE: Noise = Noise { dark: 0.44, shot: 0.03, shape: 0.0, bend: 0.0, is_dark_seen: true };
+
     #[test]
     fn noise_of_a_settled_table_is_no_light() {
         let mut table = Table::gaussians(&[Gaussian { share: 1.0, sigma_px: 0.5 }]);
         table.move_by(-0.3, 0.2);
         let is_dark = |sample: usize| (4.0..8.0).contains(&radius_px(sample));
         for sample in (0..COUNT).filter(|sample| is_dark(*sample)) {
-            table.samples[sample] += if sample % 2 == 0 { 1e-3 } else { -1e-3 };
+            let pixel = sample % SIDE / PER_PX + sample / SIDE / PER_PX;
+            table.samples[sample] += if pixel % 2 == 0 { 1e-3 } else { -1e-3 };
         }
-        table.settle();
+        table.settle_in(&NOISE);
         let light: f64 =
             (0..COUNT).filter(|sample| is_dark(*sample)).map(|sample| table.samples[sample]).sum();
         assert!((light / (PER_PX * PER_PX) as f64).abs() < 1e-3, "{light} where there is none");
+    }
+
+    #[test]
+    fn pixels_see_all_of_a_settled_table_wherever_in_a_pixel_it_is() {
+        let mut table = Table::gaussians(&[Gaussian { share: 1.0, sigma_px: 0.5 }]);
+        let unevenly = |sample: usize| 1.0 + 0.1 * f64::from(sample % SIDE % PER_PX == 1);
+        table.samples.iter_mut().enumerate().for_each(|(sample, share)| *share *= unevenly(sample));
+        table.settle_in(&NOISE);
+        let mut shares = Shares::default();
+        for (u, v) in [(0.0, 0.0), (0.25, 0.5), (-0.1, 0.33), (0.45, -0.2)] {
+            table.window(u, v, REACH, &mut shares);
+            let all: f64 = shares.of_pixels.iter().map(|share| share.value).sum();
+            assert!((all - 1.0).abs() < 2e-3, "{all} of the light at ({u}, {v})");
+        }
     }
 
     #[test]

@@ -284,7 +284,7 @@ mod tests {
         let is_dark = |sample: usize| (4.0..8.0).contains(&radius_px(sample));
         for sample in (0..COUNT).filter(|sample| is_dark(*sample)) {
             let pixel = sample % SIDE / PER_PX + sample / SIDE / PER_PX;
-            table.samples[sample] += if pixel % 2 == 0 { 1e-3 } else { -1e-3 };
+            table.samples[sample] += if pixel.is_multiple_of(2) { 1e-3 } else { -1e-3 };
         }
         table.settle_in(&NOISE);
         let light: f64 =

@@ -106,12 +106,13 @@ fn knowing(width_px: f64) -> Detector {
 fn shares(width_px: f64) -> Vec<f64> {
     let reach = PointSpread::REACH_PX as f64;
     let place = |index: usize| index as f64 / PointSpread::SAMPLES_PER_PX as f64 - reach;
-    let share = |i: usize| {
-        let (x, y) = (place(i % PointSpread::SIDE), place(i / PointSpread::SIDE));
-        let variance_px2 = width_px * width_px;
-        libm::exp(-(x * x + y * y) / (2.0 * variance_px2)) / (std::f64::consts::TAU * variance_px2)
-    };
+    let share = |i: usize| gaussian(place(i % PointSpread::SIDE), place(i / PointSpread::SIDE), width_px);
     (0..PointSpread::SIDE * PointSpread::SIDE).map(share).collect()
+}
+
+fn gaussian(x: f64, y: f64, width_px: f64) -> f64 {
+    let variance_px2 = width_px * width_px;
+    libm::exp(-(x * x + y * y) / (2.0 * variance_px2)) / (std::f64::consts::TAU * variance_px2)
 }
 
 fn knowing_spread(spread: SpreadField) -> Detector {
@@ -240,6 +241,29 @@ fn full_spots_are_as_unsure_as_faint_samples_of_the_table() {
         let ignorant = with_wrong_tables(unknown_below, 0.0).honesty();
         assert!(ignorant < 0.6, "below {unknown_below}: {ignorant} without being told");
     }
+}
+
+/// Before a camera whose table is bent by a wave along each axis of a pixel, and that knows it.
+#[test]
+fn spots_of_a_bent_table_are_as_unsure_as_it_places_them() {
+    const WIDTH_PX: f64 = 0.8;
+    let bent_px = 0.03;
+    let bent = |px: f64| px - bent_px * libm::sin(std::f64::consts::TAU * px);
+    let place =
+        |index: usize| index as f64 / PointSpread::SAMPLES_PER_PX as f64 - PointSpread::REACH_PX as f64;
+    let samples = (0..PointSpread::SIDE * PointSpread::SIDE).map(|sample| {
+        let (x, y) = (bent(place(sample % PointSpread::SIDE)), bent(place(sample / PointSpread::SIDE)));
+        gaussian(x, y, WIDTH_PX)
+    });
+    let table = PointSpread::new(samples.collect()).unwrap();
+    let told = |place_error_px: f64| {
+        let spread = SpreadField::even(table.clone(), 0.0).unwrap();
+        let spread = spread.with_place_error_px(place_error_px).unwrap();
+        measure_with(knowing_spread(spread), WIDTH_PX, 200.0, 40).honesty()
+    };
+    let honesty = told(bent_px * std::f64::consts::FRAC_1_SQRT_2);
+    assert!((0.85..1.15).contains(&honesty), "{honesty}");
+    assert!(told(0.0) < 0.5, "nothing would be known of it");
 }
 
 #[test]

@@ -194,6 +194,11 @@ impl Field {
         }
     }
 
+    /// The table of the whole image.
+    pub(super) fn whole(&self) -> &Table {
+        &self.whole
+    }
+
     /// What the method takes: light, of which there is nowhere less than none.
     pub(super) fn spread(&self, shape_error: f64) -> Result<SpreadField, OpticsError> {
         let is_even = self.belief.apart <= 2.0 * LEAST_APART;

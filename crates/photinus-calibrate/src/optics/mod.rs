@@ -22,6 +22,7 @@
 //! ```
 //! What a recording does not excite stays what is believed beforehand and is named in [`Learned::unseen`].
 
+mod bent;
 mod choice;
 mod collect;
 mod column_smear;
@@ -148,6 +149,8 @@ pub fn learn(collection: &Collection) -> Result<Learned, LearnError> {
         light::free_residuals(told, &field, halves.each_ref(), &noise)
     };
     let light = light::explain(&residuals, darkness.noise_dn, &noise);
+    let bent_px = bent::places_px(field.whole(), &start.table(), &light.noise, median_light(&spots));
+    let even_px = phases::known_to_px(&spots, |spot| has_full || field.is_never_full(spot, full_from));
     let used = spots.iter().filter(|spot| spot.is_used).count();
     if used < FEWEST_SPOTS {
         return Err(LearnError::TooFew { found: used, needed: FEWEST_SPOTS });
@@ -167,7 +170,8 @@ pub fn learn(collection: &Collection) -> Result<Learned, LearnError> {
     let spread = field
         .spread(shape_error)?
         .with_wings_error(wings_error)?
-        .with_unknown_below(scatter.unknown_below.min(1.0))?;
+        .with_unknown_below(scatter.unknown_below.min(1.0))?
+        .with_place_error_px(bent_px.min(even_px))?;
     let sources = source_size::learn(told, &field, &light.noise);
     let spread = match sources {
         Some(sources) => spread.with_source_size(sources.size)?,
@@ -252,6 +256,13 @@ fn place(spots: &mut [Spot<'_>], field: &Field, noise: &Noise, steps: usize) {
     misfits.sort_by(f64::total_cmp);
     let Some(&middle) = misfits.get(misfits.len() / 2) else { return };
     spots.iter_mut().for_each(|spot| spot.is_used &= spot.misfit < 2.5 * middle + 0.5);
+}
+
+/// The light that half of the spots that are used have more of, grey levels.
+fn median_light(spots: &[Spot<'_>]) -> f64 {
+    let mut lights: Vec<f64> = spots.iter().filter(|spot| spot.is_used).map(|spot| spot.light).collect();
+    lights.sort_by(f64::total_cmp);
+    lights.get(lights.len() / 2).copied().unwrap_or(1.0)
 }
 
 /// Tables of the spots of even or of odd number, from a start that knows none of them.

@@ -12,6 +12,10 @@ pub(super) fn report(optics: &Optics, summary: Option<&OpticsSummary>, report: &
     let beside = known_beside_summit(&optics.spread);
     let known = format!("known to {error:.2} % of a pixel's light, beside its summit {beside}");
     report.fact("point spread", format!("{}, {known}", widths(optics)));
+    let place_px = optics.spread.place_error_px();
+    if place_px > 0.0 {
+        report.fact("places", format!("{place_px:.4} px off, depending on where in a pixel a spot is"));
+    }
     report.fact("sources", sources(optics.spread.source_size()));
     let plain = |measured: Measured| format!("{:.4} ± {:.4}", measured.value, measured.sigma);
     let levels = |measured: Measured| format!("{:.2} ± {:.2} grey levels", measured.value, measured.sigma);

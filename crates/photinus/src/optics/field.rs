@@ -16,6 +16,7 @@ pub struct SpreadField {
     shape_error: f64,
     wings_error: f64,
     unknown_below: f64,
+    place_error_px: f64,
     source_size: SourceSize,
 }
 
@@ -55,6 +56,7 @@ impl SpreadField {
             shape_error,
             wings_error: shape_error,
             unknown_below: 0.0,
+            place_error_px: 0.0,
             source_size: SourceSize::UNKNOWN,
         })
     }
@@ -78,6 +80,17 @@ impl SpreadField {
         let is_legal = (0.0..=1.0).contains(&unknown_below);
         check("the share of light below which nothing is known", unknown_below, is_legal, "a share, 0 to 1")?;
         Ok(Self { unknown_below, ..self })
+    }
+
+    /// The same, which places spots wrong by this (standard deviation along an axis), depending on where in a pixel they are: a bent point spread with uneven places
+    /// explains spots as well as a straight one.
+    ///
+    /// # Errors
+    /// [`OpticsError`] for an error that is not 0 px to 1 px.
+    pub fn with_place_error_px(self, place_error_px: f64) -> Result<Self, OpticsError> {
+        let is_legal = (0.0..=1.0).contains(&place_error_px);
+        check("the error of places", place_error_px, is_legal, "0 px to 1 px")?;
+        Ok(Self { place_error_px, ..self })
     }
 
     /// The same, learnt from sources of this size.
@@ -121,6 +134,11 @@ impl SpreadField {
     /// Pixels with less than this share of a spot's light say nothing of a saturated one.
     pub fn unknown_below(&self) -> f64 {
         self.unknown_below
+    }
+
+    /// How far off it places spots, depending on where in a pixel they are, px (standard deviation along an axis).
+    pub fn place_error_px(&self) -> f64 {
+        self.place_error_px
     }
 
     /// How wide sources are, beyond those that it was learnt from.

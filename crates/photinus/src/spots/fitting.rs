@@ -527,10 +527,12 @@ impl Fitter {
             Some(_) => (0.0, SPILL_ERROR, 1.0),
             None => (spills, self.belief.spill().relative_error, self.belief.seen_share()),
         };
+        let place_px = self.optics.as_ref().map_or(0.0, |optics| optics.spread.place_error_px());
         let unsure = point.light * (shape * if is_full { WINGS } else { WHOLE } + spill_error * spills);
         let full_px = f64::from(self.window.full_px);
         let blur_px2 = 0.25 * spills * SATURATION_BLUR_PX * SATURATION_BLUR_PX / (full_px + 4.0)
             + (MISSHAPEN_PX * shape * shape) * (MISSHAPEN_PX * shape * shape)
+            + place_px * place_px
             + (SPILT_PX * spill_error * spilt) * (SPILT_PX * spill_error * spilt);
         Some(Model {
             centre: point.centre,

@@ -33,6 +33,12 @@ impl fmt::Display for Told<'_> {
         let wings =
             format!("% of a pixel's light; beside its summit {}", crate::info::known_beside_summit(spread));
         line(f, "shape known to", error, &wings, "")?;
+        writeln!(
+            f,
+            "  {:<17} {:.4} px, depending on where in a pixel a spot is",
+            "places off by",
+            spread.place_error_px()
+        )?;
         let seen = |unseen: Unseen| {
             if learned.unseen.contains(&unseen) { "  (not measured: the usual value)" } else { "" }
         };

@@ -57,6 +57,7 @@ struct PointSpreadTable {
     shape_error_sigma: Option<Finite>,
     wings_error: Option<Finite>,
     unknown_below: Option<Finite>,
+    place_error_px: Option<Finite>,
     columns: usize,
     /// Row by row. Written by hand, so that rows are lines.
     #[serde(skip_serializing)]
@@ -99,6 +100,7 @@ impl OpticsTable {
                 shape_error_sigma: finite(summary.and_then(|summary| summary.shape_error_sigma)),
                 wings_error: Some(Finite(optics.spread.wings_error())),
                 unknown_below: Some(Finite(optics.spread.unknown_below())),
+                place_error_px: Some(Finite(optics.spread.place_error_px())),
                 columns: optics.spread.columns(),
                 zones: Vec::new(),
             },
@@ -231,9 +233,11 @@ impl PointSpreadTable {
         };
         let wings_error = self.wings_error.map_or(error, |error| error.0);
         let unknown_below = self.unknown_below.map_or(0.0, |share| share.0);
+        let place_error_px = self.place_error_px.map_or(0.0, |px| px.0);
         let field = field
             .and_then(|field| field.with_wings_error(wings_error))
-            .and_then(|field| field.with_unknown_below(unknown_below));
+            .and_then(|field| field.with_unknown_below(unknown_below))
+            .and_then(|field| field.with_place_error_px(place_error_px));
         field.map_err(|error| wrong(path, KEY, &error))
     }
 }
@@ -285,8 +289,11 @@ mod tests {
                     [only] => SpreadField::even(only.clone(), error).unwrap(),
                     _ => SpreadField::new(zones, columns, 752.0, 480.0, error).unwrap(),
                 };
-                let spread =
-                    spread.with_wings_error(noise.value).unwrap().with_unknown_below(spill.value).unwrap();
+                let spread = spread
+                    .with_wings_error(noise.value)
+                    .and_then(|spread| spread.with_unknown_below(spill.value))
+                    .and_then(|spread| spread.with_place_error_px(0.1 * noise.value))
+                    .unwrap();
                 let sources =
                     SourceSize { light_dn: 100.0 + shot.value, growth_px2: shot, scatter_px2: noise.sigma };
                 let spread = spread.with_source_size(sources).unwrap();

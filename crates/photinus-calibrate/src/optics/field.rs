@@ -185,12 +185,11 @@ impl Field {
         };
         let (squares, light) = from(FAINT, f64::INFINITY)
             .fold((0.0, 0.0), |(squares, light), (share, square)| (squares + share * square, light + share));
-        let (of_wings, count) = from(FAINT, WINGS)
-            .fold((0.0, 0.0), |(squares, count), (_, square)| (squares + square, count + 1.0));
+        let (even, unknown_below) = even_and_below(&from(FAINTEST_WING, WINGS).collect::<Vec<_>>());
         Scatter {
             all: f64::sqrt(squares / f64::max(light, f64::MIN_POSITIVE)),
-            wings: f64::sqrt(of_wings / f64::max(count, 1.0)),
-            unknown_below: unknown_below(&from(FAINTEST_WING, WINGS).collect::<Vec<_>>()),
+            wings: even.sqrt(),
+            unknown_below,
         }
     }
 
@@ -219,15 +218,15 @@ impl Field {
 pub(super) struct Scatter {
     /// Of all light.
     pub(super) all: f64,
-    /// Of the wings, each sample of which counts alike.
+    /// Of the wings, the part of it that is as large for all of them.
     pub(super) wings: f64,
-    /// The share of the light that is as small as its error, where light tells samples as counts tell a rate.
+    /// The share of the light at which the other part alone is as large as the light, where light tells samples as counts tell a rate.
     pub(super) unknown_below: f64,
 }
 
-/// The share of the light that is as small as its error, by shares and squared errors of samples: these are even + `unknown_below` / share, told by weighted least
-/// squares, a square being as unsure as it is large.
-fn unknown_below(samples: &[(f64, f64)]) -> f64 {
+/// By shares of the light and squared errors of samples, which are even + below / share, what is even and what below is: weighted least squares, a square being as
+/// unsure as it is large.
+fn even_and_below(samples: &[(f64, f64)]) -> (f64, f64) {
     let (mut even, mut below) = (0.0, 1.0);
     for _ in 0..ROUNDS_OF_SCATTER {
         let [mut ones, mut inverses, mut both, mut squares, mut squares_by_inverse] = [0.0; 5];
@@ -242,7 +241,7 @@ fn unknown_below(samples: &[(f64, f64)]) -> f64 {
         }
         let determinant = ones * inverses - both * both;
         if !(determinant > 0.0 && determinant.is_finite()) {
-            return 0.0;
+            return (0.0, 0.0);
         }
         even = (inverses * squares - both * squares_by_inverse) / determinant;
         below = (ones * squares_by_inverse - both * squares) / determinant;
@@ -252,7 +251,7 @@ fn unknown_below(samples: &[(f64, f64)]) -> f64 {
             (even, below) = (squares / ones, 0.0);
         }
     }
-    below
+    (even, below)
 }
 
 fn summit(table: &Table) -> f64 {
@@ -321,10 +320,11 @@ mod tests {
                 (share, error * error * (even * even + below / share))
             };
             let samples: Vec<(f64, f64)> = (0..4000).map(sample).collect();
-            let told = unknown_below(&samples);
+            let (told_even, told) = even_and_below(&samples);
             assert!((told - below).abs() < 0.1 * below + 3e-6, "{told} not {below}");
+            assert!((told_even.sqrt() - even).abs() < 0.1 * even + 0.02, "{} not {even}", told_even.sqrt());
         }
-        assert!(unknown_below(&[]).abs() < 1e-12, "no samples say nothing");
+        assert_eq!(even_and_below(&[]), (0.0, 0.0), "no samples say nothing");
     }
 
     /// What a round table is believed to be is itself: were its profile sharper or flatter, tables would become so round by round.

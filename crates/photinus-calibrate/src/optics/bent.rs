@@ -16,15 +16,16 @@ const STEPS: usize = 6;
 /// The level of a spot is known to this from the ring around, grey levels.
 const LEVEL_SIGMA_DN: f64 = 0.2;
 
-/// Standard deviation of places, px: spots of this light by the `table`, fitted with the `start`. What all of them have in common is not counted.
+/// Standard deviation of places, px: spots of this light by the `table`, fitted with the `start`. What all of them have in common is not counted; infinite where some
+/// have no place by it.
 pub(super) fn places_px(table: &Table, start: &Table, noise: &Noise, light: f64) -> f64 {
     let along = |index: usize| (index as f64 + 0.5) / PLACES as f64 - 0.5;
-    let offs = (0..PLACES * PLACES).filter_map(|place| {
+    let offs = (0..PLACES * PLACES).map(|place| {
         let at = [along(place % PLACES), along(place / PLACES)];
         off_px(table, start, noise, light, at)
     });
-    let offs: Vec<[f64; 2]> = offs.collect();
-    let count = offs.len().max(1) as f64;
+    let Some(offs) = offs.collect::<Option<Vec<[f64; 2]>>>() else { return f64::INFINITY };
+    let count = offs.len() as f64;
     let variance = |axis: usize| {
         let mean = offs.iter().map(|off| off[axis]).sum::<f64>() / count;
         offs.iter().map(|off| (off[axis] - mean) * (off[axis] - mean)).sum::<f64>() / count
@@ -78,6 +79,8 @@ mod tests {
         }
         let off = places_px(&gaussian(0.4), &gaussian(0.3), &NOISE, 300.0);
         assert!((0.01..0.1).contains(&off), "{off} px by one that is too sharp");
+        let dark = Table::new(vec![0.0; COUNT]);
+        assert!(places_px(&gaussian(0.4), &dark, &NOISE, 300.0).is_infinite(), "no light tells no place");
     }
 
     /// A table that is itself bent by a wave of 0.03 px along rows places spots so wrong.

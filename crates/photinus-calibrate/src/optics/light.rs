@@ -44,6 +44,15 @@ pub(super) struct LightNoise {
     pub(super) is_shot_seen: bool,
 }
 
+impl LightNoise {
+    /// Whether the error of the shape is told: neither chance nor a few spots make it.
+    pub(super) fn tells_shape(&self) -> bool {
+        self.shape_sigma < TOLD_SHAPE || self.shape_sigma < 0.5 * self.noise.shape
+    }
+}
+
+/// An error of the shape that is known to this is told, as a share of the light in a pixel.
+const TOLD_SHAPE: f64 = 0.05;
 /// What is believed of the shot noise of a sensor that nobody measured, grey levels^2 per grey level.
 pub(super) const SHOT_BELIEVED: Measured = Measured { value: 0.03, sigma: 0.03 };
 /// No sensor has less than an electron to a grey level of 8 bits: what asks for more is no noise of light.

@@ -143,12 +143,15 @@ pub fn learn(collection: &Collection) -> Result<Learned, LearnError> {
         let start = Field::new(start.table(), size_px, nodes);
         field_of_half(told, start, &noise, half)
     });
-    let residuals = if told.len() < FEWEST_HALVED {
-        light::residuals(told, &field, &noise)
-    } else {
-        light::free_residuals(told, &field, halves.each_ref(), &noise)
+    let told_by = |residuals: Vec<light::Residual>| {
+        let light = light::explain(&residuals, darkness.noise_dn, &noise);
+        (residuals, light)
     };
-    let light = light::explain(&residuals, darkness.noise_dn, &noise);
+    // A few spots that are two LEDs, which tables of the two halves leave alike, make it by themselves.
+    let free = (told.len() >= FEWEST_HALVED)
+        .then(|| told_by(light::free_residuals(told, &field, halves.each_ref(), &noise)))
+        .filter(|(_, light)| light.tells_shape());
+    let (residuals, light) = free.unwrap_or_else(|| told_by(light::residuals(told, &field, &noise)));
     let bent_px = bent::places_px(field.whole(), &start.table(), &light.noise, median_light(&spots));
     let even_px = phases::known_to_px(&spots, |spot| has_full || field.is_never_full(spot, full_from));
     let used = spots.iter().filter(|spot| spot.is_used).count();

@@ -146,16 +146,14 @@ impl Table {
         [u / sum, v / sum]
     }
 
-    /// Settles a table that was learnt in noise. Where that is seen, samples of no light are below 0 as often as above (were these cut off, noise would come out as
-    /// light of the wings), and all of the light is seen; where darkness is cut off, nothing tells how far below it a sample is, and it is dark.
+    /// Settles a table that was learnt in noise. Where that is seen, samples of no light are below 0 as often as above, and were these cut off, noise would come out as
+    /// light of the wings; where darkness is cut off, nothing tells how far below it a sample is, and it is dark.
     pub(super) fn settle_in(&mut self, noise: &Noise) {
-        if noise.is_dark_seen {
-            self.settle();
-            self.become_even();
-        } else {
+        if !noise.is_dark_seen {
             self.samples.iter_mut().for_each(|share| *share = share.max(0.0));
-            self.settle();
         }
+        self.settle();
+        self.become_even();
     }
 
     /// Scales the light to 1, and moves its centroid to the point.

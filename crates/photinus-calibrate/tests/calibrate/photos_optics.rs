@@ -8,17 +8,26 @@ use photinus_calibrate::optics::{Collection, LearnError, Prediction, learn, pred
 use photinus_io::image::read_image;
 use photinus_testing::real_data;
 
-/// Every other photo of a folder, beginning with the first or the second.
-fn half(folder: &str, ending: &str, first: usize) -> Option<Collection> {
+/// The photos of a folder.
+fn photos(folder: &str, ending: &str) -> Option<Vec<PathBuf>> {
     let entries = std::fs::read_dir(real_data(folder)?).expect("a folder");
     let mut paths: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
     paths.retain(|path| path.extension().is_some_and(|end| end == ending));
     paths.sort();
+    Some(paths)
+}
+
+fn collected<'a>(paths: impl Iterator<Item = &'a PathBuf>) -> Collection {
     let mut collection = Collection::default();
-    for path in paths.iter().skip(first).step_by(2) {
+    for path in paths {
         assert!(collection.add(&read_image(path).expect("a photo").image.view(), None));
     }
-    Some(collection)
+    collection
+}
+
+/// Every other photo of a folder, beginning with the first or the second.
+fn half(folder: &str, ending: &str, first: usize) -> Option<Collection> {
+    Some(collected(photos(folder, ending)?.iter().skip(first).step_by(2)))
 }
 
 /// The second half as the first expects it.
@@ -47,4 +56,19 @@ fn half_of_the_photos_of_a_sharp_lens_predicts_the_other() {
     let Some(prediction) = predicted("grid-752x480", "jpg") else { return };
     let prediction = prediction.expect("100 LEDs");
     assert!((0.4..1.1).contains(&prediction.chi_square), "{prediction:?}");
+}
+
+/// All of them, in whatever order: how wrong the shape is must not hang on a few spots.
+#[test]
+fn all_photos_of_a_sharp_lens_tell_how_wrong_its_shape_is() {
+    let Some(paths) = photos("grid-752x480", "jpg") else { return };
+    let in_turn = paths.iter().step_by(2).chain(paths.iter().skip(1).step_by(2));
+    for all in [collected(paths.iter()), collected(in_turn)] {
+        let learned = learn(&all).expect("200 LEDs");
+        let prediction = predict(&learned.optics, &all).expect("spots");
+        let (error, sigma) = (learned.optics.spread.shape_error(), learned.shape_error_sigma);
+        eprintln!("all: error of shape {error:.3} +- {sigma:.3}, {prediction:?}");
+        assert!(error < 0.6 && sigma < 0.5 * error, "{error} +- {sigma}");
+        assert!((0.5..1.2).contains(&prediction.chi_square), "{prediction:?}");
+    }
 }

@@ -9,6 +9,7 @@
 //! start        the round core and halo that explain the spots best
 //! ground       how the level under each spot rises and bends
 //! spot, field  places and light of spots by the table, the table by what they leave, in turn (phases: kept even)
+//! bent         how far all places may be off together, for the table keeps the bend that it began with
 //! light        noise against light, and how wrong the table is
 //! source_size  how wide sources are, by their light
 //! response     whether bright spots are flatter than faint ones
@@ -152,8 +153,6 @@ pub fn learn(collection: &Collection) -> Result<Learned, LearnError> {
         .then(|| told_by(light::free_residuals(told, &field, halves.each_ref(), &noise)))
         .filter(|(_, light)| light.tells_shape());
     let (residuals, light) = free.unwrap_or_else(|| told_by(light::residuals(told, &field, &noise)));
-    let bent_px = bent::places_px(field.whole(), &start.table(), &light.noise, median_light(&spots));
-    let even_px = phases::known_to_px(&spots, |spot| has_full || field.is_never_full(spot, full_from));
     let used = spots.iter().filter(|spot| spot.is_used).count();
     if used < FEWEST_SPOTS {
         return Err(LearnError::TooFew { found: used, needed: FEWEST_SPOTS });
@@ -170,6 +169,8 @@ pub fn learn(collection: &Collection) -> Result<Learned, LearnError> {
     let scatter = Field::scatter(&halves);
     let shape_error = light.noise.shape.max(scatter.all).min(1.0);
     let wings_error = scatter.wings.max(shape_error).min(1.0);
+    let bent_px = bent::places_px(field.whole(), &start.table(), &light.noise, median_light(&spots));
+    let even_px = phases::known_to_px(&spots, |spot| has_full || field.is_never_full(spot, full_from));
     let spread = field
         .spread(shape_error)?
         .with_wings_error(wings_error)?

@@ -4,6 +4,7 @@
 //! distance, which a caller must not count again in every frame; and what it costs that the other markers are not seen.
 
 use super::known::Known;
+use super::merging::Markers;
 use super::observation::{Observation, Whitened};
 use super::problem::{Normal, Pose, Problem};
 use super::settings::Settings;
@@ -42,7 +43,7 @@ impl<'a> Measurement<'a> {
             whitened,
             markers,
             known,
-            merging: true,
+            merging: Markers::NONE,
             repeats,
         };
         let merging = problem.may_merge(near);

@@ -1,6 +1,7 @@
 use nalgebra::{Matrix3, Rotation3, Unit, Vector3, Vector6};
 use proptest::prelude::*;
 
+use super::merging::Markers;
 use super::observation::Whitened;
 use super::problem::Problem;
 use super::refine::{Held, MOST_STEPS, Refined, refine};
@@ -82,7 +83,7 @@ proptest! {
         };
         let problem = Problem {
             airframe: &airframe, settings: &settings, observations: &observations, whitened: &whitened, markers: &markers,
-            known: &known, merging: false, repeats: 1.0,
+            known: &known, merging: Markers::NONE, repeats: 1.0,
         };
         let normal = problem.normal(&pose);
         prop_assert!((normal.information - normal.information.transpose()).norm() == 0.0);
@@ -137,7 +138,7 @@ proptest! {
         let (settings, markers) = (Settings::default(), [Some(brightest as u16)]);
         let problem = Problem {
             airframe: &airframe, settings: &settings, observations: &observations, whitened: &whitened, markers: &markers,
-            known: &nothing(), merging: true, repeats: 1.0,
+            known: &nothing(), merging: Markers::ANY, repeats: 1.0,
         };
         let shining = |at: &Vector3<f64>| problem.shining(0, brightest, at);
         let centre = |at: &Vector3<f64>| shining(at).centre;
@@ -168,7 +169,7 @@ proptest! {
         let (settings, markers) = (Settings::default(), [Some(0)]);
         let problem = Problem {
             airframe: &airframe, settings: &settings, observations: &observations, whitened: &whitened, markers: &markers,
-            known: &nothing(), merging: true, repeats: 1.0,
+            known: &nothing(), merging: Markers::ANY, repeats: 1.0,
         };
         let centre = problem.shining(0, 0, &camera_m).centre;
         let merged = problem.merged(0, 0, 1, &camera_m);
@@ -210,7 +211,7 @@ fn all_markers_of_a_strip_are_in_its_middle_and_shine() {
             whitened: &whitened,
             markers: &[Some(0)],
             known: &nothing(),
-            merging: true,
+            merging: Markers::ANY,
             repeats: 1.0,
         };
         let shining = problem.shining(0, 0, &Vector3::new(100.0, 0.0, 0.0));
@@ -236,7 +237,7 @@ fn with_merged_pair<T>(
         whitened: &whitened,
         markers: &[Some(0)],
         known: &known,
-        merging: true,
+        merging: Markers::ANY,
         repeats,
     };
     let camera_from_body = Rotation3::from_basis_unchecked(&[Vector3::x(), -Vector3::z(), Vector3::y()])
@@ -293,7 +294,7 @@ fn nobody_is_behind_the_camera_that_sees_them() {
         whitened: &whitened,
         markers: &markers,
         known: &known,
-        merging: false,
+        merging: Markers::NONE,
         repeats: 1.0,
     };
     // Mirrored at the camera every direction is the opposite, and every map gives nothing.
@@ -353,7 +354,7 @@ fn slices_lie_at_the_bottom_of_their_valley() {
             whitened: &whitened,
             markers: &markers,
             known: &known,
-            merging: false,
+            merging: Markers::NONE,
             repeats: 1.0,
         };
         let mode = refine(&problem, pose, MOST_STEPS);

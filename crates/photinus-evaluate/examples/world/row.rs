@@ -47,6 +47,7 @@ pub(crate) struct Row {
     pub(crate) build: Build,
     pub(crate) smear_px: f64,
     pub(crate) faults: Vec<Fault>,
+    pub(crate) knows_gravity: bool,
     /// Frames that share the places of hot pixels and lamps, and the side to which gravity is wrong.
     pub(crate) spell: u64,
     /// Neighbours less likely than this are not told.
@@ -91,6 +92,7 @@ impl Row {
             build: Build::default(),
             smear_px: 0.0,
             faults: Vec::new(),
+            knows_gravity: true,
             spell: SPELL,
             min_probability: Settings::DEFAULT_MIN_PROBABILITY,
             optics_frames: 0,
@@ -204,7 +206,7 @@ impl<'a> Studio<'a> {
             index,
             time_s: Some(time_s),
             source: row.name.clone(),
-            gravity: Some(gravity),
+            gravity: row.knows_gravity.then_some(gravity),
             exposure_s: None,
             moved: Moved::default(),
             conversions: Vec::new(),

@@ -126,6 +126,34 @@ proptest! {
     }
 
     #[test]
+    fn what_may_merge_near_a_pose_is_all_that_merges_there(
+        away in prop::array::uniform3(-0.1f64..0.1), yaw in -3.0f64..3.0, nearer in 0.7f64..1.3, resolution_rad in 0.005f64..0.3,
+        quad in any::<bool>(), shown in prop::collection::vec(any::<bool>(), 8),
+    ) {
+        let airframe = if quad { quadrotor() } else { hexarotor() };
+        let markers: Vec<_> = (0..airframe.markers().len()).filter(|&marker| shown[marker]).map(|marker| Some(marker as u16)).collect();
+        let observations = vec![Observation { resolution_rad, ..observation(Vector3::z(), 1e-3, 1.0) }; markers.len()];
+        let whitened: Vec<_> = observations.iter().map(|seen| Whitened::of(seen, 0.0)).collect();
+        let known = nothing();
+        let all = Problem {
+            airframe: &airframe, settings: &Settings::default(), observations: &observations, whitened: &whitened,
+            markers: &markers, known: &known, merging: Markers::ANY, repeats: 1.0,
+        };
+        let pose = Pose {
+            position_m: Vector3::new(0.0, 0.0, 4.0),
+            camera_from_body: level() * Rotation3::from_axis_angle(&Vector3::z_axis(), yaw),
+        };
+        let listed = Problem { merging: all.may_merge(&pose), ..all };
+        let camera_m = (pose.camera_in_body_m() + Vector3::from(away)) * nearer;
+        for (spot, marker) in all.used() {
+            let [all, listed] = [&all, &listed].map(|problem| problem.shining(spot, marker, &camera_m));
+            prop_assert_eq!(all.centre.at_m, listed.centre.at_m);
+            prop_assert_eq!(all.centre.by_camera, listed.centre.by_camera);
+            prop_assert_eq!(all.intensity.to_bits(), listed.intensity.to_bits());
+        }
+    }
+
+    #[test]
     fn slopes_of_merged_light_agree_with_finite_differences(
         camera in prop::array::uniform3(-1.0f64..1.0), yaw in -3.0f64..3.0, resolution_rad in 0.02f64..0.3, quad in any::<bool>(),
     ) {

@@ -7,7 +7,6 @@ use super::along_yaw;
 use super::assignment::Assignment;
 use super::hypotheses::Hypotheses;
 use super::known::Known;
-use super::merging::Markers;
 use super::misfit::Misfit;
 use super::mixture::{self, Component, Mode, Summary};
 use super::observation::{Observation, Whitened};
@@ -235,16 +234,7 @@ fn problem<'a>(
     whitened: &'a [Whitened],
     known: &'a Known<'a>,
 ) -> Problem<'a> {
-    Problem {
-        airframe,
-        settings,
-        observations,
-        whitened,
-        known,
-        markers: &[],
-        merging: Markers::NONE,
-        repeats: 1.0,
-    }
+    Problem { airframe, settings, observations, whitened, known, markers: &[], merging: true, repeats: 1.0 }
 }
 
 /// Assigns spots to the nearest markers and refines the pose in turns, until nothing changes; a few steps each turn, for what is nearest changes on the way.
@@ -271,7 +261,7 @@ fn settle(
             break;
         }
         // Who is nearest does not hang on what merges.
-        pose = refine(&Problem { markers, ..*problem }, pose, MOST_SETTLING_STEPS).pose;
+        pose = refine(&Problem { markers, merging: false, ..*problem }, pose, MOST_SETTLING_STEPS).pose;
     }
     refine(&problem.assigned(hypotheses.markers(index), &pose), pose, MOST_STEPS)
 }
@@ -282,7 +272,7 @@ impl<'a> Problem<'a> {
     where
         'a: 'b,
     {
-        let assigned = Problem { markers, ..*self };
+        let assigned = Problem { markers, merging: true, ..*self };
         Problem { merging: assigned.may_merge(near), ..assigned }
     }
 }

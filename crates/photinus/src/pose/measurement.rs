@@ -4,7 +4,6 @@
 //! distance, which a caller must not count again in every frame; and what it costs that the other markers are not seen.
 
 use super::known::Known;
-use super::merging::Markers;
 use super::observation::{Observation, Whitened};
 use super::problem::{Normal, Pose, Problem};
 use super::settings::Settings;
@@ -43,7 +42,7 @@ impl<'a> Measurement<'a> {
             whitened,
             markers,
             known,
-            merging: Markers::NONE,
+            merging: true,
             repeats,
         };
         let merging = problem.may_merge(near);

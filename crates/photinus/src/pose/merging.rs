@@ -67,29 +67,17 @@ pub(super) struct Shining {
     pub(super) intensity_gradient: Vector3<f64>,
 }
 
-/// Some markers of an airframe, a bit each.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Markers([u64; Airframe::MAX_LEDS / 64]);
+/// Markers without a spot of their own that shine, a bit each.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Unseen([u64; Airframe::MAX_LEDS / 64]);
 
-impl Markers {
-    pub(super) const NONE: Self = Self([0; Airframe::MAX_LEDS / 64]);
-    #[cfg(test)]
-    pub(super) const ANY: Self = Self([u64::MAX; Airframe::MAX_LEDS / 64]);
-
+impl Unseen {
     fn add(&mut self, marker: usize) {
         self.0[marker / 64] |= 1 << (marker % 64);
     }
 
     fn remove(&mut self, marker: usize) {
         self.0[marker / 64] &= !(1 << (marker % 64));
-    }
-
-    pub(super) fn has(self, marker: usize) -> bool {
-        self.0[marker / 64] >> (marker % 64) & 1 == 1
-    }
-
-    pub(super) fn are_none(self) -> bool {
-        self.0.iter().all(|&bits| bits == 0)
     }
 
     /// From the first to the last.
@@ -187,30 +175,25 @@ impl Problem<'_> {
         self.gaps(spot, seen, camera_m).to(other_m).map_or(0.0, |gap| one_spot(gap.squared))
     }
 
-    /// The markers that may merge into a spot, and those whose spot it is, anywhere near a pose.
-    pub(super) fn may_merge(&self, pose: &Pose) -> Markers {
+    /// Whether any marker may merge into a spot, anywhere near a pose.
+    pub(super) fn may_merge(&self, pose: &Pose) -> bool {
         let camera_m = pose.camera_in_body_m() * ROOM;
-        let mut merging = Markers::NONE;
-        for (spot, seen) in self.used() {
+        let near = |(spot, seen)| {
             let gaps = self.gaps(spot, seen, &camera_m);
-            for (other, marker) in
-                self.airframe.markers().iter().enumerate().filter(|&(other, _)| other != seen)
-            {
-                // What shines where nobody looks is in no spot.
-                if gaps.to(&marker.position_m).is_some()
-                    && (self.is_used(other) || self.is_watched(pose, other))
-                {
-                    merging.add(seen);
-                    merging.add(other);
-                }
-            }
-        }
-        merging
+            let mut others = self.airframe.markers().iter().enumerate().filter(|&(other, _)| other != seen);
+            // What shines where nobody looks is in no spot.
+            others.any(|(other, marker)| {
+                gaps.to(&marker.position_m).is_some() && (self.is_used(other) || self.is_watched(pose, other))
+            })
+        };
+        self.used().any(near)
     }
 
-    /// The markers without a spot of their own that may merge into one and shine towards a camera at a place in the body frame.
-    pub(super) fn unseen(&self, camera_m: &Vector3<f64>) -> Markers {
-        let mut unseen = self.merging;
+    /// The markers without a spot of their own that shine towards a camera at a place in the body frame.
+    pub(super) fn unseen(&self, camera_m: &Vector3<f64>) -> Unseen {
+        let mut unseen = Unseen::default();
+        let markers = if self.merging { self.airframe.markers().len() } else { 0 };
+        (0..markers).for_each(|marker| unseen.add(marker));
         self.markers.iter().flatten().for_each(|&marker| unseen.remove(usize::from(marker)));
         for marker in unseen.each() {
             if !self.airframe.is_visible(marker, camera_m) {
@@ -226,7 +209,7 @@ impl Problem<'_> {
         spot: usize,
         seen: usize,
         camera_m: Vector3<f64>,
-        unseen: Markers,
+        unseen: Unseen,
     ) -> impl Iterator<Item = Beside> + '_ {
         let gaps = self.gaps(spot, seen, &camera_m);
         unseen.each().filter_map(move |other| {
@@ -268,7 +251,7 @@ impl Problem<'_> {
     /// The same where it is known which other markers shine without a spot.
     pub(super) fn shining_among(
         &self,
-        unseen: &Markers,
+        unseen: &Unseen,
         spot: usize,
         marker: usize,
         camera_m: &Vector3<f64>,
@@ -283,8 +266,7 @@ impl Problem<'_> {
             intensity: own,
             intensity_gradient: own_gradient,
         };
-        let among = if self.merging.has(marker) { *unseen } else { Markers::NONE };
-        let mut beside = self.beside(spot, marker, *camera_m, among);
+        let mut beside = self.beside(spot, marker, *camera_m, *unseen);
         let Some(first) = beside.next() else { return shining };
         // A marker that hardly shines is no middle of a spot, but it keeps the others' light from being the whole of it.
         let own_gradient = if own > 1e-3 { own_gradient } else { Vector3::zeros() };
@@ -293,7 +275,7 @@ impl Problem<'_> {
         let lights = [own, first].into_iter().chain(beside);
         kept.iter_mut().zip(lights).for_each(|(place, light)| *place = Some(light));
         let are_more = kept[KEPT - 1].is_some();
-        let rest = || self.beside(spot, marker, *camera_m, among).skip(KEPT - 1);
+        let rest = || self.beside(spot, marker, *camera_m, *unseen).skip(KEPT - 1);
         let all = || kept.iter().flatten().copied().chain(are_more.then(rest).into_iter().flatten());
         let open = |_: &Beside| Window { room: 1.0, gradient: Vector3::zeros() };
         let mut middle = centre_of(&alone_m, all(), open);

@@ -7,7 +7,6 @@
 use nalgebra::{Matrix6, Rotation3, Vector3, Vector6};
 
 use super::known::Known;
-use super::merging::Markers;
 use super::observation::{Observation, Whitened};
 use super::settings::Settings;
 use crate::airframe::Airframe;
@@ -48,8 +47,8 @@ pub(super) struct Problem<'a> {
     /// The marker of each spot; `None` for a spot that is not used.
     pub(super) markers: &'a [Option<u16>],
     pub(super) known: &'a Known<'a>,
-    /// The markers that may merge with another into one spot.
-    pub(super) merging: Markers,
+    /// Whether markers may merge into one spot.
+    pub(super) merging: bool,
     /// In so many frames what errs alike from frame to frame is the same, 1 where each is looked at by itself.
     pub(super) repeats: f64,
 }

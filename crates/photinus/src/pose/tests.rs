@@ -1,7 +1,6 @@
 use nalgebra::{Matrix3, Rotation3, Unit, Vector3, Vector6};
 use proptest::prelude::*;
 
-use super::merging::Markers;
 use super::observation::Whitened;
 use super::problem::Problem;
 use super::refine::{Held, MOST_STEPS, Refined, refine};
@@ -83,7 +82,7 @@ proptest! {
         };
         let problem = Problem {
             airframe: &airframe, settings: &settings, observations: &observations, whitened: &whitened, markers: &markers,
-            known: &known, merging: Markers::NONE, repeats: 1.0,
+            known: &known, merging: false, repeats: 1.0,
         };
         let normal = problem.normal(&pose);
         prop_assert!((normal.information - normal.information.transpose()).norm() == 0.0);
@@ -126,34 +125,6 @@ proptest! {
     }
 
     #[test]
-    fn what_may_merge_near_a_pose_is_all_that_merges_there(
-        away in prop::array::uniform3(-0.1f64..0.1), yaw in -3.0f64..3.0, nearer in 0.7f64..1.3, resolution_rad in 0.005f64..0.3,
-        quad in any::<bool>(), shown in prop::collection::vec(any::<bool>(), 8),
-    ) {
-        let airframe = if quad { quadrotor() } else { hexarotor() };
-        let markers: Vec<_> = (0..airframe.markers().len()).filter(|&marker| shown[marker]).map(|marker| Some(marker as u16)).collect();
-        let observations = vec![Observation { resolution_rad, ..observation(Vector3::z(), 1e-3, 1.0) }; markers.len()];
-        let whitened: Vec<_> = observations.iter().map(|seen| Whitened::of(seen, 0.0)).collect();
-        let known = nothing();
-        let all = Problem {
-            airframe: &airframe, settings: &Settings::default(), observations: &observations, whitened: &whitened,
-            markers: &markers, known: &known, merging: Markers::ANY, repeats: 1.0,
-        };
-        let pose = Pose {
-            position_m: Vector3::new(0.0, 0.0, 4.0),
-            camera_from_body: level() * Rotation3::from_axis_angle(&Vector3::z_axis(), yaw),
-        };
-        let listed = Problem { merging: all.may_merge(&pose), ..all };
-        let camera_m = (pose.camera_in_body_m() + Vector3::from(away)) * nearer;
-        for (spot, marker) in all.used() {
-            let [all, listed] = [&all, &listed].map(|problem| problem.shining(spot, marker, &camera_m));
-            prop_assert_eq!(all.centre.at_m, listed.centre.at_m);
-            prop_assert_eq!(all.centre.by_camera, listed.centre.by_camera);
-            prop_assert_eq!(all.intensity.to_bits(), listed.intensity.to_bits());
-        }
-    }
-
-    #[test]
     fn slopes_of_merged_light_agree_with_finite_differences(
         camera in prop::array::uniform3(-1.0f64..1.0), yaw in -3.0f64..3.0, resolution_rad in 0.02f64..0.3, quad in any::<bool>(),
     ) {
@@ -166,7 +137,7 @@ proptest! {
         let (settings, markers) = (Settings::default(), [Some(brightest as u16)]);
         let problem = Problem {
             airframe: &airframe, settings: &settings, observations: &observations, whitened: &whitened, markers: &markers,
-            known: &nothing(), merging: Markers::ANY, repeats: 1.0,
+            known: &nothing(), merging: true, repeats: 1.0,
         };
         let shining = |at: &Vector3<f64>| problem.shining(0, brightest, at);
         let centre = |at: &Vector3<f64>| shining(at).centre;
@@ -197,7 +168,7 @@ proptest! {
         let (settings, markers) = (Settings::default(), [Some(0)]);
         let problem = Problem {
             airframe: &airframe, settings: &settings, observations: &observations, whitened: &whitened, markers: &markers,
-            known: &nothing(), merging: Markers::ANY, repeats: 1.0,
+            known: &nothing(), merging: true, repeats: 1.0,
         };
         let centre = problem.shining(0, 0, &camera_m).centre;
         let merged = problem.merged(0, 0, 1, &camera_m);
@@ -239,7 +210,7 @@ fn all_markers_of_a_strip_are_in_its_middle_and_shine() {
             whitened: &whitened,
             markers: &[Some(0)],
             known: &nothing(),
-            merging: Markers::ANY,
+            merging: true,
             repeats: 1.0,
         };
         let shining = problem.shining(0, 0, &Vector3::new(100.0, 0.0, 0.0));
@@ -265,7 +236,7 @@ fn with_merged_pair<T>(
         whitened: &whitened,
         markers: &[Some(0)],
         known: &known,
-        merging: Markers::ANY,
+        merging: true,
         repeats,
     };
     let camera_from_body = Rotation3::from_basis_unchecked(&[Vector3::x(), -Vector3::z(), Vector3::y()])
@@ -322,7 +293,7 @@ fn nobody_is_behind_the_camera_that_sees_them() {
         whitened: &whitened,
         markers: &markers,
         known: &known,
-        merging: Markers::NONE,
+        merging: false,
         repeats: 1.0,
     };
     // Mirrored at the camera every direction is the opposite, and every map gives nothing.
@@ -382,7 +353,7 @@ fn slices_lie_at_the_bottom_of_their_valley() {
             whitened: &whitened,
             markers: &markers,
             known: &known,
-            merging: Markers::NONE,
+            merging: false,
             repeats: 1.0,
         };
         let mode = refine(&problem, pose, MOST_STEPS);

@@ -182,8 +182,7 @@ impl Problem<'_> {
                 0.0 => 0.0,
                 merged => merged * probability(rise_of_two.odds(intensity(seen).max(1e-3) / shines)),
             };
-            let near = self.used().filter(|&(_, seen)| self.merging.has(seen) && self.merging.has(marker));
-            let merged = near.map(into).fold(0.0, f64::max);
+            let merged = if self.merging { self.used().map(into).fold(0.0, f64::max) } else { 0.0 };
             let unseen = 1.0 - found * (1.0 - merged) * (1.0 - self.merged_with_others(pose, marker));
             tell(marker, Some(unseen));
             -libm::log(unseen)
@@ -203,7 +202,7 @@ impl Problem<'_> {
 
     /// What it costs that markers beside each other are seen as two spots.
     fn told_apart_nats(&self, camera_m: &Vector3<f64>) -> f64 {
-        if self.merging.are_none() {
+        if !self.merging {
             return 0.0;
         }
         let pairs = self.used().flat_map(|first| {

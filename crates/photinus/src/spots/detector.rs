@@ -4,6 +4,7 @@ use alloc::sync::Arc;
 use alloc::vec::Vec;
 
 use super::background::Background;
+use super::breadth::Breadths;
 use super::detection_limit::{self, Step};
 use super::grouping::Components;
 use super::measuring::Meter;
@@ -34,6 +35,7 @@ pub struct Detector {
     meter: Meter,
     /// Odds for clutter of each spot, but for those of a reflection.
     looks: Vec<Look>,
+    breadths: Breadths,
     detections: Detections,
     /// The middle of the last frame, px.
     middle: Option<[usize; 2]>,
@@ -66,6 +68,7 @@ impl Detector {
             neighbourhood: Neighbourhood::default(),
             meter: Meter::new(&settings, optics),
             looks: Vec::new(),
+            breadths: Breadths::default(),
             detections: Detections::default(),
             middle: None,
         })
@@ -90,7 +93,7 @@ impl Detector {
         self.outline_parts(frame, mask);
         self.judge_outlines(frame.width() * frame.height());
         self.measure_parts(frame);
-        odds::weigh(&mut self.detections, &self.looks, &self.settings.shape);
+        odds::weigh(&mut self.detections, &self.looks, &mut self.breadths, &self.settings.shape);
         self.detections.rejected.sort_unstable_by_key(|rejected| {
             let Extent { top, left, bottom, right } = rejected.extent;
             (top, left, bottom, right, rejected.area_px)
@@ -181,7 +184,8 @@ impl Detector {
                     self.detections.spots.push(spot);
                     let size = [frame.width(), frame.height()];
                     let clutter_odds = part.clutter_odds + self.meter.clutter_odds(&part, size);
-                    self.looks.push(Look { clutter_odds, is_point: self.meter.is_point(i) });
+                    let (is_point, area) = (self.meter.is_point(i), self.meter.effective_area());
+                    self.looks.push(Look { clutter_odds, is_point, area });
                 }
                 Err(reason) => self.detections.rejected.push(Rejected {
                     centre: part.guess,

@@ -369,3 +369,42 @@ impl Shape<UNKNOWNS> for FreeSpread<'_> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use rand_distr::{Distribution, Normal, Uniform};
+    use rand_pcg::Pcg64;
+
+    use super::super::breadth::{ANY_LENS, ANY_LENS_SIGMA};
+    use super::*;
+
+    /// Points at any place in a pixel before lenses drawn from what is believed: how wide they are is what `breadth` takes it to be.
+    #[test]
+    fn any_lens_makes_points_as_wide_as_is_believed() {
+        let mut random = Pcg64::new(11, 5);
+        let in_a_pixel = Uniform::new(-0.5, 0.5).unwrap();
+        let noise = PixelNoise { dark: 1.0, shot: 0.0, shape: 0.0, faint: 0.0 };
+        let mut belief = Belief::new(noise, u8::MAX);
+        let mut draw = |number: usize| {
+            let normal = Normal::new(BELIEVED[number], KNOWN[number]).unwrap();
+            let mut drawn = normal.sample_iter(&mut random);
+            drawn.find(|value| (LEAST[number]..=MOST[number]).contains(value)).unwrap()
+        };
+        let mut places = Pcg64::new(12, 5);
+        let mut logs: Vec<f64> = (0..20_000)
+            .map(|_| {
+                belief.go(Numbers::from_fn(|number, _| draw(number)));
+                belief.draw();
+                let [x_px, y_px] = [0; 2].map(|_| in_a_pixel.sample(&mut places));
+                -libm::log(belief.spread().share(x_px, y_px))
+            })
+            .collect();
+        logs.sort_unstable_by(f64::total_cmp);
+        // How much narrower than the usual ones points are does not matter.
+        for (share, sigmas) in [(0.5, 0.0), (0.841, 1.0), (0.977, 2.0), (0.995, 2.576)] {
+            let log = logs[(share * logs.len() as f64) as usize];
+            let expected = ANY_LENS + sigmas * ANY_LENS_SIGMA;
+            assert!((log - expected).abs() < 0.15, "{share}: {log:.2} not {expected:.2}");
+        }
+    }
+}

@@ -10,6 +10,7 @@ use alloc::vec::Vec;
 use nalgebra::{Matrix2, Vector2};
 
 use super::Spot;
+use super::breadth::EffectiveArea;
 use super::centroid::{self, PixelVariance};
 use super::cut_off::CutOff;
 use super::detection_limit::Step;
@@ -114,11 +115,13 @@ pub(super) struct Meter {
     patch: Patch,
     /// Whether the part measured last is a step on a slope: the light around it is balanced elsewhere.
     is_step: bool,
+    /// The area of the part measured last, where all of its light shows.
+    area: Option<EffectiveArea>,
 }
 
 impl Meter {
     pub(super) fn new(settings: &Settings, optics: Option<Arc<Optics>>) -> Self {
-        Self { fitter: Fitter::new(settings, optics), patch: Patch::default(), is_step: false }
+        Self { fitter: Fitter::new(settings, optics), patch: Patch::default(), is_step: false, area: None }
     }
 
     /// Whether frames still tell something of the camera.
@@ -166,6 +169,8 @@ impl Meter {
         }
         self.patch.read(frame, nearest_pixel(part.guess), reach_px(window_px), &around);
         let (flux, flux_sigma) = self.flux(part, window_px, around);
+        let shows_all = !outline.cut && full.px == 0 && !self.fitter.is_smeared;
+        self.area = EffectiveArea::new(flux, flux_sigma, height).filter(|_| shows_all);
         let model = self.fitter.fitted(index).copied();
         let look = Look { part, full, room_px, window_px, around };
         let (centre, covariance_px2) = match model {
@@ -229,6 +234,11 @@ impl Meter {
     /// Whether the point spread told the light of part `index`.
     pub(super) fn is_point(&self, index: usize) -> bool {
         self.fitter.fitted(index).is_some()
+    }
+
+    /// The area of the part measured last, where all of its light shows.
+    pub(super) fn effective_area(&self) -> Option<EffectiveArea> {
+        self.area
     }
 
     /// Odds that the part measured last, in an image of `size` (width, height) px, is clutter by what is around it: a hot pixel, or a step on a slope of

@@ -31,6 +31,7 @@
 mod album;
 mod background;
 mod beside;
+mod breadth;
 mod centroid;
 mod cut_off;
 mod detection_limit;

@@ -5,6 +5,7 @@
 //! markers that are far or turned away: rendered flights of one neighbour and of twelve have as many LEDs per logarithm of light from the
 //! brightest down to a fiftieth, so that no look makes a faint spot certainly one or the other.
 
+use super::breadth::{self, Breadths, EffectiveArea};
 use super::settings::Shape;
 use super::{Detections, Spot};
 use crate::normal;
@@ -43,6 +44,8 @@ pub(super) struct Look {
     pub(super) clutter_odds: f64,
     /// Whether a point spread told its light: what a window tells may hide most of it.
     pub(super) is_point: bool,
+    /// Where all of its light shows.
+    pub(super) area: Option<EffectiveArea>,
 }
 
 impl Look {
@@ -50,17 +53,24 @@ impl Look {
     fn light(self, spot: &Spot) -> f64 {
         spot.light.filter(|_| self.is_point).map_or(spot.flux, |light| light.value)
     }
+
+    /// Odds that it is clutter for being wider than points, whose area has this logarithm.
+    fn breadth_odds(self, of_points: f64) -> f64 {
+        self.area.filter(|_| !self.is_point).map_or(0.0, |area| breadth::odds(area, of_points))
+    }
 }
 
 /// Weighs the odds of all spots by how each looks.
-pub(super) fn weigh(detections: &mut Detections, looks: &[Look], shape: &Shape) {
+pub(super) fn weigh(detections: &mut Detections, looks: &[Look], breadths: &mut Breadths, shape: &Shape) {
     let spots = &mut detections.spots;
     let most = |of: fn(&Spot) -> f64| spots.iter().map(of).fold(0.0, f64::max);
     let light = spots.iter().zip(looks).map(|(spot, look)| look.light(spot)).fold(0.0, f64::max);
     let brightest = Brightest { light, flux: most(|spot| spot.flux), height: most(height) };
+    let several_px = spots.iter().zip(looks).filter(|(spot, _)| spot.area_px > 1);
+    let of_points = breadths.of_points(several_px.filter_map(|(_, look)| look.area));
     for (spot, &look) in spots.iter_mut().zip(looks) {
         let reflection = reflection_odds(brightest.share_of(spot, look), shape.reflection_ratio);
-        spot.marker_log_odds = -libm::log(reflection + look.clutter_odds);
+        spot.marker_log_odds = -libm::log(reflection + look.clutter_odds + look.breadth_odds(of_points));
     }
 }
 
@@ -131,9 +141,9 @@ mod tests {
         let mut detections = Detections { spots: spots.to_vec(), rejected: Vec::new() };
         let looks = spots.iter().zip(clutter_odds);
         let looks: Vec<Look> = looks
-            .map(|(spot, &clutter_odds)| Look { clutter_odds, is_point: spot.light.is_some() })
+            .map(|(spot, &clutter_odds)| Look { clutter_odds, is_point: spot.light.is_some(), area: None })
             .collect();
-        weigh(&mut detections, &looks, &Shape::default());
+        weigh(&mut detections, &looks, &mut Breadths::default(), &Shape::default());
         detections.spots.iter().map(|spot| libm::exp(spot.marker_log_odds)).collect()
     }
 

@@ -19,3 +19,4 @@ mod properties;
 mod scene;
 mod smeared;
 mod tiny;
+mod wide;

@@ -147,18 +147,23 @@ impl Explanation {
         self.probability.iter().sum()
     }
 
-    /// Explains a frame of which each observation has the logarithm of its density as clutter, and neighbours have one per sr.
+    /// Supposes how likely each of so many observations is clutter.
+    pub(super) fn suppose(&mut self, observations: usize, share: impl Fn(usize) -> f64) {
+        self.clutter.clear();
+        self.clutter.extend((0..observations).map(share));
+    }
+
+    /// Explains a frame of which each observation has the logarithm of its density as clutter, and neighbours have one per sr that may depend on how likely, as was supposed
+    /// or explained before, one of them has a candidate's observations already.
     pub(super) fn explain(
         &mut self,
         candidates: &Candidates,
         clutter_log_density: &[f64],
-        log_neighbours: f64,
+        log_neighbours: impl Fn(f64) -> f64,
     ) {
         let count = clutter_log_density.len();
         self.probability.clear();
         self.probability.resize(candidates.len(), 0.0);
-        self.clutter.clear();
-        self.clutter.resize(count, 1.0);
         // Whether its holders are asked for differs from frame to frame, but not the room for them.
         self.held.clear();
         self.held.resize(count, None);
@@ -166,9 +171,11 @@ impl Explanation {
         self.gains.extend((0..candidates.len()).map(|index| {
             let members = candidates.members(index);
             let clutter: f64 = members.iter().map(|&spot| clutter_log_density[spot]).sum();
-            let gain = candidates.get(index).log_density + log_neighbours - clutter;
+            let own = members.iter().map(|&spot| 1.0 - self.clutter[spot]).fold(0.0, f64::max);
+            let gain = candidates.get(index).log_density + log_neighbours(own) - clutter;
             if gain.is_nan() { f64::NEG_INFINITY } else { gain.min(LARGEST_GAIN * members.len() as f64) }
         }));
+        self.clutter.fill(1.0);
         self.share(candidates, clutter_log_density);
         self.log_gain = 0.0;
         self.done.clear();
@@ -609,7 +616,8 @@ mod tests {
             let mut weights = Weights { all: 0.0, with: vec![0.0; of.len()], clutter: vec![0.0; SPOTS] };
             explain_one_by_one(&choices, &collide, 0, (&mut Vec::new(), &mut Vec::new(), 1.0), &mut weights);
             let mut explanation = Explanation::with_room(of.len());
-            explanation.explain(&candidates, &clutter, 0.0);
+            explanation.suppose(SPOTS, |_| 1.0);
+            explanation.explain(&candidates, &clutter, |_| 0.0);
             for index in 0..of.len() {
                 let expected = weights.with[index] / weights.all;
                 prop_assert!((explanation.probability(index) - expected).abs() < 1e-9, "{index}: {} {expected}", explanation.probability(index));

@@ -27,6 +27,7 @@ use super::kinds::{Kind, Kinds};
 use super::memory::{Frame, Memory, Spread, Told};
 use super::near::Near;
 use super::neighbour::Located;
+use super::number::Number;
 use super::places::Places;
 use super::settings::Settings;
 use super::telling::Telling;
@@ -45,8 +46,6 @@ const DOUBTFUL: f64 = 0.05;
 const SURE: f64 = 0.98;
 /// Rounds of looking for other ways to put observations together, each at what the one before left.
 const ROUNDS: usize = 2;
-/// However seldom neighbours were, there are this many per frame.
-const FEWEST_NEIGHBOURS: f64 = 0.2;
 /// Rounds of telling how dense clutter is from what is explained, and what is explained from that.
 const CLUTTER_ROUNDS: usize = 2;
 /// Asked for neighbours less likely than this, it also tells what a first look takes for clutter.
@@ -222,15 +221,16 @@ impl Inference {
         let Self { groups, first_clutter, besides, beforehand, companions, places, memory, kinds, .. } = self;
         let frame = Surroundings { places: places.each(), besides, beforehand, companions, memory };
         groups.look(context, kinds);
+        let number = Number::of(memory);
         let mut supposed = |share: f64| {
             groups.suppose(context.sightings.len(), share);
             let mut gain = f64::NAN;
             for _ in 0..LOOKS {
                 let before = gain;
                 first_clutter.measure(&frame, groups, |spot| groups.clutter(spot));
-                let log_neighbours = log_neighbours(groups.neighbours(), memory);
+                let log_neighbours = number.log_density(groups.neighbours());
                 let as_measured = groups.weigh_looks(first_clutter.log_density(), log_neighbours);
-                gain = as_measured - excess_of_neighbours(groups.neighbours(), log_neighbours, memory);
+                gain = as_measured - number.excess(groups.neighbours(), log_neighbours);
                 if (gain - before).abs() < SMALL_GAIN {
                     break;
                 }
@@ -247,7 +247,7 @@ impl Inference {
     fn weigh_groups(&mut self, context: &Context<'_>, work: &mut Work) {
         let Self { groups, memory, first_clutter, candidates, promising, kinds, budget, .. } = self;
         let known = Some(known(&self.whereabouts, memory, &self.places));
-        let log_neighbours = log_neighbours(groups.neighbours(), memory);
+        let log_neighbours = Number::of(memory).log_density(groups.neighbours());
         let context = Context { clutter: first_clutter.log_density(), log_neighbours, known, ..*context };
         candidates.clear();
         promising.clear();
@@ -267,7 +267,8 @@ impl Inference {
                 kinds.weigh(&context, rival, candidates, || work.weigh());
             }
         }
-        self.explanation.explain(&self.candidates, context.clutter, log_neighbours);
+        self.explanation.suppose(context.sightings.len(), |spot| groups.clutter(spot));
+        self.explanation.explain(&self.candidates, context.clutter, |_| log_neighbours);
     }
 
     /// Finds the observations that may be something else than they seem, or might before, the brightest first.
@@ -276,7 +277,7 @@ impl Inference {
         let sightings = context.sightings;
         doubtful.extend((0..sightings.len()).filter(|&spot| explanation.clutter(spot) > DOUBTFUL));
         if round == 0 {
-            let log_neighbours = log_neighbours(groups.neighbours(), memory);
+            let log_neighbours = Number::of(memory).log_density(groups.neighbours());
             let context = Context { clutter: first_clutter.log_density(), log_neighbours, ..*context };
             for members in (0..groups.len()).map(|group| groups.group(group)) {
                 if candidates.is_doubtful(&context, members) {
@@ -295,7 +296,7 @@ impl Inference {
             0 => (&self.first_clutter, self.groups.neighbours()),
             _ => (&self.clutter, self.explanation.neighbours()),
         };
-        let log_neighbours = log_neighbours(neighbours, &self.memory);
+        let log_neighbours = Number::of(&self.memory).log_density(neighbours);
         let known = Some(known(&self.whereabouts, &self.memory, &self.places));
         let context = Context { clutter: clutter.log_density(), log_neighbours, known, ..*context };
         let Self { alternatives, doubtful, groups, kinds, candidates, explanation, .. } = self;
@@ -370,17 +371,26 @@ impl Inference {
         let Self { explanation, clutter, groups, candidates, companions, places, memory, .. } = self;
         let (besides, beforehand) = (&self.besides, &self.beforehand);
         let frame = Surroundings { places: places.each(), besides, beforehand, companions, memory };
-        clutter.measure(&frame, groups, |spot| share.unwrap_or(groups.clutter(spot)));
-        let mut density = log_neighbours(groups.neighbours(), memory);
-        for _ in 0..CLUTTER_ROUNDS {
-            explanation.explain(candidates, clutter.log_density(), density);
-            clutter.measure(&frame, groups, |spot| explanation.clutter(spot));
-            density = log_neighbours(explanation.neighbours(), memory);
+        let supposed = |spot| share.unwrap_or(groups.clutter(spot));
+        clutter.measure(&frame, groups, supposed);
+        explanation.suppose(places.each().len(), supposed);
+        let number = Number::of(memory);
+        let mut in_frame = groups.neighbours();
+        let mut density = number.log_density(in_frame);
+        for round in 0..=CLUTTER_ROUNDS {
+            if round > 0 {
+                clutter.measure(&frame, groups, |spot| explanation.clutter(spot));
+                in_frame = explanation.neighbours();
+                density = number.log_density(in_frame);
+            }
+            let one_more = |own: f64| density + number.one_more(in_frame - own);
+            explanation.explain(candidates, clutter.log_density(), one_more);
         }
-        explanation.explain(candidates, clutter.log_density(), density);
+        let in_frame = explanation.neighbours();
         explanation.log_density(clutter.log_density())
             - clutter.excess(&frame, |spot| explanation.clutter(spot))
-            - excess_of_neighbours(explanation.neighbours(), density, memory)
+            - number.excess(in_frame, density)
+            - number.excess_of_one_more(in_frame)
     }
 }
 
@@ -428,24 +438,4 @@ impl Work {
 /// What frames before told of where neighbours are.
 fn known<'a>(whereabouts: &'a Whereabouts, memory: &'a Memory, places: &'a Places) -> KnownWhereabouts<'a> {
     KnownWhereabouts { whereabouts, per_frame: memory.whereabouts(), places: places.each() }
-}
-
-/// Logarithm of how many neighbours there are per sr, where a frame has this many: as many as that tells without one of them, with those that are
-/// remembered, and one to begin with; in a field of half the sphere.
-fn log_neighbours(in_frame: f64, memory: &Memory) -> f64 {
-    let per_frame = (1.0 + memory.neighbours() + (in_frame - 1.0).max(0.0)) / (2.0 + memory.frames() as f64);
-    log_per_sr(per_frame.max(FEWEST_NEIGHBOURS))
-}
-
-fn log_per_sr(per_frame: f64) -> f64 {
-    libm::log(per_frame / core::f64::consts::TAU)
-}
-
-/// How much less likely this many neighbours are than where each has this density: that is as it is after all others, but a frame is drawn one after
-/// the other (chain rule).
-fn excess_of_neighbours(in_frame: f64, log_density: f64, memory: &Memory) -> f64 {
-    let first = 1.0 + memory.neighbours();
-    let frames = 2.0 + memory.frames() as f64;
-    let drawn = libm::lgamma(first + in_frame) - libm::lgamma(first) + in_frame * log_per_sr(1.0 / frames);
-    in_frame * log_density - drawn
 }

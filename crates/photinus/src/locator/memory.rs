@@ -169,9 +169,9 @@ impl Memory {
         PerFrame { sums: &self.whereabouts.sums, frames: self.frames }
     }
 
-    /// How many neighbours they had, together.
-    pub(super) fn neighbours(&self) -> f64 {
-        (0..self.frames).map(|age| self.neighbours[self.aged(age)]).sum()
+    /// How many neighbours each of them had.
+    pub(super) fn numbers(&self) -> impl Iterator<Item = f64> {
+        (0..self.frames).map(|age| self.neighbours[self.aged(age)])
     }
 
     /// How often a marker that must show does not, where it is supposed to this often.
@@ -309,7 +309,7 @@ mod tests {
             (
                 memory.frames(),
                 [0, 1].map(|cell: usize| memory.clutter_by_cell()[cell].to_bits()),
-                memory.neighbours(),
+                memory.numbers().sum::<f64>(),
                 memory.whereabouts().sums[0].to_bits(),
                 memory.power(),
                 memory.miss_rate(0.02).to_bits(),

@@ -31,6 +31,7 @@ mod matching;
 mod memory;
 mod near;
 mod neighbour;
+mod number;
 mod pairs;
 mod places;
 mod posing;

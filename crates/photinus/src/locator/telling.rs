@@ -257,7 +257,8 @@ mod tests {
             candidates.push(members, &[], told(distance_m, log_density));
         }
         let mut explanation = Explanation::with_room(of.len());
-        explanation.explain(&candidates, &alloc::vec![0.0; observations], 0.0);
+        explanation.suppose(observations, |_| 1.0);
+        explanation.explain(&candidates, &alloc::vec![0.0; observations], |_| 0.0);
         let mut located = Located::default();
         Telling::with_room(of.len()).tell(&candidates, &explanation, (0.5, observations), &mut located);
         located.neighbours

@@ -18,6 +18,7 @@ mod beside;
 mod hot_pixels;
 mod missed;
 mod most;
+mod newcomers;
 mod regions;
 mod tilting;
 

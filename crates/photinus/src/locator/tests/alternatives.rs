@@ -92,7 +92,8 @@ fn compare(
         kinds.weigh(&context, group, &mut candidates, || true);
     }
     let mut explanation = Explanation::with_room(64);
-    explanation.explain(&candidates, &clutter, context.log_neighbours);
+    explanation.suppose(clutter.len(), |_| 1.0);
+    explanation.explain(&candidates, &clutter, |_| context.log_neighbours);
     explanation.hold(&candidates);
     let asked =
         Question { context: &context, groups: &groups, explanation: &explanation, candidates: &candidates };

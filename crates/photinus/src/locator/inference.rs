@@ -180,17 +180,18 @@ impl Inference {
         let frame_px = (self.size[0] * self.size[1]) as f64;
         let cells = (self.besides.cells(), frame_px);
         self.places.find(sightings, cells, &self.fixtures, input.sun, self.with_light);
-        self.look(&context);
+        let number = Number::of(&self.memory);
+        self.look(&context, &number);
         input.tell(Stage::Grouping);
         let context = Context { power: self.memory.power().or(of_frame), ..context };
         let mut work = Work { left: self.budget };
-        self.weigh_groups(&context, &mut work);
+        self.weigh_groups(&context, &number, &mut work);
         self.alternatives.begin(sightings.len());
         self.doubtful.clear();
         for round in 0..ROUNDS {
-            self.doubt(&context, round);
-            self.look_for_others(&context, round, &mut work);
-            self.settle();
+            self.doubt(&context, &number, round);
+            self.look_for_others(&context, &number, round, &mut work);
+            self.settle(&number);
         }
         self.fixtures.remember(sightings, |spot| self.explanation.clutter(spot));
         let power = self.power(&context);
@@ -217,11 +218,10 @@ impl Inference {
     }
 
     /// Takes a first look at each group, and tells from that how dense clutter is.
-    fn look(&mut self, context: &Context<'_>) {
+    fn look(&mut self, context: &Context<'_>, number: &Number) {
         let Self { groups, first_clutter, besides, beforehand, companions, places, memory, kinds, .. } = self;
         let frame = Surroundings { places: places.each(), besides, beforehand, companions, memory };
         groups.look(context, kinds);
-        let number = Number::of(memory);
         let mut supposed = |share: f64| {
             groups.suppose(context.sightings.len(), share);
             let mut gain = f64::NAN;
@@ -244,10 +244,10 @@ impl Inference {
     }
 
     /// Weighs the groups that may be neighbours by a first look, the likeliest first, and then their rivals.
-    fn weigh_groups(&mut self, context: &Context<'_>, work: &mut Work) {
+    fn weigh_groups(&mut self, context: &Context<'_>, number: &Number, work: &mut Work) {
         let Self { groups, memory, first_clutter, candidates, promising, kinds, budget, .. } = self;
         let known = Some(known(&self.whereabouts, memory, &self.places));
-        let log_neighbours = Number::of(memory).log_density(groups.neighbours());
+        let log_neighbours = number.log_density(groups.neighbours());
         let context = Context { clutter: first_clutter.log_density(), log_neighbours, known, ..*context };
         candidates.clear();
         promising.clear();
@@ -272,12 +272,12 @@ impl Inference {
     }
 
     /// Finds the observations that may be something else than they seem, or might before, the brightest first.
-    fn doubt(&mut self, context: &Context<'_>, round: usize) {
-        let Self { doubtful, explanation, groups, candidates, memory, first_clutter, .. } = self;
+    fn doubt(&mut self, context: &Context<'_>, number: &Number, round: usize) {
+        let Self { doubtful, explanation, groups, candidates, first_clutter, .. } = self;
         let sightings = context.sightings;
         doubtful.extend((0..sightings.len()).filter(|&spot| explanation.clutter(spot) > DOUBTFUL));
         if round == 0 {
-            let log_neighbours = Number::of(memory).log_density(groups.neighbours());
+            let log_neighbours = number.log_density(groups.neighbours());
             let context = Context { clutter: first_clutter.log_density(), log_neighbours, ..*context };
             for members in (0..groups.len()).map(|group| groups.group(group)) {
                 if candidates.is_doubtful(&context, members) {
@@ -291,12 +291,12 @@ impl Inference {
     }
 
     /// Weighs other ways to put together what is doubtful.
-    fn look_for_others(&mut self, context: &Context<'_>, round: usize, work: &mut Work) {
+    fn look_for_others(&mut self, context: &Context<'_>, number: &Number, round: usize, work: &mut Work) {
         let (clutter, neighbours) = match round {
             0 => (&self.first_clutter, self.groups.neighbours()),
             _ => (&self.clutter, self.explanation.neighbours()),
         };
-        let log_neighbours = Number::of(&self.memory).log_density(neighbours);
+        let log_neighbours = number.log_density(neighbours);
         let known = Some(known(&self.whereabouts, &self.memory, &self.places));
         let context = Context { clutter: clutter.log_density(), log_neighbours, known, ..*context };
         let Self { alternatives, doubtful, groups, kinds, candidates, explanation, .. } = self;
@@ -354,11 +354,11 @@ impl Inference {
     }
 
     /// Explains the frame by its candidates, with clutter and neighbours as dense as the explanation itself has them.
-    fn settle(&mut self) {
-        let much = self.suppose(None);
+    fn settle(&mut self, number: &Number) {
+        let much = self.suppose(number, None);
         core::mem::swap(&mut self.explanation, &mut self.other_explanation);
         core::mem::swap(&mut self.clutter, &mut self.other_clutter);
-        let little = self.suppose(Some(0.0));
+        let little = self.suppose(number, Some(0.0));
         if much > little {
             core::mem::swap(&mut self.explanation, &mut self.other_explanation);
             core::mem::swap(&mut self.clutter, &mut self.other_clutter);
@@ -367,14 +367,13 @@ impl Inference {
 
     /// Explains the frame from the supposition that each observation is as likely clutter, or as a first look has it. Returns the logarithm of how likely
     /// the frame then is.
-    fn suppose(&mut self, share: Option<f64>) -> f64 {
+    fn suppose(&mut self, number: &Number, share: Option<f64>) -> f64 {
         let Self { explanation, clutter, groups, candidates, companions, places, memory, .. } = self;
         let (besides, beforehand) = (&self.besides, &self.beforehand);
         let frame = Surroundings { places: places.each(), besides, beforehand, companions, memory };
         let supposed = |spot| share.unwrap_or(groups.clutter(spot));
         clutter.measure(&frame, groups, supposed);
         explanation.suppose(places.each().len(), supposed);
-        let number = Number::of(memory);
         let mut in_frame = groups.neighbours();
         let mut density = number.log_density(in_frame);
         for round in 0..=CLUTTER_ROUNDS {

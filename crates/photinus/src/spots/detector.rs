@@ -33,7 +33,7 @@ pub struct Detector {
     split: Vec<Part>,
     neighbourhood: Neighbourhood,
     meter: Meter,
-    /// Odds for clutter of each spot, but for those of a reflection.
+    /// How each spot looks by itself, and how wide they are.
     looks: Vec<Look>,
     breadths: Breadths,
     detections: Detections,

@@ -1,6 +1,6 @@
 //! How likely a spot is the light of markers, from how it looks in its frame alone.
 //!
-//! In: the spots of a frame, each with the odds that it is clutter of a kind that its own look tells (glare, a streak, a hot pixel). Out: each one's [`Spot::marker_log_odds`], beforehand markers and clutter being as likely as each
+//! In: the spots of a frame, each with the odds that it is clutter of a kind that its own look tells (glare, a streak, a hot pixel), and how wide it is. Out: each one's [`Spot::marker_log_odds`], beforehand markers and clutter being as likely as each
 //! other. Faint images of markers in shiny surfaces are told by their light over that of the brightest spot. They share that with
 //! markers that are far or turned away: rendered flights of one neighbour and of twelve have as many LEDs per logarithm of light from the
 //! brightest down to a fiftieth, so that no look makes a faint spot certainly one or the other.
@@ -40,11 +40,11 @@ pub(super) fn of_noise(sigmas: f64, pixels: usize) -> f64 {
 /// How a spot looks by itself.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Look {
-    /// Odds that clutter of other kinds than reflections has.
+    /// Odds that clutter of other kinds has than reflections and what is wider than points.
     pub(super) clutter_odds: f64,
     /// Whether a point spread told its light: what a window tells may hide most of it.
     pub(super) is_point: bool,
-    /// Where all of its light shows.
+    /// How wide it is, where all of its light shows.
     pub(super) area: Option<EffectiveArea>,
 }
 

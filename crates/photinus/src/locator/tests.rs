@@ -16,6 +16,7 @@ use crate::spots::Extent;
 mod alternatives;
 mod beside;
 mod hot_pixels;
+mod lone;
 mod missed;
 mod most;
 mod newcomers;

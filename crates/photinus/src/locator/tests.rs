@@ -15,6 +15,7 @@ use crate::spots::Extent;
 
 mod alternatives;
 mod beside;
+mod dark;
 mod hot_pixels;
 mod lone;
 mod missed;
@@ -191,10 +192,11 @@ fn locator(airframe: &Airframe) -> Locator {
 #[test]
 fn one_neighbour_is_one_whatever_its_yaw_and_its_bounds_hold() {
     let mut rng = Pcg64::new(1, 1);
-    for (airframe, reached) in [(hexarotor(), 0.0110), (quadrotor(), 0.0110)] {
+    // None is dark here. Who believes that one in fifty is counts to 1 % on a hexarotor that is half as far again and whose front is dark.
+    for (airframe, reached) in [(hexarotor(), [0.0119, 0.0132]), (quadrotor(), [0.0104, 0.0121])] {
         let mut locator = locator(&airframe);
         let (yaw, tilt) = (Uniform::new(0.0, TAU).unwrap(), Uniform::new(-0.15, 0.15).unwrap());
-        for gravity in [None, Some(level())] {
+        for (gravity, reached) in [None, Some(level())].into_iter().zip(reached) {
             let (mut count, mut whole, mut relative) = (0, 0, Vec::new());
             for distance_m in [1.5, 3.0, 6.0, 10.0, 15.0] {
                 for _ in 0..40 {
@@ -221,7 +223,7 @@ fn one_neighbour_is_one_whatever_its_yaw_and_its_bounds_hold() {
                 gravity.is_some()
             );
             assert_eq!(whole, count, "{}", airframe.name());
-            assert!((rms / reached - 1.0).abs() < 0.2, "{}: relative distance error {rms}", airframe.name());
+            assert!((rms / reached - 1.0).abs() < 0.1, "{}: relative distance error {rms}", airframe.name());
         }
     }
 }

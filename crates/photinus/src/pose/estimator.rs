@@ -10,7 +10,7 @@ use super::known::Known;
 use super::misfit::Misfit;
 use super::mixture::{self, Component, Mode, Summary};
 use super::observation::{Observation, Whitened};
-use super::problem::{Pose, Problem};
+use super::problem::{Merging, Pose, Problem};
 use super::refine::{Held, MOST_STEPS, Refined, refine};
 use super::settings::{Settings, SettingsError};
 use super::symmetry::Symmetry;
@@ -26,6 +26,16 @@ const HOPELESS_NATS: f64 = 8.0;
 const MOST_ROUNDS: usize = 10;
 /// Most steps of the pose between two such rounds.
 const MOST_SETTLING_STEPS: usize = 8;
+
+/// Where a search from a hypothesis ended.
+#[derive(Clone, Copy, Debug)]
+struct Found {
+    hypothesis: usize,
+    merging: Merging,
+    refined: Refined,
+    /// What it costs with what is seen and what is not, nats.
+    nats: f64,
+}
 
 /// What the spots of one neighbour tell.
 #[derive(Clone, Debug, Default)]
@@ -60,9 +70,7 @@ pub struct Estimator {
     symmetry: Symmetry,
     whitened: Vec<Whitened>,
     assignment: Assignment,
-    modes: Vec<Refined>,
-    /// What each mode costs with what is seen and what is not, nats.
-    nats: Vec<f64>,
+    modes: Vec<Found>,
     components: Vec<Component>,
     posterior: Posterior,
 }
@@ -74,18 +82,17 @@ impl Estimator {
     /// [`SettingsError`] when a setting has no meaning.
     pub fn new(airframe: &Airframe, settings: Settings) -> Result<Self, SettingsError> {
         settings.check()?;
-        let (spots, hypotheses) = (airframe.markers().len(), Hypotheses::MOST);
+        let (spots, modes) = (airframe.markers().len(), 2 * Hypotheses::MOST);
         let symmetry = Symmetry::of(airframe);
         // One mode more is held while it is turned.
-        let components = (hypotheses * symmetry.told_apart() + 1) * along_yaw::MOST_COMPONENTS;
+        let components = (modes * symmetry.told_apart() + 1) * along_yaw::MOST_COMPONENTS;
         Ok(Self {
             airframe: airframe.clone(),
             settings,
             symmetry,
             whitened: Vec::with_capacity(spots),
             assignment: Assignment::with_room(spots),
-            modes: Vec::with_capacity(hypotheses),
-            nats: Vec::with_capacity(hypotheses),
+            modes: Vec::with_capacity(modes),
             components: Vec::with_capacity(components),
             posterior: Posterior {
                 modes: Vec::with_capacity(components),
@@ -116,27 +123,28 @@ impl Estimator {
         self.posterior.modes.clear();
         self.posterior.log_evidence = f64::NEG_INFINITY;
         self.find_modes(observations, hypotheses, known);
-        let best = (0..self.modes.len()).min_by(|&a, &b| self.nats[a].total_cmp(&self.nats[b]));
-        let Some(best) = best.filter(|&best| self.nats[best].is_finite()) else {
+        let best = (0..self.modes.len()).min_by(|&a, &b| self.modes[a].nats.total_cmp(&self.modes[b].nats));
+        let Some(best) = best.filter(|&best| self.modes[best].nats.is_finite()) else {
             return &self.posterior;
         };
         self.posterior.markers.clear();
-        self.posterior.markers.extend_from_slice(hypotheses.markers(best));
-        let limit = self.nats[best] + HOPELESS_NATS;
+        self.posterior.markers.extend_from_slice(hypotheses.markers(self.modes[best].hypothesis));
+        let limit = self.modes[best].nats + HOPELESS_NATS;
         self.components.clear();
         for index in 0..self.modes.len() {
-            let mode = self.modes[index];
-            // Of searches that ended in one mode the best stands for it: the others may have stopped short.
-            let is_better_twin = |other: usize| {
-                (self.nats[other], other) < (self.nats[index], index)
-                    && hypotheses.markers(other) == hypotheses.markers(index)
-                    && is_same(&self.modes[other].pose, &mode.pose)
+            let Found { hypothesis, merging, refined: mode, nats } = self.modes[index];
+            let markers = hypotheses.markers(hypothesis);
+            // Of searches that ended in one mode the best stands for it: the others may have stopped short, and what hardly shines into a spot may as well be dark.
+            let is_better_twin = |(place, other): (usize, &Found)| {
+                (other.nats, place) < (nats, index)
+                    && hypotheses.markers(other.hypothesis) == markers
+                    && is_same(&other.refined.pose, &mode.pose)
             };
-            if self.nats[index] > limit || (0..self.modes.len()).any(is_better_twin) {
+            if nats > limit || self.modes.iter().enumerate().any(is_better_twin) {
                 continue;
             }
-            let problem = problem(&self.airframe, &self.settings, observations, &self.whitened, known)
-                .assigned(hypotheses.markers(index), &mode.pose);
+            let problem = problem(&self.airframe, &self.settings, observations, &self.whitened, known);
+            let problem = Problem { markers, merging, ..problem };
             if index == best {
                 let misfit = |(spot, marker)| problem.misfit(&mode.pose, spot, marker);
                 self.posterior.misfit = problem.misfit_of_all(&mode.pose);
@@ -147,7 +155,7 @@ impl Estimator {
             }
             let first = self.components.len();
             along_yaw::spread(&problem, &mode, index, &mut self.components);
-            self.turn_by_signals(first, observations, hypotheses.markers(index));
+            self.turn_by_signals(first, observations, markers);
         }
         self.tell(observations, known);
         &self.posterior
@@ -155,38 +163,41 @@ impl Estimator {
 
     fn find_modes(&mut self, observations: &[Observation], hypotheses: &mut Hypotheses, known: &Known<'_>) {
         self.modes.clear();
-        self.nats.clear();
-        for index in 0..hypotheses.len() {
-            let start = hypotheses.start(index).pose;
-            if index == 0 {
+        for hypothesis in 0..hypotheses.len() {
+            let start = hypotheses.start(hypothesis).pose;
+            if hypothesis == 0 {
                 let angle_rad = self.settings.marker_sigma_m / start.position_m.norm();
                 self.whitened.clear();
                 self.whitened
                     .extend(observations.iter().map(|seen| Whitened::of(seen, angle_rad * angle_rad)));
             }
             let problem = problem(&self.airframe, &self.settings, observations, &self.whitened, known);
-            let mode = if hypotheses.is_loose(index) {
-                settle(&problem, index, hypotheses, &self.modes, &mut self.assignment)
+            let mode = if hypotheses.is_loose(hypothesis) {
+                settle(&problem, hypothesis, hypotheses, &self.modes, &mut self.assignment)
             } else {
-                refine(&problem.assigned(hypotheses.markers(index), &start), start, MOST_STEPS)
+                refine(
+                    &Problem { markers: hypotheses.markers(hypothesis), ..problem }.near(&start),
+                    start,
+                    MOST_STEPS,
+                )
             };
-            let problem = problem.assigned(hypotheses.markers(index), &mode.pose);
-            let mut unseen = problem.visibility_nats(&mode.pose, mode.normal.log_power);
-            if unseen > HOPELESS_NATS {
-                // Light pulls little on a marker that hardly shows: the mode may sit where it no longer does, a sigma beside
-                // where it must.
-                if let Some(held) = Held::of(mode) {
-                    let sigma_rad = held.yaw_sigma_rad();
-                    for side in [sigma_rad, -sigma_rad] {
-                        let beside = held.following(side);
-                        unseen = unseen.min(0.5 + problem.visibility_nats(&beside, mode.normal.log_power));
-                    }
-                }
-            }
+            let markers = hypotheses.markers(hypothesis);
             let signals = observations.iter().map(|seen| seen.signal);
-            let wrong = self.symmetry.least_signal_nats(signals, hypotheses.markers(index));
-            self.nats.push(mode.normal.nats + unseen + wrong);
-            self.modes.push(mode);
+            let wrong = self.symmetry.least_signal_nats(signals, markers);
+            let problem = Problem { markers, ..problem };
+            let found = |merging: Merging, refined: Refined| {
+                let problem = Problem { merging, ..problem };
+                let nats = refined.normal.nats + unseen_nats(&problem, refined) + wrong;
+                Found { hypothesis, merging, refined, nats }
+            };
+            let log_power = mode.normal.log_power;
+            let misses_beside = |pose: &Pose| problem.misses_beside(pose, log_power);
+            // What must show beside a spot and does not shines into it or is dark, which are two modes.
+            if misses_beside(&start) || misses_beside(&mode.pose) {
+                let dark = Problem { merging: Merging::Dark, ..problem };
+                self.modes.push(found(Merging::Dark, refine(&dark, start, MOST_STEPS)));
+            }
+            self.modes.push(found(problem.near(&mode.pose).merging, mode));
         }
     }
 
@@ -227,6 +238,20 @@ impl Estimator {
     }
 }
 
+/// What it costs at a mode that these markers are seen and the others are not, nats.
+fn unseen_nats(problem: &Problem<'_>, mode: Refined) -> f64 {
+    let nats = |pose: &Pose| problem.visibility_nats(pose, mode.normal.log_power);
+    let unseen = nats(&mode.pose);
+    if unseen <= HOPELESS_NATS {
+        return unseen;
+    }
+    // Light pulls little on a marker that hardly shows: the mode may sit where it no longer does, a sigma beside where it must.
+    let Some(held) = Held::of(mode) else { return unseen };
+    let sigma_rad = held.yaw_sigma_rad();
+    let beside = [sigma_rad, -sigma_rad].map(|side| 0.5 + nats(&held.following(side)));
+    beside.into_iter().fold(unseen, f64::min)
+}
+
 fn problem<'a>(
     airframe: &'a Airframe,
     settings: &'a Settings,
@@ -234,7 +259,16 @@ fn problem<'a>(
     whitened: &'a [Whitened],
     known: &'a Known<'a>,
 ) -> Problem<'a> {
-    Problem { airframe, settings, observations, whitened, known, markers: &[], merging: true, repeats: 1.0 }
+    Problem {
+        airframe,
+        settings,
+        observations,
+        whitened,
+        known,
+        markers: &[],
+        merging: Merging::Near,
+        repeats: 1.0,
+    }
 }
 
 /// Assigns spots to the nearest markers and refines the pose in turns, until nothing changes; a few steps each turn, for what is nearest changes on the way.
@@ -243,7 +277,7 @@ fn settle(
     problem: &Problem<'_>,
     index: usize,
     hypotheses: &mut Hypotheses,
-    modes: &[Refined],
+    modes: &[Found],
     assignment: &mut Assignment,
 ) -> Refined {
     let mut pose = hypotheses.start(index).pose;
@@ -251,29 +285,29 @@ fn settle(
         let markers = hypotheses.markers_mut(index);
         let changed = assignment.assign(problem.airframe, &pose, problem.observations, markers);
         let markers = hypotheses.markers(index);
-        let is_there = |&(before, mode): &(usize, &Refined)| {
-            hypotheses.markers(before) == markers && is_same(&mode.pose, &pose)
+        let is_there = |there: &&Found| {
+            there.merging != Merging::Dark
+                && hypotheses.markers(there.hypothesis) == markers
+                && is_same(&there.refined.pose, &pose)
         };
-        if let Some((_, there)) = modes.iter().enumerate().find(is_there) {
-            return *there;
+        if let Some(there) = modes.iter().find(is_there) {
+            return there.refined;
         }
         if !changed {
             break;
         }
         // Who is nearest does not hang on what merges.
-        pose = refine(&Problem { markers, merging: false, ..*problem }, pose, MOST_SETTLING_STEPS).pose;
+        pose =
+            refine(&Problem { markers, merging: Merging::Far, ..*problem }, pose, MOST_SETTLING_STEPS).pose;
     }
-    refine(&problem.assigned(hypotheses.markers(index), &pose), pose, MOST_STEPS)
+    refine(&Problem { markers: hypotheses.markers(index), ..*problem }.near(&pose), pose, MOST_STEPS)
 }
 
-impl<'a> Problem<'a> {
-    /// The problem of one assignment, near a pose.
-    fn assigned<'b>(&self, markers: &'b [Option<u16>], near: &Pose) -> Problem<'b>
-    where
-        'a: 'b,
-    {
-        let assigned = Problem { markers, merging: true, ..*self };
-        Problem { merging: assigned.may_merge(near), ..assigned }
+impl Problem<'_> {
+    /// The problem near a pose.
+    fn near(&self, pose: &Pose) -> Self {
+        let near = Self { merging: Merging::Near, ..*self };
+        Self { merging: near.merging_near(pose), ..near }
     }
 }
 

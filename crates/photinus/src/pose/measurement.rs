@@ -5,7 +5,7 @@
 
 use super::known::Known;
 use super::observation::{Observation, Whitened};
-use super::problem::{Normal, Pose, Problem};
+use super::problem::{Merging, Normal, Pose, Problem};
 use super::settings::Settings;
 use crate::airframe::Airframe;
 
@@ -42,11 +42,10 @@ impl<'a> Measurement<'a> {
             whitened,
             markers,
             known,
-            merging: true,
+            merging: Merging::Near,
             repeats,
         };
-        let merging = problem.may_merge(near);
-        Self { problem: Problem { merging, ..problem }, told: settings }
+        Self { problem: Problem { merging: problem.merging_near(near), ..problem }, told: settings }
     }
 
     /// Cost and normal equations of a pose.

@@ -17,7 +17,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::problem::{Pose, Problem};
+use super::problem::{Merging, Pose, Problem};
 use crate::airframe::{Airframe, Marker};
 #[cfg(not(feature = "std"))]
 use crate::float::Float as _;
@@ -175,10 +175,10 @@ impl Problem<'_> {
         self.gaps(spot, seen, camera_m).to(other_m).map_or(0.0, |gap| one_spot(gap.squared))
     }
 
-    /// Whether any marker may merge into a spot, anywhere near a pose.
-    pub(super) fn may_merge(&self, pose: &Pose) -> bool {
+    /// Whether markers are so near to each other, anywhere near a pose, that one may merge into the spot of another.
+    pub(super) fn merging_near(&self, pose: &Pose) -> Merging {
         let camera_m = pose.camera_in_body_m() * ROOM;
-        let near = |(spot, seen)| {
+        let is_near = |(spot, seen)| {
             let gaps = self.gaps(spot, seen, &camera_m);
             let mut others = self.airframe.markers().iter().enumerate().filter(|&(other, _)| other != seen);
             // What shines where nobody looks is in no spot.
@@ -186,13 +186,20 @@ impl Problem<'_> {
                 gaps.to(&marker.position_m).is_some() && (self.is_used(other) || self.is_watched(pose, other))
             })
         };
-        self.used().any(near)
+        if self.used().any(is_near) { Merging::Near } else { Merging::Far }
+    }
+
+    /// Whether a marker may merge into the spot of another, anywhere near a pose.
+    pub(super) fn may_merge(&self, pose: &Pose, marker: usize) -> bool {
+        let camera_m = pose.camera_in_body_m() * ROOM;
+        let place_m = &self.airframe.markers()[marker].position_m;
+        self.used().any(|(spot, seen)| self.gaps(spot, seen, &camera_m).to(place_m).is_some())
     }
 
     /// The markers without a spot of their own that shine towards a camera at a place in the body frame.
     pub(super) fn unseen(&self, camera_m: &Vector3<f64>) -> Unseen {
         let mut unseen = Unseen::default();
-        let markers = if self.merging { self.airframe.markers().len() } else { 0 };
+        let markers = if self.merging == Merging::Near { self.airframe.markers().len() } else { 0 };
         (0..markers).for_each(|marker| unseen.add(marker));
         self.markers.iter().flatten().for_each(|&marker| unseen.remove(usize::from(marker)));
         for marker in unseen.each() {

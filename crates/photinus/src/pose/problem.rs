@@ -37,6 +37,17 @@ impl Pose {
     }
 }
 
+/// What becomes of markers beside each other in the image.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Merging {
+    /// They are far from each other: one without a spot is dark.
+    Far,
+    /// One without a spot shines into those beside it.
+    Near,
+    /// One without a spot is dark, also beside one.
+    Dark,
+}
+
 /// One assignment of spots to markers.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Problem<'a> {
@@ -47,8 +58,7 @@ pub(super) struct Problem<'a> {
     /// The marker of each spot; `None` for a spot that is not used.
     pub(super) markers: &'a [Option<u16>],
     pub(super) known: &'a Known<'a>,
-    /// Whether markers may merge into one spot.
-    pub(super) merging: bool,
+    pub(super) merging: Merging,
     /// In so many frames what errs alike from frame to frame is the same, 1 where each is looked at by itself.
     pub(super) repeats: f64,
 }

@@ -2,7 +2,7 @@ use nalgebra::{Matrix3, Rotation3, Unit, Vector3, Vector6};
 use proptest::prelude::*;
 
 use super::observation::Whitened;
-use super::problem::Problem;
+use super::problem::{Merging, Problem};
 use super::refine::{Held, MOST_STEPS, Refined, refine};
 use super::*;
 use crate::airframe::{Airframe, Led, Lobe, LobeTable, Ring};
@@ -82,7 +82,7 @@ proptest! {
         };
         let problem = Problem {
             airframe: &airframe, settings: &settings, observations: &observations, whitened: &whitened, markers: &markers,
-            known: &known, merging: false, repeats: 1.0,
+            known: &known, merging: Merging::Far, repeats: 1.0,
         };
         let normal = problem.normal(&pose);
         prop_assert!((normal.information - normal.information.transpose()).norm() == 0.0);
@@ -137,7 +137,7 @@ proptest! {
         let (settings, markers) = (Settings::default(), [Some(brightest as u16)]);
         let problem = Problem {
             airframe: &airframe, settings: &settings, observations: &observations, whitened: &whitened, markers: &markers,
-            known: &nothing(), merging: true, repeats: 1.0,
+            known: &nothing(), merging: Merging::Near, repeats: 1.0,
         };
         let shining = |at: &Vector3<f64>| problem.shining(0, brightest, at);
         let centre = |at: &Vector3<f64>| shining(at).centre;
@@ -168,7 +168,7 @@ proptest! {
         let (settings, markers) = (Settings::default(), [Some(0)]);
         let problem = Problem {
             airframe: &airframe, settings: &settings, observations: &observations, whitened: &whitened, markers: &markers,
-            known: &nothing(), merging: true, repeats: 1.0,
+            known: &nothing(), merging: Merging::Near, repeats: 1.0,
         };
         let centre = problem.shining(0, 0, &camera_m).centre;
         let merged = problem.merged(0, 0, 1, &camera_m);
@@ -210,7 +210,7 @@ fn all_markers_of_a_strip_are_in_its_middle_and_shine() {
             whitened: &whitened,
             markers: &[Some(0)],
             known: &nothing(),
-            merging: true,
+            merging: Merging::Near,
             repeats: 1.0,
         };
         let shining = problem.shining(0, 0, &Vector3::new(100.0, 0.0, 0.0));
@@ -236,7 +236,7 @@ fn with_merged_pair<T>(
         whitened: &whitened,
         markers: &[Some(0)],
         known: &known,
-        merging: true,
+        merging: Merging::Near,
         repeats,
     };
     let camera_from_body = Rotation3::from_basis_unchecked(&[Vector3::x(), -Vector3::z(), Vector3::y()])
@@ -293,7 +293,7 @@ fn nobody_is_behind_the_camera_that_sees_them() {
         whitened: &whitened,
         markers: &markers,
         known: &known,
-        merging: false,
+        merging: Merging::Far,
         repeats: 1.0,
     };
     // Mirrored at the camera every direction is the opposite, and every map gives nothing.
@@ -353,7 +353,7 @@ fn slices_lie_at_the_bottom_of_their_valley() {
             whitened: &whitened,
             markers: &markers,
             known: &known,
-            merging: false,
+            merging: Merging::Far,
             repeats: 1.0,
         };
         let mode = refine(&problem, pose, MOST_STEPS);

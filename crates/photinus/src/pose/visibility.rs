@@ -2,8 +2,9 @@
 
 use nalgebra::Vector3;
 
+use super::known::{Known, Visible};
 use super::merging::{FAR, one_spot};
-use super::problem::{Pose, Problem};
+use super::problem::{Merging, Pose, Problem};
 use crate::airframe::{Airframe, Marker};
 use crate::camera::Bearing;
 #[cfg(not(feature = "std"))]
@@ -17,6 +18,8 @@ const FAINTEST_SHARE: f64 = 0.15;
 /// most markers of an airframe shine away.
 const NEGLIGIBLE_SHARE: f64 = 0.02;
 const NEGLIGIBLE: f64 = 1e-4;
+/// A marker that would be found as likely as this were it alone must show: it is merged or dark if it does not.
+const MUST_SHOW: f64 = 0.5;
 /// A logistic distribution is nearest to a normal one whose sigma is so many times its scale (J. Aldrich, F. Nelson, Linear Probability, Logit, and Probit
 /// Models, 1984: 1.6 to 1.8).
 const SIGMAS_PER_SCALE: f64 = 1.7;
@@ -125,6 +128,18 @@ impl Problem<'_> {
         self.known.visible.miss_rate.unwrap_or(self.settings.missed)
     }
 
+    /// Whether a marker that must show if it is lit does not, beside a spot anywhere near a pose.
+    pub(super) fn misses_beside(&self, pose: &Pose, log_power: Option<f64>) -> bool {
+        let known = Known { visible: Visible { lit: &[], ..self.known.visible }, ..*self.known };
+        let dark = Problem { merging: Merging::Dark, known: &known, ..*self };
+        let mut misses = false;
+        dark.visibility(pose, log_power, |marker, unseen| {
+            let must_show = unseen.is_some_and(|unseen| unseen < 1.0 - MUST_SHOW);
+            misses |= must_show && self.may_merge(pose, marker);
+        });
+        misses
+    }
+
     /// The markers that must show at a pose and do not, as likely as that rate, what is too faint, and what merges make it.
     pub(super) fn missed(&self, pose: &Pose, log_power: Option<f64>) -> Missed {
         let odds = self.miss_rate() / (1.0 - self.miss_rate());
@@ -182,7 +197,8 @@ impl Problem<'_> {
                 0.0 => 0.0,
                 merged => merged * probability(rise_of_two.odds(intensity(seen).max(1e-3) / shines)),
             };
-            let merged = if self.merging { self.used().map(into).fold(0.0, f64::max) } else { 0.0 };
+            let merged =
+                if self.merging == Merging::Near { self.used().map(into).fold(0.0, f64::max) } else { 0.0 };
             let unseen = 1.0 - found * (1.0 - merged) * (1.0 - self.merged_with_others(pose, marker));
             tell(marker, Some(unseen));
             -libm::log(unseen)
@@ -202,7 +218,7 @@ impl Problem<'_> {
 
     /// What it costs that markers beside each other are seen as two spots.
     fn told_apart_nats(&self, camera_m: &Vector3<f64>) -> f64 {
-        if !self.merging {
+        if self.merging == Merging::Far {
             return 0.0;
         }
         let pairs = self.used().flat_map(|first| {

@@ -167,7 +167,7 @@ impl Clutter {
 
     /// How much clutter of a frame is to be remembered in every cell of the image and step of light, where `share` tells how likely an observation is clutter: nothing of what is
     /// rather a neighbour's. Small shares of many frames would add up to points that never were, and confirm themselves.
-    pub(super) fn to_remember(
+    pub(super) fn counts_to_remember(
         &mut self,
         places: &[Place],
         besides: &Counts,

@@ -197,7 +197,7 @@ impl Inference {
         let power = self.power(&context);
         self.find_whereabouts();
         let of_clutter = |spot: usize| self.explanation.clutter(spot);
-        let counts = self.clutter.to_remember(self.places.each(), &self.besides, of_clutter);
+        let counts = self.clutter.counts_to_remember(self.places.each(), &self.besides, of_clutter);
         self.memory.remember(Frame {
             clutter: counts,
             neighbours: self.explanation.neighbours(),

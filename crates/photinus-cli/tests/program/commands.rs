@@ -123,13 +123,15 @@ fn a_frame_that_holds_more_than_the_budget_says_so() {
 #[test]
 fn what_is_believed_of_a_neighbour_shows_in_its_sigma() {
     let stage = Stage::new("priors");
-    let sigma_m = |options: &str| {
+    let neighbour = |options: &str| {
         assert_eq!(
             stage.run(&format!("{LOCATE} -q --out r.jsonl --force --gravity 0,1,0 {options}")).code,
             0
         );
-        records(&stage, "r.jsonl")[0].neighbours[0].distance_m.sigma.unwrap()
+        records(&stage, "r.jsonl")[0].neighbours.remove(0)
     };
+    let sigma_m = |options: &str| neighbour(options).distance_m.sigma.unwrap();
+    let tilt_sigma_rad = |options: &str| neighbour(options).orientation_covariance_rad2.unwrap()[0][0].sqrt();
     let usual_m = sigma_m("");
     assert!(
         (sigma_m("--tilt-sigma 5 --marker-sigma 0.003 --scale-sigma 0.01") - usual_m).abs() < 1e-12,
@@ -137,7 +139,7 @@ fn what_is_believed_of_a_neighbour_shows_in_its_sigma() {
     );
     assert!(sigma_m("--marker-sigma 0.05") > 1.2 * usual_m);
     assert!(sigma_m("--no-brightness") > usual_m);
-    assert!(sigma_m("--tilt-sigma 0.5") < sigma_m("--tilt-sigma 20"));
+    assert!(tilt_sigma_rad("--tilt-sigma 0.5") < 0.1 * tilt_sigma_rad("--tilt-sigma 20"));
 }
 
 #[test]

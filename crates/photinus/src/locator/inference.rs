@@ -114,7 +114,7 @@ impl Inference {
             near: Near::default(),
             kinds: Kinds::new(kinds, settings)?,
             groups: Groups::default(),
-            memory: Memory::new(besides.len(), whereabouts.counts().len()),
+            memory: Memory::new(clutter.counts().len(), whereabouts.counts().len()),
             whereabouts,
             size,
             with_light,
@@ -196,10 +196,8 @@ impl Inference {
         self.fixtures.remember(sightings, |spot| self.explanation.clutter(spot));
         let power = self.power(&context);
         self.find_whereabouts();
-        let of_clutter = |spot: usize| self.explanation.clutter(spot);
-        let counts = self.clutter.counts_to_remember(self.places.each(), &self.besides, of_clutter);
         self.memory.remember(Frame {
-            clutter: counts,
+            clutter: self.clutter.counts(),
             neighbours: self.explanation.neighbours(),
             whereabouts: self.whereabouts.counts(),
             power,

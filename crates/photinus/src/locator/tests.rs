@@ -17,7 +17,6 @@ mod alternatives;
 mod beside;
 mod dark;
 mod hot_pixels;
-mod lone;
 mod missed;
 mod most;
 mod newcomers;

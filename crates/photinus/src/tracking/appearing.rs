@@ -2,8 +2,8 @@
 //!
 //! A neighbour that is a vehicle's own spots, located again, is claimed and no news. The mixture of a neighbour's poses enters as it is. A vehicle that is
 //! heard appears once; where its track is lost, that one begins anew where the vehicle shows. So does a track that has its markers together with another
-//! vehicle's. Where one that was hidden may be what comes out, one that nobody knew of does so as seldom as those that are hidden are gone: a marker that comes out
-//! from behind another vehicle is the known one's rather than a stranger's.
+//! vehicle's. Where one that was hidden may be what comes out, what the frame tells of a vehicle there is told of both, and one that nobody knew of comes as seldom as those
+//! that are hidden are gone: a marker that comes out from behind another vehicle is the known one's rather than a stranger's.
 
 use alloc::vec::Vec;
 
@@ -49,9 +49,8 @@ pub(super) fn appear(
         };
         let free = if instead.is_some() { 1.0 } else { (1.0 - of_others).max(0.0) };
         let is_anybody = instead.is_none() && appearance.vehicle.is_none();
-        let seldom =
-            if is_anybody && ways.may_be_hidden(members) { existence::comes(interval_s) } else { 1.0 };
-        let exists = free * seldom_as(appearance.probability, seldom);
+        let hidden = if is_anybody { ways.hidden(members) } else { 0.0 };
+        let exists = free * appearance.probability * unknown(existence::comes(interval_s), hidden);
         unexplained -= exists * members.len() as f64;
         let is_there = |own: &Target| {
             appearance.vehicle.is_some() && moment.who(own.id, own.vehicle) == appearance.vehicle
@@ -102,9 +101,9 @@ pub(super) fn appear(
     unexplained.max(0.0)
 }
 
-/// How likely something is, told where it had even chances beforehand, if it is so seldom.
-fn seldom_as(probability: f64, seldom: f64) -> f64 {
-    probability * seldom / (probability * seldom + 1.0 - probability)
+/// How likely who shows is one that nobody knew of, where those come so seldom and one that is known is hidden so likely: what a frame tells of the two is the same.
+fn unknown(comes: f64, hidden: f64) -> f64 {
+    if hidden > 0.0 { comes / (comes + hidden) } else { 1.0 }
 }
 
 /// Fills `modes` with what a neighbour tells of a vehicle of which nothing else is known.

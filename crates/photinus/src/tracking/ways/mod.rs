@@ -101,6 +101,8 @@ pub(super) struct Ways {
     /// Logarithm of the weight that nothing of a vehicle is seen, and of that of being shown, by vehicle.
     pub(super) log_unseen: Vec<f64>,
     log_shown: Vec<f64>,
+    /// How likely it is hidden before the frame, by vehicle.
+    hidden: Vec<f64>,
     /// How likely none of its markers is seen if nothing hides it: by vehicle, and by its distributions.
     unseen_if_shown: Vec<f64>,
     unseen_of: Vec<f64>,
@@ -155,6 +157,7 @@ impl Ways {
             choices: Vec::with_capacity(256),
             log_unseen: Vec::new(),
             log_shown: Vec::new(),
+            hidden: Vec::new(),
             unseen_if_shown: Vec::new(),
             unseen_of: Vec::new(),
             first_unseen: Vec::new(),
@@ -207,13 +210,14 @@ impl Ways {
         self.unseen_of[self.first_unseen[vehicle]..].iter().copied()
     }
 
-    /// Whether a vehicle that was likelier hidden than shown before the frame may be seen by one of these spots.
-    pub(super) fn may_be_hidden(&self, spots: &[usize]) -> bool {
-        self.choices.iter().any(|choice| {
+    /// How likely a vehicle is hidden before the frame that may be seen by one of these spots and was likelier hidden, or not there, than shown.
+    pub(super) fn hidden(&self, spots: &[usize]) -> f64 {
+        let may_be_seen = self.choices.iter().filter(|choice| {
             let pairs = &self.all[choice.way].pairs;
             self.log_shown[choice.vehicle] < -core::f64::consts::LN_2
                 && spots.iter().any(|&spot| pairs.has_spot(spot))
-        })
+        });
+        may_be_seen.map(|choice| self.hidden[choice.vehicle]).fold(0.0, f64::max)
     }
 
     /// Whether LEDs of a vehicle would be of another power than others say, if it is there; `None` where that is not known.
@@ -242,6 +246,7 @@ impl Ways {
         self.choices.clear();
         self.log_unseen.clear();
         self.log_shown.clear();
+        self.hidden.clear();
         self.priors.clear();
         self.candidates.clear();
         self.first_candidate.clear();
@@ -289,6 +294,7 @@ impl Ways {
         self.unseen_if_shown.push(unseen_if_shown);
         self.log_unseen.push(libm::log(existence.unseen(unseen_if_shown)));
         self.log_shown.push(libm::log(existence.shown.max(f64::MIN_POSITIVE)));
+        self.hidden.push(existence.hidden);
         self.reach_neighbours(scene, vehicle);
         let own = self.candidates[self.gathered(vehicle)].iter().map(|candidate| candidate.promise);
         self.promises.push(own.reduce(f64::max));

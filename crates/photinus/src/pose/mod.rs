@@ -7,7 +7,7 @@
 //! hypotheses    which spot may be which marker, with a first guess of the pose
 //! problem       one assignment with all that is known (known) and seen (observation)
 //! cost          what a pose costs: bearings (merging), light, tilt; with its derivatives; and visibility
-//! refine        downhill to the mode of each hypothesis
+//! refine        downhill to the modes of each hypothesis: what must show beside a spot and does not shines into it or is dark
 //! along_yaw     slices along the valley where the yaw is uncertain
 //! mixture       weights, truncation to the strict bounds, moments, modes
 //! ```

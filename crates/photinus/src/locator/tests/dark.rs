@@ -18,8 +18,9 @@ fn where_the_front_arm_is_dark_the_true_distance_is_among_the_modes() {
         let towards = -libm::atan2(place_m.x, place_m.z) + PI / 2.0;
         let placed = Placed::new(place_m, towards + uniform(-from_front, from_front), Vector3::zeros());
         let mut spots = placed.spots(&airframe, &camera(), &mut rng);
-        spots.sort_by(|a, b| a.centre.u.total_cmp(&b.centre.u));
-        if is_dark && spots.len() == 3 {
+        if is_dark {
+            assert_eq!(spots.len(), 3);
+            spots.sort_by(|a, b| a.centre.u.total_cmp(&b.centre.u));
             spots.remove(1);
         }
         let located = locator.locate(Input::spots(&spots).gravity(Some(&level()))).unwrap();
@@ -32,5 +33,5 @@ fn where_the_front_arm_is_dark_the_true_distance_is_among_the_modes() {
     }
     let least = shares.iter().copied().fold(1.0, f64::min);
     println!("{shares:.2?}");
-    assert!(shares.len() > 30 && least > 0.1, "{shares:.2?}");
+    assert!(shares.len() > 30 && least > 0.4, "{shares:.2?}");
 }

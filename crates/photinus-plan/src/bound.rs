@@ -78,6 +78,7 @@ impl<'a> Bound<'a> {
             size: None,
             power: Some(LogLight { value: 0.0, sigma: LOG_POWER_SIGMA }),
             tilt_sigma_rad: None,
+            unit_sigma: None,
             visible: Visible { detection_limit: Some(self.detection_limit), ..Visible::default() },
         };
         let Posterior { summary, .. } = self.estimator.estimate(&observations, &mut self.hypotheses, &known);

@@ -13,6 +13,7 @@
 
 mod clock;
 pub mod config;
+mod contradictions;
 pub mod course;
 mod daylight;
 mod disputes;
@@ -21,7 +22,6 @@ pub mod exposure;
 pub mod fault;
 pub mod health;
 mod host_clock;
-mod lean;
 pub mod live;
 pub mod motion;
 mod odd_frame;

@@ -11,8 +11,8 @@ use photinus_io::image::GreyImage;
 use photinus_io::sky::Sky;
 use photinus_io::{Error, Place, Result};
 
+use crate::contradictions::Contradictions;
 use crate::daylight::Daylight;
-use crate::lean::Lean;
 use crate::watch::Watch;
 use crate::{Clock, Entry, Work};
 
@@ -28,7 +28,7 @@ pub struct View {
     airframes: Vec<String>,
     gravity: Option<Unit<Vector3<f64>>>,
     daylight: Daylight,
-    lean: Lean,
+    contradictions: Contradictions,
 }
 
 impl View {
@@ -43,7 +43,7 @@ impl View {
         settings: Settings,
         mask: Option<&Mask>,
     ) -> std::result::Result<Self, LocatorError> {
-        let lean = Lean::beyond(settings.pose.tilt_sigma_rad);
+        let contradictions = Contradictions::of(&settings, kinds);
         let mut locator = Locator::of_kinds(camera.clone(), kinds, curve, settings)?;
         locator.set_mask(mask.cloned())?;
         let airframes = kinds.iter().map(|kind| kind.airframe.name().to_owned()).collect();
@@ -57,7 +57,7 @@ impl View {
             airframes,
             gravity: None,
             daylight: Daylight::default(),
-            lean,
+            contradictions,
         })
     }
 
@@ -102,7 +102,7 @@ impl Work for View {
         entry.gravity = self.gravity.or(entry.gravity).or_else(live);
         entry.sun = self.daylight.sun(entry.record.time_s, entry.gravity.as_ref());
         locate(entry, &mut self.locator, &self.airframes, clock)?;
-        self.lean.see(self.locator.located().tilt_sigma_rad);
+        self.contradictions.see(self.locator.located());
         if let Some(watch) = &self.watch {
             watch.follow(entry, self.locator.located());
             clock.lap("following");
@@ -125,7 +125,7 @@ impl Work for View {
 
     fn remarks(&mut self) -> Vec<String> {
         let mut remarks = self.watch.as_ref().map_or_else(Vec::new, Watch::remarks);
-        remarks.extend(self.lean.remark());
+        remarks.extend(self.contradictions.remarks());
         remarks
     }
 }

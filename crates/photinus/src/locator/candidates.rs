@@ -11,7 +11,7 @@ use crate::camera::Bearing;
 #[cfg(not(feature = "std"))]
 use crate::float::Float as _;
 use crate::normal;
-use crate::pose::{LogLight, Misfit, Missed, Mode, Tilting};
+use crate::pose::{LightSpread, LogLight, Misfit, Missed, Mode, Tilting};
 
 /// Modes that a candidate has at most, or nearly.
 const MODES_EACH: usize = 32;
@@ -36,6 +36,8 @@ pub(super) struct Candidate {
     /// Its markers that must show, and those of them that do not.
     pub(super) missed: Missed,
     pub(super) tilting: Tilting,
+    /// How far the light of its LEDs is from what the airframe says.
+    pub(super) light_spread: LightSpread,
     /// Largest misfit, in sigma.
     pub(super) worst_sigma: f64,
     /// Logarithm of the density of its observations as this neighbour, if it is there: per sr and per unit of the logarithm of light each, times
@@ -59,6 +61,7 @@ pub(super) struct Told {
     pub(super) misfit: Misfit,
     pub(super) missed: Missed,
     pub(super) tilting: Tilting,
+    pub(super) light_spread: LightSpread,
     pub(super) worst_sigma: f64,
     pub(super) log_density: f64,
     /// How far its outermost marker is from its origin, m.
@@ -242,6 +245,7 @@ impl Candidates {
             misfit,
             missed,
             tilting,
+            light_spread,
             worst_sigma,
             log_density,
             reach_m,
@@ -257,6 +261,7 @@ impl Candidates {
             misfit,
             missed,
             tilting,
+            light_spread,
             worst_sigma,
             log_density,
             first_member: self.members.len(),
@@ -355,6 +360,7 @@ mod tests {
             misfit: Misfit { chi_square: 0.0, degrees: 0 },
             missed: Missed::default(),
             tilting: Tilting::default(),
+            light_spread: LightSpread::default(),
             worst_sigma: 0.0,
             log_density: 0.0,
             reach_m: REACH_M,

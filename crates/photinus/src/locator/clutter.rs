@@ -28,6 +28,9 @@ const WORTH_SURROUNDINGS: f64 = 1.0;
 /// The light of clutter may be anything over this many units of its logarithm, a factor of 3,000: as good as this many points that show their light.
 pub(super) const LIGHT_RANGE: f64 = 8.0;
 const WORTH_POINTS: f64 = 3.0;
+/// What is likelier than this to be clutter is remembered as clutter.
+const LIKELY: f64 = 0.5;
+
 /// What the density of clutter at an observation depends on.
 #[derive(Clone, Copy)]
 pub(super) struct Surroundings<'a> {
@@ -54,7 +57,7 @@ pub(super) struct Clutter {
     /// The same as `shares` while a group is asked about: of its observations those before one.
     shares_before: Vec<f64>,
     counts: Counts,
-    /// Counts of the observations before one.
+    /// Counts of the observations before one, or of those to remember.
     before: Counts,
 }
 
@@ -71,11 +74,6 @@ impl Clutter {
             counts: Counts::of(size),
             before: Counts::of(size),
         }
-    }
-
-    /// How much clutter is in every cell of the image and step of light, as measured last.
-    pub(super) fn counts(&self) -> &[f64] {
-        &self.counts.list
     }
 
     /// Logarithm of the density at each observation.
@@ -167,6 +165,23 @@ impl Clutter {
         excess
     }
 
+    /// How much clutter of a frame is to be remembered in every cell of the image and step of light, where `share` tells how likely an observation is clutter: nothing of what is
+    /// rather a neighbour's. Small shares of many frames would add up to points that never were, and confirm themselves.
+    pub(super) fn counts_to_remember(
+        &mut self,
+        places: &[Place],
+        besides: &Counts,
+        share: impl Fn(usize) -> f64,
+    ) -> &[f64] {
+        let likely = |index: usize| Some(share(index)).filter(|share| *share > LIKELY);
+        self.share_out(places, |index| likely(index).unwrap_or(0.0));
+        self.before.list.copy_from_slice(&besides.list);
+        for (index, place) in places.iter().enumerate() {
+            self.before.add(place, self.shares[index], self.hot[index]);
+        }
+        &self.before.list
+    }
+
     /// Logarithm of how dense clutter is at an observation, with this many more points at the same place, and so dense beside others per px^2.
     fn log_per_sr(
         &self,
@@ -228,6 +243,11 @@ impl Counts {
     /// Its cells.
     pub(super) fn cells(&self) -> &Cells {
         &self.cells
+    }
+
+    /// How many numbers they are.
+    pub(super) fn len(&self) -> usize {
+        self.list.len()
     }
 
     /// Counts these observations and no others.

@@ -27,6 +27,8 @@ pub(super) struct Context<'a> {
     pub(super) miss_rate: f64,
     /// How far neighbours tilt, per axis, rad.
     pub(super) tilt_sigma_rad: f64,
+    /// How many times as much as supposed the power of LEDs spreads.
+    pub(super) light_times: f64,
     /// Logarithm of the density of each observation as clutter, per sr and per unit of the logarithm of its light.
     pub(super) clutter: &'a [f64],
     /// Logarithm of how many neighbours there are per sr.

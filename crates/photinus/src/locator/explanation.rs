@@ -496,7 +496,7 @@ mod tests {
     use super::*;
     use crate::camera::Bearing;
     use crate::locator::neighbour::Position;
-    use crate::pose::{Misfit, Missed, Tilting};
+    use crate::pose::{LightSpread, Misfit, Missed, Tilting};
     use crate::ranging::Interval;
 
     /// Observations of a part that is explained at once.
@@ -523,6 +523,7 @@ mod tests {
                 misfit,
                 missed: Missed::default(),
                 tilting: Tilting::default(),
+                light_spread: LightSpread::default(),
                 worst_sigma: 0.0,
                 log_density: *log_density,
                 reach_m: ROOM_M,

@@ -34,7 +34,7 @@ use super::telling::Telling;
 use super::whereabouts::Whereabouts;
 use super::{LocatorError, Stage};
 use crate::camera::{Camera, Watched};
-use crate::pose::{LogLight, Missed, Tilting};
+use crate::pose::{LightSpread, LogLight, Missed, Tilting};
 
 /// This many of the observations nearest to each are known, and as many as one neighbour shows.
 const FEWEST_BESIDE: usize = 16;
@@ -114,7 +114,7 @@ impl Inference {
             near: Near::default(),
             kinds: Kinds::new(kinds, settings)?,
             groups: Groups::default(),
-            memory: Memory::new(clutter.counts().len(), whereabouts.counts().len()),
+            memory: Memory::new(besides.len(), whereabouts.counts().len()),
             whereabouts,
             size,
             with_light,
@@ -160,6 +160,8 @@ impl Inference {
         located.miss_rate = Some(miss_rate);
         let tilt_sigma_rad = self.memory.tilt_sigma_rad(self.supposed_tilt_sigma_rad);
         located.tilt_sigma_rad = Some(tilt_sigma_rad);
+        let light_times = self.memory.light_times();
+        located.light_times = Some(light_times);
         let context = Context {
             sightings,
             near: &near,
@@ -169,6 +171,7 @@ impl Inference {
             detection_limit: located.detection_limit,
             miss_rate,
             tilt_sigma_rad,
+            light_times,
             clutter: &[],
             log_neighbours: 0.0,
             known: None,
@@ -196,13 +199,16 @@ impl Inference {
         self.fixtures.remember(sightings, |spot| self.explanation.clutter(spot));
         let power = self.power(&context);
         self.find_whereabouts();
+        let of_clutter = |spot: usize| self.explanation.clutter(spot);
+        let counts = self.clutter.counts_to_remember(self.places.each(), &self.besides, of_clutter);
         self.memory.remember(Frame {
-            clutter: self.clutter.counts(),
+            clutter: counts,
             neighbours: self.explanation.neighbours(),
             whereabouts: self.whereabouts.counts(),
             power,
             missed: missed(&self.candidates, &self.explanation),
             tilting: tilting(&self.candidates, &self.explanation),
+            light_spread: light_spread(&self.candidates, &self.explanation),
         });
         located.is_complete = work.left > 0 && besides.is_empty();
         self.telling.tell(
@@ -411,6 +417,17 @@ fn tilting(candidates: &Candidates, explanation: &Explanation) -> Tilting {
         let Tilting { degrees, squares_rad2 } = candidates.get(index).tilting;
         all.degrees += degrees;
         all.squares_rad2 += squares_rad2;
+    }
+    all
+}
+
+/// How far the light of those is from what their airframe says that surely explain the frame.
+fn light_spread(candidates: &Candidates, explanation: &Explanation) -> LightSpread {
+    let mut all = LightSpread::default();
+    for index in (0..candidates.len()).filter(|&index| explanation.probability(index) > SURE) {
+        let LightSpread { degrees, squares } = candidates.get(index).light_spread;
+        all.degrees += degrees;
+        all.squares += squares;
     }
     all
 }

@@ -1,6 +1,6 @@
 //! What the frames before told: how bright the LEDs are, where clutter is, and how many neighbours there are, and where.
 //!
-//! In: of each frame its clutter, how many neighbours it has, where, the power of their LEDs, which of these do not show, and how far
+//! In: of each frame its clutter, how many neighbours it has, where, the power of their LEDs and how it spreads, which of these do not show, and how far
 //! they tilt. Out: the same over the last [`Memory::FRAMES`] frames.
 
 use alloc::vec;
@@ -9,7 +9,7 @@ use alloc::vec::Vec;
 use super::whereabouts::PerFrame;
 #[cfg(not(feature = "std"))]
 use crate::float::Float as _;
-use crate::pose::{LogLight, Missed, Tilting};
+use crate::pose::{LightSpread, LogLight, Missed, Tilting};
 
 /// Spread of the logarithm of light between neighbours, before any are compared: lobes, units, the lens towards its edge.
 pub(super) const LOG_POWER_SIGMA: f64 = 0.35;
@@ -28,6 +28,11 @@ const SUPPOSED_TILTS: f64 = 6.0;
 /// ... and all frames tell no more than twelve: they show the same ones again.
 const MOST_TILTS: f64 = 24.0;
 
+/// How far LEDs' light is supposed to spread is as sure as what so many of them would tell, ...
+const SUPPOSED_LIGHTS: f64 = 6.0;
+/// ... and all frames tell no more than so many: they show the same ones again.
+const MOST_LIGHTS: f64 = 24.0;
+
 /// What is remembered of a frame.
 #[derive(Clone, Copy)]
 pub(super) struct Frame<'a> {
@@ -41,6 +46,8 @@ pub(super) struct Frame<'a> {
     pub(super) missed: Missed,
     /// Of those that are sure.
     pub(super) tilting: Tilting,
+    /// Of the LEDs of those.
+    pub(super) light_spread: LightSpread,
 }
 
 /// What a frame tells of the power of LEDs.
@@ -123,6 +130,7 @@ pub(super) struct Memory {
     neighbours: Vec<f64>,
     missed: Vec<Missed>,
     tiltings: Vec<Tilting>,
+    light_spreads: Vec<LightSpread>,
     sorted: Vec<f64>,
 }
 
@@ -141,6 +149,7 @@ impl Memory {
             neighbours: vec![0.0; Self::FRAMES],
             missed: vec![Missed::default(); Self::FRAMES],
             tiltings: vec![Tilting::default(); Self::FRAMES],
+            light_spreads: vec![LightSpread::default(); Self::FRAMES],
             sorted: Vec::with_capacity(Self::FRAMES),
         }
     }
@@ -185,6 +194,12 @@ impl Memory {
         let told = |place: usize| (self.tiltings[place].squares_rad2, self.tiltings[place].degrees);
         let mean_rad2 = self.mean((supposed_rad * supposed_rad, SUPPOSED_TILTS), MOST_TILTS, told);
         mean_rad2.sqrt().max(supposed_rad)
+    }
+
+    /// How many times as much as supposed the power of LEDs spreads: no less.
+    pub(super) fn light_times(&self) -> f64 {
+        let told = |place: usize| (self.light_spreads[place].squares, self.light_spreads[place].degrees);
+        self.mean((1.0, SUPPOSED_LIGHTS), MOST_LIGHTS, told).sqrt().max(1.0)
     }
 
     /// The mean of what frames tell, by place each a sum and of how many, where a mean is supposed beforehand as surely as so many would tell it, and all frames
@@ -241,7 +256,7 @@ impl Memory {
 
     /// Remembers a frame and forgets the oldest.
     pub(super) fn remember(&mut self, frame: Frame<'_>) {
-        let Frame { clutter, neighbours, whereabouts, power, missed, tilting } = frame;
+        let Frame { clutter, neighbours, whereabouts, power, missed, tilting, light_spread } = frame;
         for (counted, counts) in [(&mut self.clutter, clutter), (&mut self.whereabouts, whereabouts)] {
             counted.frames[self.next * counted.cells..][..counted.cells].copy_from_slice(counts);
         }
@@ -249,6 +264,7 @@ impl Memory {
         self.neighbours[self.next] = neighbours;
         self.missed[self.next] = missed;
         self.tiltings[self.next] = tilting;
+        self.light_spreads[self.next] = light_spread;
         self.next = (self.next + 1) % Self::FRAMES;
         self.frames = (self.frames + 1).min(Self::FRAMES);
         let next = self.next;
@@ -276,6 +292,7 @@ mod tests {
             power: Some(power),
             missed,
             tilting: Tilting::default(),
+            light_spread: LightSpread::default(),
         }
     }
 
@@ -304,7 +321,15 @@ mod tests {
                 let missed = Missed { expected: 3.0 * neighbours, missed: 0.1 * neighbours };
                 let whereabouts = &[0.9 * neighbours];
                 let tilting = Tilting { degrees: neighbours, squares_rad2: 0.03 * neighbours };
-                memory.remember(Frame { clutter: &clutter, neighbours, whereabouts, power, missed, tilting });
+                memory.remember(Frame {
+                    clutter: &clutter,
+                    neighbours,
+                    whereabouts,
+                    power,
+                    missed,
+                    tilting,
+                    light_spread: LightSpread { degrees: neighbours, squares: 1.5 * neighbours },
+                });
             }
             (
                 memory.frames(),
@@ -314,6 +339,7 @@ mod tests {
                 memory.power(),
                 memory.miss_rate(0.02).to_bits(),
                 memory.tilt_sigma_rad(0.1).to_bits(),
+                memory.light_times().to_bits(),
             )
         };
         assert_eq!(after(0), after(200 - Memory::FRAMES));

@@ -99,4 +99,7 @@ pub struct Located {
     /// Standard deviation of neighbours' tilts, per axis, with the error of the known gravity, rad, as the frames before told it, and no less than
     /// [`crate::pose::Settings::tilt_sigma_rad`]; `None` before a frame.
     pub tilt_sigma_rad: Option<f64>,
+    /// How many times as much as [`crate::pose::Settings::unit_sigma`] says the power of LEDs spreads, as the frames before told it, and no less than once; `None`
+    /// before a frame. Far more than once where lobes or powers are not as the airframe's file has them.
+    pub light_times: Option<f64>,
 }

@@ -84,7 +84,7 @@ fn log_per_sr(per_frame: f64) -> f64 {
 mod tests {
     use super::super::memory::Frame;
     use super::*;
-    use crate::pose::{Missed, Tilting};
+    use crate::pose::{LightSpread, Missed, Tilting};
 
     /// After frames with so many neighbours.
     fn after(numbers: impl IntoIterator<Item = f64>) -> Number {
@@ -97,6 +97,7 @@ mod tests {
                 power: None,
                 missed: Missed::default(),
                 tilting: Tilting::default(),
+                light_spread: LightSpread::default(),
             });
         }
         Number::of(&memory)

@@ -152,6 +152,7 @@ impl Poser {
             size,
             power,
             tilt_sigma_rad: Some(context.tilt_sigma_rad),
+            unit_sigma: Some(context.light_times * self.unit_sigma),
             visible,
         };
         let posterior = self.estimator.estimate(&self.observations, &mut self.hypotheses, &known);
@@ -191,6 +192,7 @@ impl Poser {
             worst_sigma,
             missed,
             tilting,
+            light_spread,
             log_power,
         } = self.estimator.posterior();
         let Some(summary) = *summary else { return };
@@ -220,6 +222,7 @@ impl Poser {
             misfit: *misfit,
             missed: *missed,
             tilting: *tilting,
+            light_spread: *light_spread,
             worst_sigma: *worst_sigma,
             log_density: log_evidence - log_range(group.len())
                 + power_agreement(context, group, *log_power)
@@ -240,17 +243,13 @@ impl Poser {
         candidates: &mut Candidates,
     ) {
         let Some(best) = modes.first() else { return };
+        let unit_sigma = context.light_times * self.unit_sigma;
         for (bearing, &spot) in self.others.iter().zip(&self.beside) {
             let resolution_rad = context.sightings[spot].resolution_rad;
             let mut part_light = PartLight::default();
             for mode in modes {
-                let part = merged_into(
-                    &self.airframe,
-                    &mode.pose,
-                    bearing.vector(),
-                    resolution_rad,
-                    self.unit_sigma,
-                );
+                let part =
+                    merged_into(&self.airframe, &mode.pose, bearing.vector(), resolution_rad, unit_sigma);
                 let Some(Part { probability, intensity, range2_m2 }) = part else { continue };
                 // The farther away the more powerful are the LEDs whose light is seen.
                 let times = mode.pose.position_m.norm_squared() / best.pose.position_m.norm_squared();
@@ -261,7 +260,7 @@ impl Poser {
             if probability > LEAST_MERGED {
                 let adds = log_power
                     .filter(|_| self.with_light)
-                    .and_then(|log_power| part_light.told(log_power, self.unit_sigma));
+                    .and_then(|log_power| part_light.told(log_power, unit_sigma));
                 let lights = context.sightings[spot].log_light.zip(adds);
                 let place_log_density = -libm::log(PI * resolution_rad * resolution_rad);
                 candidates.merge(spot, probability, place_log_density, lights);

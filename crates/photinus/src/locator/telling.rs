@@ -223,7 +223,7 @@ mod tests {
     use super::super::neighbour::Distance;
     use super::*;
     use crate::camera::Bearing;
-    use crate::pose::{Misfit, Missed, Tilting};
+    use crate::pose::{LightSpread, Misfit, Missed, Tilting};
 
     const SIGMA_M: f64 = 0.1;
 
@@ -243,6 +243,7 @@ mod tests {
             misfit: Misfit { chi_square: 0.0, degrees: 0 },
             missed: Missed::default(),
             tilting: Tilting::default(),
+            light_spread: LightSpread::default(),
             worst_sigma: 0.0,
             log_density,
             reach_m: 0.1,

@@ -17,6 +17,8 @@ mod alternatives;
 mod beside;
 mod dark;
 mod hot_pixels;
+mod light;
+mod lone;
 mod missed;
 mod most;
 mod newcomers;
@@ -150,23 +152,23 @@ fn locate(
     (0..placed.len()).map(whole).collect()
 }
 
-/// The mean of what a locator says of hexarotors 2 to 6 m away, each frame another one that tilts as drawn, over the frames after the first hundred.
+/// The mean of what a locator says of hexarotors, built so, 2 to 6 m away, each frame another one that tilts as drawn, over the frames after the first hundred.
 fn mean_told(
+    built: &Airframe,
     down: &Unit<Vector3<f64>>,
     mut rng: Pcg64,
     tilt: impl Fn(&mut Pcg64) -> Vector3<f64>,
     is_seen: impl Fn(&mut Pcg64) -> bool,
     told: impl Fn(&Located) -> f64,
 ) -> f64 {
-    let airframe = hexarotor();
-    let mut locator = locator(&airframe);
+    let mut locator = locator(&hexarotor());
     let (mut sum, mut count) = (0.0, 0.0);
     for frame in 0..400 {
         let mut uniform = |low: f64, high: f64| Uniform::new(low, high).unwrap().sample(&mut rng);
         let place_m = ahead(uniform(2.0, 6.0), uniform(-0.8, 0.8), uniform(-0.3, 0.3));
         let yaw_rad = uniform(0.0, TAU);
         let placed = Placed::new(place_m, yaw_rad, tilt(&mut rng));
-        let mut spots = placed.spots(&airframe, &camera(), &mut rng);
+        let mut spots = placed.spots(built, &camera(), &mut rng);
         spots.retain(|_| is_seen(&mut rng));
         let located = locator.locate(Input::spots(&spots).gravity(Some(down))).unwrap();
         if frame >= 100 {

@@ -172,6 +172,7 @@ impl Calling {
             size,
             power: before.power,
             tilt_sigma_rad: before.tilt_sigma_rad,
+            unit_sigma: None,
             visible,
         };
         let posterior = self.estimator.estimate(&self.observations, &mut self.hypotheses, &known);

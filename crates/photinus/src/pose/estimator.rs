@@ -7,6 +7,7 @@ use super::along_yaw;
 use super::assignment::Assignment;
 use super::hypotheses::Hypotheses;
 use super::known::Known;
+use super::light_spread::LightSpread;
 use super::misfit::Misfit;
 use super::mixture::{self, Component, Mode, Summary};
 use super::observation::{Observation, Whitened};
@@ -58,6 +59,8 @@ pub struct Posterior {
     pub missed: Missed,
     /// How far it tilts in the best mode.
     pub tilting: Tilting,
+    /// How far its light is from what the airframe says in the best mode.
+    pub light_spread: LightSpread,
     /// Logarithm of the light of an LED of intensity 1 at 1 m in the best mode, where a spot has a light.
     pub log_power: Option<f64>,
 }
@@ -150,6 +153,7 @@ impl Estimator {
                 self.posterior.misfit = problem.misfit_of_all(&mode.pose);
                 self.posterior.missed = problem.missed(&mode.pose, mode.normal.log_power);
                 self.posterior.tilting = problem.tilting(&mode);
+                self.posterior.light_spread = problem.light_spread(&mode);
                 self.posterior.log_power = mode.normal.log_power;
                 self.posterior.worst_sigma = problem.used().map(misfit).fold(0.0, f64::max).sqrt();
             }

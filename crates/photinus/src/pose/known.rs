@@ -19,6 +19,8 @@ pub struct Known<'a> {
     pub power: Option<LogLight>,
     /// Standard deviation of a neighbour's tilt, per axis, with the error of the known gravity, rad, where frames tell it; as the settings have it where that is `None`.
     pub tilt_sigma_rad: Option<f64>,
+    /// Spread of power between LEDs of one kind, sigma of its natural logarithm, where frames tell it; as the settings have it where that is `None`.
+    pub unit_sigma: Option<f64>,
     /// Which markers are found.
     pub visible: Visible<'a>,
 }

@@ -13,7 +13,7 @@ use crate::optics::LogLight;
 const INDEPENDENT: f64 = 4.0;
 /// Squared misfit of all lights of a neighbour together, in units of its variance, beyond which lobes or powers are not as they are told: it counts by
 /// its logarithm from there on.
-const AS_TOLD: f64 = 6.0;
+pub(super) const AS_TOLD: f64 = 6.0;
 /// A marker that shines with less than this towards the camera shines away.
 const DARK: f64 = 0.01;
 /// Where nothing tells the power of the LEDs it may be anything over this many units of its logarithm: a factor of 20,000.
@@ -107,7 +107,7 @@ impl Light {
         if shining.intensity > DARK {
             by_camera += shining.intensity_gradient / shining.intensity;
         }
-        let unit = problem.settings.unit_sigma;
+        let unit = problem.unit_sigma();
         let variance = |lobe: f64| (seen.sigma * seen.sigma + unit * unit + lobe * lobe) * self.shared;
         if self.repeats > 1.0 {
             self.even.add(variance(problem.settings.lobe_sigma));
@@ -131,6 +131,11 @@ impl Light {
     /// Logarithm of the light of an LED of intensity 1 at 1 m that fits best; `None` where no spot has a light.
     pub(super) fn log_power(&self) -> Option<f64> {
         (self.scale.weight > 0.0).then(|| self.first / self.scale.weight)
+    }
+
+    /// As many independent ones tell what so many lights do.
+    pub(super) fn independent(&self, lights: usize) -> f64 {
+        lights as f64 / self.shared
     }
 
     /// Squares of what is left when the power of the LEDs is solved for.

@@ -293,7 +293,7 @@ impl Problem<'_> {
         }
         let (mut total, mut unsure_m2) = (0.0, 0.0);
         // Units of LEDs differ, and so does their share.
-        let unit = self.settings.unit_sigma * core::f64::consts::SQRT_2;
+        let unit = self.unit_sigma() * core::f64::consts::SQRT_2;
         for (place, one) in all().enumerate() {
             let Window { room, gradient } = self.window(spot, &middle, &one.place_m, camera_m);
             let weight = room * room;

@@ -38,7 +38,15 @@ fn observation(direction: Vector3<f64>, sigma_rad: f64, light: f64) -> Observati
 
 fn nothing() -> Known<'static> {
     let bounds = crate::ranging::Interval::new(0.0, f64::INFINITY).unwrap();
-    Known { up: None, bounds, size: None, power: None, tilt_sigma_rad: None, visible: Visible::default() }
+    Known {
+        up: None,
+        bounds,
+        size: None,
+        power: None,
+        tilt_sigma_rad: None,
+        unit_sigma: None,
+        visible: Visible::default(),
+    }
 }
 
 /// Laws and tables of how light falls off to the side.

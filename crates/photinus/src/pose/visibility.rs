@@ -167,8 +167,8 @@ impl Problem<'_> {
     ) -> f64 {
         let camera_m = pose.camera_in_body_m();
         let limit = self.known.visible.detection_limit;
-        let rise = Rise::of_markers(limit, self.settings.unit_sigma, self.power_variance());
-        let rise_of_two = Rise::of_two(self.settings.unit_sigma);
+        let rise = Rise::of_markers(limit, self.unit_sigma(), self.power_variance());
+        let rise_of_two = Rise::of_two(self.unit_sigma());
         let half = match log_power.zip(limit) {
             // The intensity at which a marker at the origin's distance gives as much light.
             Some((power, limit)) => (libm::exp(limit.value - power) * camera_m.norm_squared())
@@ -208,7 +208,7 @@ impl Problem<'_> {
 
     /// How well the spots in use and what is known beforehand tell the power of the LEDs, as a logarithm.
     fn power_variance(&self) -> f64 {
-        let unit = self.settings.unit_sigma;
+        let unit = self.unit_sigma();
         let weight = |variance: f64| 1.0 / (variance + 1e-6);
         let seen = self.used().filter_map(|(spot, _)| self.observations[spot].log_light);
         let told: f64 = seen.map(|light| weight(light.sigma * light.sigma + unit * unit)).sum();

@@ -217,6 +217,8 @@ pub(super) struct Moment {
     pub(super) miss_rate: Option<f64>,
     /// How far vehicles tilt, where frames tell it, rad.
     pub(super) tilt_sigma_rad: Option<f64>,
+    /// How many times as much as supposed the power of LEDs spreads, where frames tell it.
+    pub(super) light_times: Option<f64>,
     /// With the density of clutter per unit of the logarithm of its light, for one point of clutter per sr.
     pub(super) observations: Vec<Observation>,
     /// What the camera's calibration adds to the covariance of each.
@@ -260,6 +262,7 @@ impl Moment {
         self.detection_limit = located.detection_limit;
         self.miss_rate = located.miss_rate;
         self.tilt_sigma_rad = located.tilt_sigma_rad;
+        self.light_times = located.light_times;
         self.up = gravity.map(|down| -down);
         self.observations.clear();
         self.calibrations.clear();

@@ -67,7 +67,7 @@ fn known() -> impl Strategy<Value = Known<'static>> {
     (up(), interval(), size, log_light(), log_light()).prop_map(
         |(up, bounds, size, power, detection_limit)| {
             let visible = Visible { detection_limit, ..Visible::default() };
-            Known { up, bounds, size, power, tilt_sigma_rad: None, visible }
+            Known { up, bounds, size, power, tilt_sigma_rad: None, unit_sigma: None, visible }
         },
     )
 }

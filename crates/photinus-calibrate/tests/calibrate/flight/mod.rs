@@ -155,9 +155,22 @@ pub(crate) struct Distances {
 
 /// Locates the frames of a scene as this airframe and compares with the truth.
 pub(crate) fn distances(scene: &Scene, airframe: &Airframe, settings: Settings) -> Distances {
+    distances_after(0, scene, airframe, settings)
+}
+
+/// The same of the frames after the first so many.
+pub(crate) fn distances_after(
+    first: u64,
+    scene: &Scene,
+    airframe: &Airframe,
+    settings: Settings,
+) -> Distances {
     let (mut errors, mut nees) = (Vec::new(), 0.0);
     locate(scene, airframe, settings, |located, rendered| {
         let [neighbour] = located.neighbours.as_slice() else { return };
+        if rendered.truth.frame < first {
+            return;
+        }
         let (Some(estimate), Some(position)) = (neighbour.distance.estimate, neighbour.position) else {
             return;
         };

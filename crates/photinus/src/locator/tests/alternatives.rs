@@ -79,6 +79,7 @@ fn compare(
         clutter: &clutter,
         miss_rate: pose::Settings::default().missed,
         tilt_sigma_rad: pose::Settings::default().tilt_sigma_rad,
+        light_times: 1.0,
         log_neighbours: 0.0,
         known: None,
     };

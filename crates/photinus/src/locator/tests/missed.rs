@@ -7,7 +7,7 @@ fn learned(missed: f64) -> f64 {
     let uniform = |rng: &mut Pcg64, low: f64, high: f64| Uniform::new(low, high).unwrap().sample(rng);
     let tilt = |rng: &mut Pcg64| Vector3::new(uniform(rng, -0.1, 0.1), 0.0, uniform(rng, -0.1, 0.1));
     let is_seen = |rng: &mut Pcg64| uniform(rng, 0.0, 1.0) >= missed;
-    mean_told(&level(), Pcg64::new(29, 31), tilt, is_seen, |located| located.miss_rate.unwrap())
+    mean_told(&hexarotor(), &level(), Pcg64::new(29, 31), tilt, is_seen, |located| located.miss_rate.unwrap())
 }
 
 #[test]

@@ -10,7 +10,14 @@ fn learned(tilt_sigma_rad: f64, gravity_off_rad: f64) -> f64 {
         let [x, z] = [(); 2].map(|()| -> f64 { StandardNormal.sample(rng) });
         Vector3::new(x, 0.0, z) * tilt_sigma_rad
     };
-    mean_told(&down, Pcg64::new(37, 41), tilt, |_| true, |located| located.tilt_sigma_rad.unwrap())
+    mean_told(
+        &hexarotor(),
+        &down,
+        Pcg64::new(37, 41),
+        tilt,
+        |_| true,
+        |located| located.tilt_sigma_rad.unwrap(),
+    )
 }
 
 #[test]

@@ -65,7 +65,7 @@ fn surely_wrong(seeds: std::ops::Range<u64>) -> f64 {
 
 #[test]
 fn a_light_that_was_nobodys_is_no_marker() {
-    let wrong = surely_wrong(0..200);
+    let wrong = surely_wrong(0..400);
     println!("surely wrong: {:.2} %", 100.0 * wrong);
     // Where each sight of the light is new it is 11 %; in half of what is left the first frame takes the light for a marker already.
     assert!(wrong < 0.085, "{wrong}");

@@ -12,6 +12,10 @@ use crate::pose::Pose;
 /// A marker is the followed one so near to it, in radii of the vehicle: markers stand farther apart.
 const SAME_PLACE_RADII: f64 = 0.25;
 
+/// This share of exposures straddles an edge of what an LED blinks, and a marker that shines for a part of one shows so likely.
+const PARTLY: f64 = 0.06;
+const DIM_SHOWS: f64 = 0.5;
+
 /// The markers that are followed near a vehicle. Keeps its room.
 #[derive(Debug, Default)]
 pub(super) struct Blinking {
@@ -91,5 +95,23 @@ impl Blinking {
         let place = model.symmetry.turned(turn, marker as u16);
         let is_same = |own: &usize| self.signal(*own).is_some_and(|signal| model.blinks(place, signal));
         (0..self.near.len()).find(is_same).map(|own| self.near[own].lit)
+    }
+}
+
+/// How likely LEDs that blink alike show, lit so likely: in an exposure that straddles an edge they do so dimly. Those beside one that is seen shine as it does, and show as far as
+/// its light says.
+pub(super) fn show(alike: f64) -> f64 {
+    (1.0 - PARTLY) * alike + PARTLY * DIM_SHOWS
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_dark_shows_where_the_exposure_straddles_an_edge() {
+        assert!((0.01..0.05).contains(&show(0.0)));
+        assert!((0.45..0.55).contains(&show(0.5)));
+        assert!((0.95..1.0).contains(&show(1.0)));
     }
 }

@@ -55,9 +55,6 @@ const ANY_MARKER: f64 = 1e-3;
 const WRONG_MARKER: f64 = 1e-4;
 /// LEDs are odd whose power is so far from what others say, standard deviations.
 const ODD_SIGMA: f64 = 3.0;
-/// This share of exposures straddles an edge of what an LED blinks, and a marker that shines for a part of one shows so likely.
-const PARTLY: f64 = 0.06;
-const DIM_SHOWS: f64 = 0.5;
 /// Spots within so many radii of a vehicle may hide its markers.
 const NEAR_RADII: f64 = 3.0;
 
@@ -112,6 +109,8 @@ pub(super) struct Ways {
     used_bits: u32,
     observations: Vec<Observation>,
     clutter_nats: f64,
+    /// Priors as they are told and as frames tell them, and the same as one frame may count them.
+    believed: pose::Settings,
     per_frame: pose::Settings,
     /// The light of an LED of intensity 1 at 1 m by what other vehicles say: by vehicle, and as one frame may count it.
     powers: Vec<Option<LogLight>>,
@@ -165,6 +164,7 @@ impl Ways {
             used_bits: 0,
             observations: Vec::new(),
             clutter_nats: 0.0,
+            believed: pose::Settings::default(),
             per_frame: pose::Settings::default(),
             powers: Vec::new(),
             power: None,
@@ -332,8 +332,10 @@ impl Ways {
         self.repeats = model.repeats_of(target, moment, scene.own_interval_s);
         let widening = self.repeats.sqrt();
         self.power = self.powers[vehicle].map(|own| LogLight { sigma: own.sigma * widening, ..own });
+        let unit_sigma = model.pose.unit_sigma * moment.light_times.unwrap_or(1.0);
+        self.believed = pose::Settings { unit_sigma, ..model.pose };
         self.per_frame = pose::Settings {
-            unit_sigma: model.pose.unit_sigma * widening,
+            unit_sigma: unit_sigma * widening,
             lobe_sigma: model.pose.lobe_sigma * widening,
             ..model.pose
         };
@@ -392,15 +394,6 @@ impl Ways {
         from.silent.dim(&mut self.lit, &self.screened);
     }
 
-    /// Where LEDs that blink alike are lit so likely: how likely one of them shows, and, each lowered by it, how likely the others are lit if one does. An exposure
-    /// that straddles an edge shows some of them, dimly.
-    fn dim_beside_seen(&mut self, alike: f64) -> f64 {
-        let shows = (1.0 - PARTLY) * alike + PARTLY * DIM_SHOWS;
-        let beside = ((1.0 - PARTLY) * alike + PARTLY * DIM_SHOWS * DIM_SHOWS) / shows;
-        self.lit.iter_mut().for_each(|lit| *lit *= beside);
-        shows
-    }
-
     /// How likely no marker of a vehicle is seen that nothing hides.
     fn unseen(&mut self, scene: &Scene<'_>, vehicle: usize, component: &Component) -> f64 {
         let alike = self.light(scene, vehicle, component, &component.pose);
@@ -428,11 +421,12 @@ impl Ways {
             size: None,
             power: self.power,
             tilt_sigma_rad: None,
+            unit_sigma: None,
             visible,
         };
         let seen = Seen {
             airframe: &model.airframe,
-            settings: &model.pose,
+            settings: &self.believed,
             per_frame: &self.per_frame,
             observations: &self.observations,
             whitened: &self.whitened,
@@ -494,23 +488,4 @@ fn signal_nats(model: &Model, moment: &Moment, who: Option<u32>, spot: usize, ma
     let Some(told) = told else { return 0.0 };
     let probability = if carries(told.signal) { told.probability } else { 1.0 - told.probability };
     (-libm::log(probability.max(1e-9))).clamp(0.0, WRONG_SIGNAL_NATS)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::tracking::tests::simulator::hexarotor;
-
-    #[test]
-    fn beside_one_that_shows_the_others_shine_but_where_the_exposure_straddles_an_edge() {
-        let mut ways = Ways::with_room(&hexarotor());
-        let mut beside = |alike: f64| {
-            ways.lit = alloc::vec![1.0; 6];
-            (ways.dim_beside_seen(alike), ways.lit[0])
-        };
-        let (shows, others) = beside(0.5);
-        assert!((0.45..0.55).contains(&shows) && others > 0.9, "{shows} {others}");
-        let (shows, others) = beside(0.0);
-        assert!((0.01..0.05).contains(&shows) && (others - 0.5).abs() < 1e-9, "{shows} {others}");
-    }
 }

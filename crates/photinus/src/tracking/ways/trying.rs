@@ -7,6 +7,7 @@
 use super::super::component::Component;
 use super::super::joint::{Choice, Spots};
 use super::super::update::{Prior, Updated};
+use super::blinking::show;
 use super::candidates::Candidate;
 use super::{Scene, Way, Ways, signal_nats};
 
@@ -48,8 +49,7 @@ impl Ways {
         let signals: f64 = pairs.as_slice().iter().map(of_pair).sum();
         self.gather_others(scene, start);
         let alike = self.light(scene, vehicle, &prior.component, start);
-        let shows = if moment.blinks_alike { self.dim_beside_seen(alike) } else { 1.0 };
-        let lit_nats = -libm::log(shows);
+        let lit_nats = if moment.blinks_alike { -libm::log(show(alike)) } else { 0.0 };
         let log_weight = log_weight + self.clutter_nats - signals - lit_nats;
         let instead = self.likeliest_instead(vehicle, spots).max(self.worth_to_others(vehicle, spots));
         let least = instead - self.nothing_nats - log_weight;

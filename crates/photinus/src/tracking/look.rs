@@ -238,7 +238,7 @@ pub(super) struct Moment {
     /// Whether all LEDs of a vehicle blink alike.
     pub(super) blinks_alike: bool,
     /// Tracks, and which vehicle each surely is.
-    named: Vec<(u64, u32)>,
+    pub(super) named: Vec<(u64, u32)>,
 }
 
 impl Moment {
@@ -327,6 +327,11 @@ impl Moment {
     pub(super) fn who(&self, track: u64, when_it_appeared: Option<u32>) -> Option<u32> {
         let named = || self.named.iter().find(|named| named.0 == track).map(|named| named.1);
         when_it_appeared.or_else(named)
+    }
+
+    /// Whether a track surely is this vehicle.
+    pub(super) fn is_named(&self, vehicle: u32) -> bool {
+        self.named.iter().any(|named| named.1 == vehicle)
     }
 
     fn keep_appearance(

@@ -470,8 +470,12 @@ fn is_known_aside(component: &Component, radius_m: f64) -> bool {
 fn signal_nats(model: &Model, moment: &Moment, who: Option<u32>, spot: usize, marker: usize) -> f64 {
     let told = moment.signals[spot];
     if moment.blinks_alike {
-        // Of a vehicle that nobody named any spot may be a marker. Where two cross, words are heard from the wrong one for a while.
-        let of_another = told.filter(|told| who.is_some() && told.vehicle != who);
+        // Of a track that nobody named any spot may be a marker but those that are heard to be a named one's: two tracks of one vehicle would share its frames. Where
+        // two cross, words are heard from the wrong one for a while.
+        let of_another = told.filter(|told| match who {
+            Some(_) => told.vehicle != who,
+            None => told.vehicle.is_some_and(|vehicle| moment.is_named(vehicle)),
+        });
         return of_another.map_or(0.0, |told| -libm::log((1.0 - told.probability).max(WRONG_MARKER)));
     }
     let carries =
@@ -488,4 +492,28 @@ fn signal_nats(model: &Model, moment: &Moment, who: Option<u32>, spot: usize, ma
     let Some(told) = told else { return 0.0 };
     let probability = if carries(told.signal) { told.probability } else { 1.0 - told.probability };
     (-libm::log(probability.max(1e-9))).clamp(0.0, WRONG_SIGNAL_NATS)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::look::Signalled;
+    use super::super::tests::simulator::model;
+    use super::*;
+
+    #[test]
+    fn what_is_heard_to_be_another_tracks_is_hardly_a_marker() {
+        let heard = Signalled { signal: None, probability: 0.999, vehicle: Some(7) };
+        let mut moment = Moment::default();
+        (moment.blinks_alike, moment.signals) = (true, vec![Some(heard)]);
+        let nats = |moment: &Moment, who| signal_nats(&model(), moment, who, 0, 0);
+        assert_eq!([None, Some(7)].map(|who| nats(&moment, who)), [0.0; 2], "anybody's, or its own");
+        moment.named = vec![(3, 8)];
+        assert_eq!(nats(&moment, None), 0.0, "nobody is named for it");
+        moment.named = vec![(3, 7)];
+        let surely = -libm::log(0.001);
+        for who in [None, Some(8)] {
+            assert!((nats(&moment, who) - surely).abs() < 1e-9, "{who:?}");
+        }
+        assert_eq!(nats(&moment, Some(7)), 0.0);
+    }
 }

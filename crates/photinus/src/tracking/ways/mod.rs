@@ -505,15 +505,19 @@ mod tests {
         let heard = Signalled { signal: None, probability: 0.999, vehicle: Some(7) };
         let mut moment = Moment::default();
         (moment.blinks_alike, moment.signals) = (true, vec![Some(heard)]);
-        let nats = |moment: &Moment, who| signal_nats(&model(), moment, who, 0, 0);
-        assert_eq!([None, Some(7)].map(|who| nats(&moment, who)), [0.0; 2], "anybody's, or its own");
-        moment.named = vec![(3, 8)];
-        assert_eq!(nats(&moment, None), 0.0, "nobody is named for it");
-        moment.named = vec![(3, 7)];
         let surely = -libm::log(0.001);
-        for who in [None, Some(8)] {
-            assert!((nats(&moment, who) - surely).abs() < 1e-9, "{who:?}");
-        }
-        assert_eq!(nats(&moment, Some(7)), 0.0);
+        let costs = |moment: &Moment, who, expected: f64| {
+            let nats = signal_nats(&model(), moment, who, 0, 0);
+            assert!((nats - expected).abs() < 1e-9, "{who:?}: {nats}");
+        };
+        // Anybody's, or its own.
+        costs(&moment, None, 0.0);
+        costs(&moment, Some(7), 0.0);
+        moment.named = vec![(3, 8)];
+        costs(&moment, None, 0.0);
+        moment.named = vec![(3, 7)];
+        costs(&moment, None, surely);
+        costs(&moment, Some(8), surely);
+        costs(&moment, Some(7), 0.0);
     }
 }

@@ -45,7 +45,7 @@ impl Contradictions {
                 supposed_rad.to_degrees(),
             )
         });
-        let factor = |times: f64| (times * self.unit_sigma).exp();
+        let factor = |times: f64| libm::exp(times * self.unit_sigma);
         let light = self.light_times.unsaid.take().map(|times| {
             format!(
                 "LEDs of neighbours do not shine as their airframe's file says: they differ by a factor of {:.1} (one sigma) where {:.1} is supposed. Check its lobes \

@@ -199,6 +199,7 @@ impl Inference {
         self.fixtures.remember(sightings, |spot| self.explanation.clutter(spot));
         let power = self.power(&context);
         self.find_whereabouts();
+        let (tilting, light_spread) = spreads(&self.candidates, &self.explanation);
         let of_clutter = |spot: usize| self.explanation.clutter(spot);
         let counts = self.clutter.counts_to_remember(self.places.each(), &self.besides, of_clutter);
         self.memory.remember(Frame {
@@ -207,8 +208,8 @@ impl Inference {
             whereabouts: self.whereabouts.counts(),
             power,
             missed: missed(&self.candidates, &self.explanation),
-            tilting: tilting(&self.candidates, &self.explanation),
-            light_spread: light_spread(&self.candidates, &self.explanation),
+            tilting,
+            light_spread,
         });
         located.is_complete = work.left > 0 && besides.is_empty();
         self.telling.tell(
@@ -410,26 +411,17 @@ fn missed(candidates: &Candidates, explanation: &Explanation) -> Missed {
     all
 }
 
-/// How far those tilt that surely explain the frame.
-fn tilting(candidates: &Candidates, explanation: &Explanation) -> Tilting {
-    let mut all = Tilting::default();
+/// How far those tilt that surely explain the frame, and how far their light is from what their airframe says.
+fn spreads(candidates: &Candidates, explanation: &Explanation) -> (Tilting, LightSpread) {
+    let (mut tilting, mut light) = (Tilting::default(), LightSpread::default());
     for index in (0..candidates.len()).filter(|&index| explanation.probability(index) > SURE) {
-        let Tilting { degrees, squares_rad2 } = candidates.get(index).tilting;
-        all.degrees += degrees;
-        all.squares_rad2 += squares_rad2;
+        let own = candidates.get(index);
+        tilting.degrees += own.tilting.degrees;
+        tilting.squares_rad2 += own.tilting.squares_rad2;
+        light.degrees += own.light_spread.degrees;
+        light.squares += own.light_spread.squares;
     }
-    all
-}
-
-/// How far the light of those is from what their airframe says that surely explain the frame.
-fn light_spread(candidates: &Candidates, explanation: &Explanation) -> LightSpread {
-    let mut all = LightSpread::default();
-    for index in (0..candidates.len()).filter(|&index| explanation.probability(index) > SURE) {
-        let LightSpread { degrees, squares } = candidates.get(index).light_spread;
-        all.degrees += degrees;
-        all.squares += squares;
-    }
-    all
+    (tilting, light)
 }
 
 /// Work that is left for a frame, in first looks. Counted, not timed: the same frame is given up at the same place everywhere.

@@ -175,3 +175,15 @@ impl Light {
         }
     }
 }
+
+impl Problem<'_> {
+    /// Spread of power between LEDs: sigma of its natural logarithm.
+    pub(super) fn unit_sigma(&self) -> f64 {
+        self.known.unit_sigma.unwrap_or(self.settings.unit_sigma)
+    }
+
+    /// How many of the spots in use have a light.
+    pub(super) fn lit(&self) -> usize {
+        self.used().filter(|&(spot, _)| self.observations[spot].log_light.is_some()).count()
+    }
+}

@@ -17,14 +17,9 @@ pub struct LightSpread {
 }
 
 impl Problem<'_> {
-    /// Spread of power between LEDs: sigma of its natural logarithm.
-    pub(super) fn unit_sigma(&self) -> f64 {
-        self.known.unit_sigma.unwrap_or(self.settings.unit_sigma)
-    }
-
     /// What a mode tells; nothing where no light does.
     pub(super) fn light_spread(&self, mode: &Refined) -> LightSpread {
-        let lit = self.used().filter(|&(spot, _)| self.observations[spot].log_light.is_some()).count();
+        let lit = self.lit();
         let Some(factor) =
             mode.normal.information.cholesky().filter(|_| self.settings.use_brightness && lit > 1)
         else {

@@ -46,7 +46,7 @@ impl Problem<'_> {
         if self.settings.use_brightness {
             let light = Light::of(self, pose);
             chi_square += light.misfit();
-            let lit = self.used().filter(|&(spot, _)| self.observations[spot].log_light.is_some()).count();
+            let lit = self.lit();
             residuals += if self.known.power.is_some() { lit } else { lit.saturating_sub(1) };
         }
         if let Some(tilted) = self.tilted(pose) {

@@ -52,6 +52,7 @@ pub(super) struct Calling {
     estimator: Estimator,
     hypotheses: Hypotheses,
     lit: Vec<f64>,
+    unit_sigma: f64,
     /// By marker that is followed: vehicle, signal and place among the followed.
     heard: Vec<Heard>,
     own: Vec<Heard>,
@@ -76,6 +77,7 @@ impl Calling {
             estimator: Estimator::new(airframe, settings.pose)?,
             hypotheses: Hypotheses::with_room(MOST),
             lit: vec![lit; airframe.markers().len()],
+            unit_sigma: settings.pose.unit_sigma,
             heard: Vec::with_capacity(MOST),
             own: Vec::with_capacity(MOST),
             observations: Vec::with_capacity(MOST),
@@ -172,7 +174,7 @@ impl Calling {
             size,
             power: before.power,
             tilt_sigma_rad: before.tilt_sigma_rad,
-            unit_sigma: None,
+            unit_sigma: before.light_times.map(|times| times * self.unit_sigma),
             visible,
         };
         let posterior = self.estimator.estimate(&self.observations, &mut self.hypotheses, &known);
@@ -256,6 +258,13 @@ fn observe(marker: &MarkerTrack, signal: Option<u32>) -> Observation {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::camera::{Bearing, Watched};
+    use crate::identity::decoder::{Identity, Who};
+    use crate::identity::{CodeBook, Level, Word};
+    use crate::lookout::{Fleet, Vehicle};
+    use crate::tracking::Tracked;
+    use crate::tracking::tests::simulator::{camera, hexarotor, located_by};
+    use nalgebra::{Matrix3x2, Matrix4};
     use rand_distr::{Distribution as _, StandardUniform};
     use rand_pcg::Pcg64Mcg;
 
@@ -284,5 +293,61 @@ mod tests {
             let told = 2.0 * gap_odds((bin[0] * bin[1]).sqrt(), 2.0);
             assert!((0.6..1.7).contains(&(told / drawn)), "{bin:?}: {told} {drawn}");
         }
+    }
+
+    /// One that shows a single LED is as far away as its light says, and that as surely as frames found the power of LEDs alike.
+    #[test]
+    fn a_lone_marker_is_as_far_away_as_light_that_spreads_so_tells() {
+        let words = ["001001010111", "001001101011"];
+        let word = |bits: &&str| Word::new(&bits.bytes().map(|bit| bit == b'1').collect::<Vec<_>>()).unwrap();
+        let book = CodeBook::new(words.iter().map(word).collect()).unwrap();
+        let fleet = Fleet::new(book, [(Vehicle { id: 7, words: vec![0] }, 60.0)]).unwrap();
+        let directory = Directory::of(&fleet);
+        let mut level = Level::of_first(100.0).unwrap();
+        (0..100).for_each(|_| level.see(100.0, 3.0, 1.0));
+        let marker = MarkerTrack {
+            number: 1,
+            bearing: Bearing::new(Vector3::z()).unwrap(),
+            rate_rad_s: Vector3::zeros(),
+            axes: Matrix3x2::identity(),
+            covariance: Matrix4::identity() * 1e-8,
+            level: Some(level),
+            resolution_rad: 0.005,
+            sighting: Some(0),
+            sighting_probability: 1.0,
+            lit: 1.0,
+            partly: 0.0,
+            existence: 1.0,
+            identity: Some(Identity { who: Who::Word(0), probability: 0.999 }),
+        };
+        let sigma_of_log_distance = |light_times: Option<f64>| {
+            let mut calling = Calling::new(&hexarotor(), &located_by(), true).unwrap();
+            let (camera, tracked) = (camera(), Tracked::default());
+            let before = Before {
+                watched: Watched::new(&camera, None),
+                tracked: &tracked,
+                detection_limit: None,
+                miss_rate: None,
+                tilt_sigma_rad: None,
+                light_times,
+                power: Some(LogLight { value: libm::log(100.0 * 49.0), sigma: 0.02 }),
+            };
+            calling.listen(&[marker], &directory, Some(Vector3::y_axis()), &before, |_| Some(Calls::New));
+            let [called] = calling.called() else { panic!("one calls, not {}", calling.called().len()) };
+            let log_distance = |mode: &crate::pose::Mode| libm::log(mode.pose.position_m.norm());
+            let mean: f64 = called.modes.iter().map(|mode| mode.weight * log_distance(mode)).sum();
+            let variance = |mode: &crate::pose::Mode| {
+                let along = mode.pose.position_m / mode.pose.position_m.norm_squared();
+                let off = log_distance(mode) - mean;
+                mode.weight * (along.dot(&(mode.position_covariance_m2 * along)) + off * off)
+            };
+            called.modes.iter().map(variance).sum::<f64>().sqrt()
+        };
+        let [untold, once, six_times] = [None, Some(1.0), Some(6.0)].map(sigma_of_log_distance);
+        assert!((untold - once).abs() < 1e-12, "{untold} is {once}");
+        // Light goes with the square of the distance.
+        let unit = 0.5 * located_by().pose.unit_sigma;
+        let expected = (once * once + 35.0 * unit * unit).sqrt();
+        assert!((six_times / expected - 1.0).abs() < 0.2, "{six_times} after {once}, not {expected}");
     }
 }

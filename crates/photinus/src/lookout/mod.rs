@@ -156,6 +156,8 @@ struct Before<'a> {
     miss_rate: Option<f64>,
     /// How far neighbours tilt, rad.
     tilt_sigma_rad: Option<f64>,
+    /// How many times as much as supposed the power of LEDs spreads.
+    light_times: Option<f64>,
     /// The light of an LED of intensity 1 at 1 m, where several tracks tell it.
     power: Option<LogLight>,
 }
@@ -227,9 +229,10 @@ impl Lookout {
         if let Some(blinking) = &mut self.blinking {
             let power = self.tracker.power(camera);
             let watched = self.tracker.rig().watched(camera);
-            let Located { detection_limit, miss_rate, tilt_sigma_rad, .. } = *located;
+            let Located { detection_limit, miss_rate, tilt_sigma_rad, light_times, .. } = *located;
             let tracked = &self.tracked;
-            let before = Before { watched, tracked, detection_limit, miss_rate, tilt_sigma_rad, power };
+            let before =
+                Before { watched, tracked, detection_limit, miss_rate, tilt_sigma_rad, light_times, power };
             if self.tracker.is_of_another_clock(camera, time_s) {
                 blinking.followers.iter_mut().for_each(Follower::restart);
             }

@@ -196,10 +196,12 @@ mod tests {
     use super::*;
     use crate::camera::Pixel;
     use crate::frame::FrameView;
+    use crate::lanes::{self, Lanes};
     use crate::optics::{Gaussian, PointSpread};
-    use crate::spots::fit::LIGHT;
+    use crate::spots::fit::{LIGHT, Shape};
     use crate::spots::learning::{Belief, Told};
     use crate::spots::patch::Surroundings;
+    use crate::spots::window::Spill;
     use nalgebra::SMatrix;
     use rand_distr::{Distribution as _, Normal};
     use rand_pcg::rand_core::SeedableRng as _;
@@ -290,6 +292,56 @@ mod tests {
         let change = 0.5 * (wider(sigma) - wider(-sigma));
         let added = (considered.light_variance() - fitted.light_variance()).sqrt();
         assert!((added / change.abs() - 1.0).abs() < 0.2, "{added} {change}");
+    }
+
+    /// Told by [`fit::off_alike`] and by a spread that has so much more all around.
+    #[test]
+    fn a_light_is_as_unsure_as_the_ring_that_tells_it() {
+        let mut window = Window::default();
+        let mut page = page(2500.0, &mut window);
+        let belief = Belief::new(NOISE, u8::MAX);
+        let noise = PixelNoise { faint: 1e-5, ..NOISE };
+        window.trade(&mut page.copied);
+        let mut fitted_with = |off_sigmas: f32| {
+            let mut brighter =
+                BrighterRing { shape: belief.known(), unknown: off_sigmas * off_sigmas.abs() * noise.faint };
+            fit::fit(&mut window, &mut brighter, page.opened.guess, noise).expect("it fits")
+        };
+        let change = 0.5 * (fitted_with(1.0).light() - fitted_with(-1.0).light());
+        let fitted = fitted_with(0.0);
+        let told = fit::off_alike(&mut window, &mut belief.known(), fitted, noise);
+        let added = (told.light_variance() - fitted.light_variance()).sqrt();
+        assert!((added / change.abs() - 1.0).abs() < 0.1, "{added} {change}");
+        let by_chance =
+            fit::fit(&mut window, &mut belief.known(), page.opened.guess, NOISE).expect("it fits");
+        let by_chance = (fitted.light_variance() - by_chance.light_variance()).sqrt();
+        assert!(added > 1.5 * by_chance, "{added}, {by_chance} where each pixel is off for itself");
+    }
+
+    /// A shape whose shares are off alike all around: by the root of `unknown` of the light for each share, as its sign says.
+    struct BrighterRing<S> {
+        shape: S,
+        unknown: f32,
+    }
+
+    impl<const N: usize, S: Shape<N>> Shape<N> for BrighterRing<S> {
+        fn shares(&self, row: usize, column: usize, numbers: &SVector<f64, N>) -> (Lanes, [Lanes; N]) {
+            let (share, slopes) = self.shape.shares(row, column, numbers);
+            let off = (Lanes::splat(self.unknown.abs()) * lanes::positive(share)).sqrt();
+            (share + off * Lanes::splat(self.unknown.signum()), slopes)
+        }
+
+        fn place(&mut self, numbers: &SVector<f64, N>, reach: usize) {
+            self.shape.place(numbers, reach);
+        }
+
+        fn believed(&self, number: usize) -> (f64, f64) {
+            self.shape.believed(number)
+        }
+
+        fn spill(&self, numbers: &SVector<f64, N>) -> Spill {
+            self.shape.spill(numbers)
+        }
     }
 
     #[test]

@@ -382,6 +382,27 @@ pub(super) fn considered<const M: usize, const N: usize, const C: usize>(
     Fitted { covariance: all, ..fitted }
 }
 
+/// A fit whose light is as much less sure as a point spread leaves it that is off alike all around, by what is not known of faint pixels: tables are held to their
+/// own profile over the radius, and what a ring has too much all of a spot has.
+pub(super) fn off_alike<const N: usize>(
+    window: &mut Window,
+    shape: &mut impl Shape<N>,
+    fitted: Fitted<N>,
+    noise: PixelNoise,
+) -> Fitted<N> {
+    shape.place(&fitted.numbers, window.reach);
+    if window.full_px > 0 {
+        overflow(window, shape, &fitted.numbers);
+    }
+    let along = fitted.covariance.column(LIGHT).into_owned();
+    let unknown = f64::from(noise.faint) * fitted.light();
+    let mut off = 0.0;
+    each_counted(window, shape, &fitted, noise, |pixel| {
+        off += along.dot(&pixel.slopes) * pixel.weight * (unknown * pixel.light).sqrt();
+    });
+    fitted.with_light(fitted.light(), fitted.light_variance() + off * off)
+}
+
 /// What pixels say of the numbers, and what is believed of all but the first `C` numbers of width.
 fn with_beliefs<const N: usize, const C: usize>(
     window: &mut Window,

@@ -31,7 +31,7 @@ const HOLDS: f64 = 1e-3;
 const NEAR_PX: f64 = 1.0;
 const NEAR_SHARE: f64 = 3.0;
 
-/// [`fit::fit`] with its light and centre told anew where full pixels hold them.
+/// [`fit::fit`] with its light and centre told anew where full pixels hold them, and as unsure as the wings leave it.
 pub(super) fn fit<const N: usize>(
     window: &mut Window,
     shape: &mut impl Shape<N>,
@@ -39,7 +39,8 @@ pub(super) fn fit<const N: usize>(
     noise: PixelNoise,
 ) -> Option<Fitted<N>> {
     let fitted = fit::fit(window, shape, guess, noise)?;
-    Some(held(window, shape, fitted, noise))
+    let held = held(window, shape, fitted, noise);
+    Some(if noise.faint > 0.0 { fit::off_alike(window, shape, held, noise) } else { held })
 }
 
 /// A fit with its light and centre told anew where full pixels hold its light up.

@@ -169,13 +169,13 @@ pub fn learn(collection: &Collection) -> Result<Learned, LearnError> {
     let scatter = Field::scatter(&halves);
     let shape_error = light.noise.shape.max(scatter.all).min(1.0);
     let wings_error = scatter.wings.max(shape_error).min(1.0);
-    let bent_px = bent::places_px(field.whole(), &start.table(), &light.noise, median_light(&spots));
+    let bend = bent::places_px(field.whole(), &start.table(), &light.noise, median_light(&spots));
     let even_px = phases::known_to_px(&spots, |spot| has_full || field.is_never_full(spot, full_from));
     let spread = field
         .spread(shape_error)?
         .with_wings_error(wings_error)?
         .with_unknown_below(scatter.unknown_below.min(1.0))?
-        .with_place_error_px(bent_px.min(even_px))?;
+        .with_place_error_px(bend.told_to_px(even_px))?;
     let sources = source_size::learn(told, &field, &light.noise);
     let spread = match sources {
         Some(sources) => spread.with_source_size(sources.size)?,

@@ -3,7 +3,7 @@
 
 use libfuzzer_sys::fuzz_target;
 use photinus::frame::{FrameView, Mask};
-use photinus::spots::{Brightness, Detector, Noise, Settings, Shape};
+use photinus::spots::{Brightness, Detector, Settings};
 
 /// Width, height, padding, rule, level and the other settings take a byte each; the pixels follow and repeat.
 fn check(bytes: &[u8]) -> Option<()> {
@@ -18,15 +18,14 @@ fn check(bytes: &[u8]) -> Option<()> {
         FrameView::new(&inverted, width, height, stride).map(|view| Mask::from_frame(&view))
     });
     let mask = mask.transpose().expect("of the frame's size");
-    let settings = Settings {
-        brightness: if flags & 1 == 0 { Brightness::Threshold(level) } else { Brightness::Contrast(level) },
-        noise: Noise { read_dn: f64::from(read) / 32.0, shot: f64::from(shot) / 256.0 },
-        shape: Shape {
-            widest_px: 1.0 + f64::from(widest),
-            elongation: 1.0 + f64::from(elongation) / 16.0,
-            reflection_ratio: f64::from(reflection) / 255.0,
-        },
-    };
+    let mut settings = Settings::default();
+    settings.brightness =
+        if flags & 1 == 0 { Brightness::Threshold(level) } else { Brightness::Contrast(level) };
+    settings.noise.read_dn = f64::from(read) / 32.0;
+    settings.noise.shot = f64::from(shot) / 256.0;
+    settings.shape.widest_px = 1.0 + f64::from(widest);
+    settings.shape.elongation = 1.0 + f64::from(elongation) / 16.0;
+    settings.shape.reflection_ratio = f64::from(reflection) / 255.0;
     let mut detector = Detector::new(settings).ok()?;
     let found = detector.detect(&frame, mask.as_ref()).expect("the mask is of the frame's size").clone();
     for spot in &found.spots {

@@ -5,7 +5,7 @@ use std::ffi::c_char;
 use photinus::locator::Settings;
 use photinus::pose;
 use photinus::ranging::SpotCurve;
-use photinus::spots::{self, Brightness, Shape};
+use photinus::spots::{self, Brightness};
 use photinus_io::airframe::Tolerances;
 use photinus_io::spot_curve::{SpotCurveFile, read_spot_curve};
 
@@ -98,30 +98,22 @@ impl Options {
     /// # Safety
     /// `spot_curve` is null or a text that ends with a zero.
     pub(crate) unsafe fn settings(&self, tolerances: Tolerances) -> Result<(Settings, Option<SpotCurve>)> {
-        let default = pose::Settings::default();
         let given = |value: f64| (!value.is_nan()).then_some(value);
         let brightness = self.brightness()?;
-        let settings = Settings {
-            spots: spots::Settings {
-                brightness,
-                shape: Shape { reflection_ratio: self.reflection_ratio, ..Shape::default() },
-                ..spots::Settings::default()
-            },
-            max_tilt_rad: self.max_tilt_deg.to_radians(),
-            pose: pose::Settings {
-                tilt_sigma_rad: self.tilt_sigma_deg.to_radians(),
-                marker_sigma_m: given(self.marker_sigma_m)
-                    .or(tolerances.position_sigma_m)
-                    .unwrap_or(default.marker_sigma_m),
-                unit_sigma: given(self.power_spread).or(tolerances.power_sigma).unwrap_or(default.unit_sigma),
-                scale_sigma: self.scale_sigma,
-                missed: self.miss_rate,
-                use_brightness: self.no_brightness == 0,
-                ..default
-            },
-            min_probability: self.min_probability,
-            budget: self.budget,
-        };
+        let mut settings = Settings::default();
+        settings.spots.brightness = brightness;
+        settings.spots.shape.reflection_ratio = self.reflection_ratio;
+        settings.max_tilt_rad = self.max_tilt_deg.to_radians();
+        let pose = &mut settings.pose;
+        pose.tilt_sigma_rad = self.tilt_sigma_deg.to_radians();
+        pose.marker_sigma_m =
+            given(self.marker_sigma_m).or(tolerances.position_sigma_m).unwrap_or(pose.marker_sigma_m);
+        pose.unit_sigma = given(self.power_spread).or(tolerances.power_sigma).unwrap_or(pose.unit_sigma);
+        pose.scale_sigma = self.scale_sigma;
+        pose.missed = self.miss_rate;
+        pose.use_brightness = self.no_brightness == 0;
+        settings.min_probability = self.min_probability;
+        settings.budget = self.budget;
         if self.spot_curve.is_null() {
             return Ok((settings, None));
         }

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector2;
 use photinus::frame::{FrameError, FrameView};
-use photinus::spots::{Detector, Settings, Shape};
+use photinus::spots::{Detector, Settings};
 
 use crate::adjust::{Observation, View};
 use crate::grid::{Grid, OrderError, least_leds, order};
@@ -31,7 +31,9 @@ pub struct PhotoSpot {
 
 /// Settings of the detector for photos of a board: LEDs may be near and wide.
 pub fn board_settings() -> Settings {
-    Settings { shape: Shape { widest_px: 60.0, ..Shape::default() }, ..Settings::default() }
+    let mut settings = Settings::default();
+    settings.shape.widest_px = 60.0;
+    settings
 }
 
 impl Photo {

@@ -36,16 +36,14 @@ pub(crate) struct PoseArgs {
 impl PoseArgs {
     /// The settings of the estimator for an airframe that is known so well.
     pub(crate) fn settings(&self) -> Settings {
-        let default = Settings::default();
-        Settings {
-            tilt_sigma_rad: self.tilt_sigma.to_radians(),
-            marker_sigma_m: self.marker_sigma.unwrap_or(default.marker_sigma_m),
-            unit_sigma: self.power_spread.unwrap_or(default.unit_sigma),
-            scale_sigma: self.scale_sigma,
-            missed: self.miss_rate,
-            use_brightness: !self.no_brightness,
-            ..default
-        }
+        let mut settings = Settings::default();
+        settings.tilt_sigma_rad = self.tilt_sigma.to_radians();
+        settings.marker_sigma_m = self.marker_sigma.unwrap_or(settings.marker_sigma_m);
+        settings.unit_sigma = self.power_spread.unwrap_or(settings.unit_sigma);
+        settings.scale_sigma = self.scale_sigma;
+        settings.missed = self.miss_rate;
+        settings.use_brightness = !self.no_brightness;
+        settings
     }
 
     /// What is believed of a kind of vehicle: by the options, or else by its file.

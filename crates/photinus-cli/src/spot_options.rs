@@ -37,13 +37,14 @@ impl SpotArgs {
 
     /// The settings of the detector.
     pub(crate) fn settings(&self) -> Settings {
-        let brightness = match (self.threshold, self.contrast) {
+        let mut settings = Settings::default();
+        settings.brightness = match (self.threshold, self.contrast) {
             (Some(level), _) => Brightness::Threshold(level),
             (None, Some(step)) => Brightness::Contrast(step),
             (None, None) => Brightness::default(),
         };
-        let shape = Shape { reflection_ratio: self.reflection_ratio, ..Shape::default() };
-        Settings { brightness, shape, ..Settings::default() }
+        settings.shape.reflection_ratio = self.reflection_ratio;
+        settings
     }
 
     /// The masks of an input's cameras: the one that was named, or those of the dataset.

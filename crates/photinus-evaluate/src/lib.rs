@@ -39,8 +39,9 @@ pub use score::spread::Spread;
 pub use score::tracks::{IdentityScore, TrackScore};
 pub use score::{Frames, Scores};
 
-/// What a user may choose about scoring.
+/// What a user may choose about scoring. Begin with [`Settings::default`] and change what you must.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Settings {
     /// A spot is no farther than this from its LED, px, or than its own radius where that is more. Default 3.
     pub spot_gate_px: f64,

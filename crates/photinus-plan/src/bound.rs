@@ -47,8 +47,8 @@ impl<'a> Bound<'a> {
     /// Bounds for an airframe in front of a set-up's camera.
     pub fn new(setup: &'a Setup, table: &SpotTable, airframe: &Airframe) -> Self {
         // what the core believes of neighbours, but that the spread of LEDs is known of the part
-        let unit_sigma = setup.emitter.unit_spread.max(LEAST_SPREAD);
-        let settings = Settings { unit_sigma, ..Settings::default() };
+        let mut settings = Settings::default();
+        settings.unit_sigma = setup.emitter.unit_spread.max(LEAST_SPREAD);
         let estimator = Estimator::new(airframe, settings).expect("settings within their ranges");
         let hypotheses = Hypotheses::with_room(airframe.markers().len());
         let [half, most] = [0.5, 0.84].map(|share| libm::log(table.found_e(share)));

@@ -75,9 +75,11 @@ impl CodeBook {
         if let Some(longest) = longest_run {
             asked = asked.with_longest_run(longest);
         }
-        let (usual, times) = (Effort::default(), u64::from(effort));
-        let seed = seed.unwrap_or(usual.seed);
-        let effort = Effort { seed, work: usual.work * times, branches: usual.branches * times };
+        let times = u64::from(effort);
+        let mut effort = Effort::default();
+        effort.seed = seed.unwrap_or(effort.seed);
+        effort.work *= times;
+        effort.branches *= times;
         let designed = detached(py, || design(&asked, effort).map_err(refuse))?;
         Ok(Self { book: designed.book, at_most: Some(designed.at_most) })
     }

@@ -56,13 +56,11 @@ pub(crate) fn evaluate<'py>(
     let mut results = results.read(py)?;
     truth.retain(|frame| frame.camera == only);
     results.retain(|record| record.camera == only);
-    let settings = Settings {
-        spot_gate_px: spot_gate,
-        bearing_gate_rad: bearing_gate.to_radians(),
-        time_tolerance_s,
-        bins,
-        ..Settings::default()
-    };
+    let mut settings = Settings::default();
+    settings.spot_gate_px = spot_gate;
+    settings.bearing_gate_rad = bearing_gate.to_radians();
+    settings.time_tolerance_s = time_tolerance_s;
+    settings.bins = bins;
     let scores = detached(py, || {
         let evaluation = photinus_evaluate::evaluate(&truth, &results, &settings);
         Ok(evaluation.map_err(|error| EvaluationError::new_err(error.to_string()))?.scores)

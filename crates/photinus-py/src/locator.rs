@@ -6,7 +6,6 @@ use std::sync::{Arc, Mutex, PoisonError};
 use nalgebra::{Unit, Vector3};
 use photinus::frame::FrameView;
 use photinus::locator::{self, Kind, Settings};
-use photinus::pose;
 use photinus_io::calibration::{MountingFile, read_mounting};
 use photinus_io::results::FrameRecord;
 use pyo3::prelude::*;
@@ -80,22 +79,17 @@ impl Locator {
         no_brightness: bool,
         no_time: bool,
     ) -> PyResult<Self> {
-        let default = pose::Settings::default();
-        let settings = Settings {
-            spots: spot_settings(contrast, threshold, reflection_ratio)?,
-            max_tilt_rad: max_tilt.to_radians(),
-            pose: pose::Settings {
-                tilt_sigma_rad: tilt_sigma.to_radians(),
-                marker_sigma_m: marker_sigma.unwrap_or(default.marker_sigma_m),
-                unit_sigma: power_spread.unwrap_or(default.unit_sigma),
-                scale_sigma,
-                missed: miss_rate,
-                use_brightness: !no_brightness,
-                ..default
-            },
-            min_probability,
-            budget,
-        };
+        let mut settings = Settings::default();
+        settings.spots = spot_settings(contrast, threshold, reflection_ratio)?;
+        settings.max_tilt_rad = max_tilt.to_radians();
+        settings.pose.tilt_sigma_rad = tilt_sigma.to_radians();
+        settings.pose.marker_sigma_m = marker_sigma.unwrap_or(settings.pose.marker_sigma_m);
+        settings.pose.unit_sigma = power_spread.unwrap_or(settings.pose.unit_sigma);
+        settings.pose.scale_sigma = scale_sigma;
+        settings.pose.missed = miss_rate;
+        settings.pose.use_brightness = !no_brightness;
+        settings.min_probability = min_probability;
+        settings.budget = budget;
         let airframes = match airframe {
             Airframes::One(airframe) => vec![airframe],
             Airframes::Several(airframes) => airframes,

@@ -6,7 +6,7 @@ use nalgebra::{Unit, Vector3};
 use photinus::camera::Bearing;
 use photinus::frame::Mask;
 use photinus::ranging::SpotCurve;
-use photinus::spots::{self, Brightness, Shape};
+use photinus::spots::{self, Brightness};
 use photinus_io::mask::read_mask;
 use photinus_io::spot_curve::{SpotCurveFile, read_spot_curve};
 use pyo3::prelude::*;
@@ -20,7 +20,8 @@ pub(crate) fn spot_settings(
     threshold: Option<u8>,
     reflection_ratio: f64,
 ) -> PyResult<spots::Settings> {
-    let brightness = match (threshold, contrast) {
+    let mut settings = spots::Settings::default();
+    settings.brightness = match (threshold, contrast) {
         (Some(_), Some(_)) => {
             return Err(SettingError::new_err("contrast and threshold are given: keep one of them"));
         }
@@ -28,8 +29,8 @@ pub(crate) fn spot_settings(
         (None, Some(step)) => Brightness::Contrast(step),
         (None, None) => Brightness::default(),
     };
-    let shape = Shape { reflection_ratio, ..Shape::default() };
-    Ok(spots::Settings { brightness, shape, ..spots::Settings::default() })
+    settings.shape.reflection_ratio = reflection_ratio;
+    Ok(settings)
 }
 
 /// Where not to look: an image file or an array of the frames' size that is 0 there.

@@ -7,7 +7,7 @@ mod envelope;
 mod exposures;
 
 use photinus::ranging::Envelope;
-use photinus::spots::{Brightness, Detector, Settings, Shape};
+use photinus::spots::{Brightness, Detector, Settings};
 use photinus_sim::Simulator;
 use rand_distr::{Distribution, StandardUniform};
 use rand_pcg::Pcg64;
@@ -89,9 +89,13 @@ fn record(
         .collect();
     let scene = rig.receding(exposure_us, &places, seed)?;
     let mut simulator = Simulator::new(&scene, 0).ok_or(ReproduceError::Lacks("camera"))?;
-    // nothing is large enough to be the sun where there is none
-    let shape = Shape { widest_px: 90.0, ..Shape::default() };
-    let detector = |brightness| Detector::new(Settings { brightness, shape, ..Default::default() });
+    let detector = |brightness| {
+        let mut settings = Settings::default();
+        settings.brightness = brightness;
+        // nothing is large enough to be the sun where there is none
+        settings.shape.widest_px = 90.0;
+        Detector::new(settings)
+    };
     let mut paper = detector(Brightness::Threshold(PAPER_DN))?;
     let mut outdoors = detector(Brightness::Threshold(OUTDOOR_DN))?;
     let mut own = detector(Brightness::default())?;

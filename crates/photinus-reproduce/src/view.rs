@@ -174,7 +174,9 @@ impl<'a> Observer<'a> {
 
 /// Settings of a detector with a fixed threshold.
 pub(crate) fn fixed(threshold_dn: u8) -> spots::Settings {
-    spots::Settings { brightness: Brightness::Threshold(threshold_dn), ..Default::default() }
+    let mut settings = spots::Settings::default();
+    settings.brightness = Brightness::Threshold(threshold_dn);
+    settings
 }
 
 /// (2): the bearing of a spot's middle pixel.

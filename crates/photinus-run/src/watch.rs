@@ -233,8 +233,10 @@ impl Together {
         };
         let rig = Rig::new(cameras.iter().map(mounted).collect())?;
         let lookout = |(number, (kind, fleet)): (usize, (&Kind, &Option<Fleet>))| {
-            let followed = tracking::Settings { kind: number, ..Default::default() };
-            let settings = Settings { pose: kind.believed(&settings.pose), ..*settings };
+            let mut followed = tracking::Settings::default();
+            followed.kind = number;
+            let mut settings = *settings;
+            settings.pose = kind.believed(&settings.pose);
             let lookout = Lookout::new(rig.clone(), &kind.airframe, &settings, followed, fleet.as_ref())?;
             Ok((lookout, fleet.is_some()))
         };

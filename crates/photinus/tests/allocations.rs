@@ -113,7 +113,9 @@ fn a_warm_detector_allocates_nothing() {
     let mask_pixels: Vec<u8> = (0..WIDTH * HEIGHT).map(|i| u8::from(i % WIDTH > 30)).collect();
     let mask = Mask::from_frame(&FrameView::packed(&mask_pixels, WIDTH, HEIGHT).unwrap());
     for brightness in [Brightness::Threshold(200), Brightness::Contrast(20)] {
-        let mut detector = Detector::new(Settings { brightness, ..Settings::default() }).unwrap();
+        let mut settings = Settings::default();
+        settings.brightness = brightness;
+        let mut detector = Detector::new(settings).unwrap();
         let mut spots = 0;
         let mut detect = |pixels: &[u8]| {
             let frame = FrameView::packed(pixels, WIDTH, HEIGHT).unwrap();
@@ -148,7 +150,8 @@ fn a_warm_locator_allocates_nothing() {
     let camera = Camera::new(Model::Ideal(lens), WIDTH, HEIGHT, None).unwrap();
     let ring = Ring { arms: 6, radius_m: 0.4, leds_per_arm: 1, splay_rad: 0.0 };
     let airframe = Airframe::from_ring("hexarotor", ring).unwrap();
-    let settings = locator::Settings { min_probability: 0.0, ..locator::Settings::default() };
+    let mut settings = locator::Settings::default();
+    settings.min_probability = 0.0;
     let mut locator = Locator::new(camera, &airframe, None, settings).unwrap();
     let mut neighbours = 0;
     let mut locate = |pixels: &[u8]| {

@@ -13,7 +13,6 @@ use nalgebra::{Matrix2, Rotation3, Unit, Vector3};
 use photinus::airframe::Airframe;
 use photinus::camera::{Bearing, Camera, Ideal, IdealLaw, Model, Pixel};
 use photinus::locator::{Input, Locator, Neighbour, Settings};
-use photinus::pose;
 use photinus::spots::{Extent, Spot};
 use rand_distr::{Distribution, StandardNormal, Uniform};
 use rand_pcg::Pcg64;
@@ -130,11 +129,9 @@ fn every_view_has_an_answer() {
     let mut seen = [0; 7];
     for airframe in [hexarotor(), quadrotor(), lanterns()] {
         for use_brightness in [true, false] {
-            let settings = Settings {
-                pose: pose::Settings { use_brightness, ..Default::default() },
-                min_probability: 0.0,
-                ..Default::default()
-            };
+            let mut settings = Settings::default();
+            settings.pose.use_brightness = use_brightness;
+            settings.min_probability = 0.0;
             let mut locator = Locator::new(camera.clone(), &airframe, None, settings).expect("a locator");
             for (number, yaw_deg) in (0..360).step_by(5).enumerate() {
                 for (step, distance_m) in [0.6, 0.8, 1.2, 2.5, 5.0, 10.0, 15.0].into_iter().enumerate() {

@@ -13,7 +13,6 @@ use photinus::airframe::Airframe;
 use photinus::camera::{Bearing, Pixel};
 use photinus::frame::{FrameView, Mask};
 use photinus::locator::{Input, Locator, Settings};
-use photinus::pose;
 use photinus::spots::{Extent, Spot};
 use rand_distr::{Distribution, StandardNormal, Uniform};
 use rand_pcg::Pcg64;
@@ -56,13 +55,11 @@ struct Tally {
 fn partly_seen(airframe: &Airframe, views: usize, masked: bool) -> [Tally; 7] {
     let camera = camera();
     let mut rng = Pcg64::new(5, 6);
-    let pose = pose::Settings {
-        scale_sigma: 0.0,
-        marker_sigma_m: 0.001,
-        unit_sigma: 0.12,
-        ..pose::Settings::default()
-    };
-    let settings = Settings { pose, min_probability: 0.0, ..Settings::default() };
+    let mut settings = Settings::default();
+    settings.pose.scale_sigma = 0.0;
+    settings.pose.marker_sigma_m = 0.001;
+    settings.pose.unit_sigma = 0.12;
+    settings.min_probability = 0.0;
     let mut locator = Locator::new(camera.clone(), airframe, None, settings).expect("a locator");
     let mask = masked.then(mask);
     locator.set_mask(mask.clone()).expect("the camera's size");

@@ -15,7 +15,6 @@ use photinus::airframe::Airframe;
 use photinus::camera::{Bearing, Camera};
 use photinus::frame::FrameView;
 use photinus::locator::{Input, Locator, Settings};
-use photinus::pose;
 use rand_distr::{Distribution, StandardNormal, Uniform};
 use rand_pcg::Pcg64;
 
@@ -83,13 +82,10 @@ fn truth_never_leaves_the_bounds_of_a_rendered_neighbour() {
     let down: Unit<Vector3<f64>> = Vector3::y_axis();
     for (airframe, reached) in [(hexarotor(), 0.73), (quadrotor(), 0.46)] {
         let mut rng = Pcg64::new(11, 3);
-        let pose = pose::Settings {
-            scale_sigma: 0.0,
-            marker_sigma_m: 0.001,
-            unit_sigma: 0.12,
-            ..pose::Settings::default()
-        };
-        let settings = Settings { pose, ..Settings::default() };
+        let mut settings = Settings::default();
+        settings.pose.scale_sigma = 0.0;
+        settings.pose.marker_sigma_m = 0.001;
+        settings.pose.unit_sigma = 0.12;
         let mut locator = Locator::new(camera.clone(), &airframe, None, settings).expect("a locator");
         let (mut frames, mut alone, mut normalised) = (0, 0, 0.0);
         for round in 0..120 {

@@ -11,7 +11,6 @@ use nalgebra::{Matrix2, Matrix3, Rotation3, SMatrix, Unit, UnitQuaternion, Vecto
 use photinus::airframe::{Airframe, Led};
 use photinus::camera::{Bearing, Camera, Pixel};
 use photinus::locator::{Input, Located, Locator, Settings};
-use photinus::pose;
 use photinus::spots::{Extent, Spot};
 use rand_distr::{Distribution, StandardNormal, Uniform};
 use rand_pcg::Pcg64;
@@ -101,13 +100,12 @@ impl View {
 
 /// What is true of these neighbours.
 fn settings() -> Settings {
-    let pose = pose::Settings {
-        scale_sigma: 0.0,
-        marker_sigma_m: 0.001,
-        unit_sigma: UNIT_SIGMA,
-        ..pose::Settings::default()
-    };
-    Settings { pose, min_probability: 0.0, ..Settings::default() }
+    let mut settings = Settings::default();
+    settings.pose.scale_sigma = 0.0;
+    settings.pose.marker_sigma_m = 0.001;
+    settings.pose.unit_sigma = UNIT_SIGMA;
+    settings.min_probability = 0.0;
+    settings
 }
 
 fn spot(centre: Pixel, flux: f64) -> Spot {

@@ -6,7 +6,6 @@ use photinus::camera::Camera;
 use photinus::frame::FrameView;
 use photinus::locator::{Input, Locator, Settings};
 use photinus::lookout::{Glance, Lookout};
-use photinus::pose;
 use photinus::tracking;
 use photinus_io::airframe::{AirframeFile, read_airframe};
 use photinus_io::camera::read_camera;
@@ -25,15 +24,10 @@ fn bits(told: &mut String, name: &str, numbers: &[f64]) {
 
 /// What Rust makes of the same frames.
 fn record(shown: &Shown, camera: &Camera, file: &AirframeFile) -> FrameRecord {
-    let default = pose::Settings::default();
-    let settings = Settings {
-        pose: pose::Settings {
-            marker_sigma_m: file.tolerances.position_sigma_m.unwrap_or(default.marker_sigma_m),
-            unit_sigma: file.tolerances.power_sigma.unwrap_or(default.unit_sigma),
-            ..default
-        },
-        ..Settings::default()
-    };
+    let mut settings = Settings::default();
+    let pose = &mut settings.pose;
+    pose.marker_sigma_m = file.tolerances.position_sigma_m.unwrap_or(pose.marker_sigma_m);
+    pose.unit_sigma = file.tolerances.power_sigma.unwrap_or(pose.unit_sigma);
     let mut locator = Locator::new(camera.clone(), &file.airframe, None, settings).unwrap();
     let mut lookout =
         Lookout::new(camera.clone(), &file.airframe, &settings, tracking::Settings::default(), None).unwrap();

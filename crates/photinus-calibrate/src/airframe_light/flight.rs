@@ -7,7 +7,7 @@
 use nalgebra::{Matrix2x3, Rotation3, Unit, Vector3};
 use photinus::airframe::Airframe;
 use photinus::locator::{self, Located, Settings};
-use photinus::pose::{self, LogLight, Pose, Symmetry};
+use photinus::pose::{LogLight, Pose, Symmetry};
 
 use super::trail::Trail;
 
@@ -103,9 +103,10 @@ impl Flight {
     }
 
     /// Settings to locate with, when lobes and powers are not known: brightness hardly counts, and an airframe that is not as it is told is told as well.
-    pub fn settings(settings: Settings) -> Settings {
-        let pose = pose::Settings { unit_sigma: UNKNOWN_UNIT_SIGMA, ..settings.pose };
-        Settings { pose, min_probability: 0.0, ..settings }
+    pub fn settings(mut settings: Settings) -> Settings {
+        settings.pose.unit_sigma = UNKNOWN_UNIT_SIGMA;
+        settings.min_probability = 0.0;
+        settings
     }
 
     /// The airframe as it was located.

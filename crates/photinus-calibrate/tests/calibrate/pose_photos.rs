@@ -16,7 +16,7 @@ use nalgebra::{Isometry3, Matrix3, Rotation3, Unit, UnitQuaternion, Vector3};
 use photinus::airframe::{Airframe, Led, Lobe};
 use photinus::camera::{Bearing, Camera, Pixel};
 use photinus::locator::{Input, Located, Locator, Settings};
-use photinus::pose::{self, Mode, pnp};
+use photinus::pose::{Mode, pnp};
 use photinus::ranging::Estimate;
 use photinus::spots::Reason;
 use photinus_calibrate::adjust::View;
@@ -68,8 +68,9 @@ struct Search {
 impl Search {
     fn new(camera: &Camera, places_m: &[Vector3<f64>], marker_sigma_m: f64) -> Self {
         let board = airframe(places_m);
-        let pose = pose::Settings { marker_sigma_m, scale_sigma: 0.0, ..pose::Settings::default() };
-        let settings = Settings { pose, ..Settings::default() };
+        let mut settings = Settings::default();
+        settings.pose.marker_sigma_m = marker_sigma_m;
+        settings.pose.scale_sigma = 0.0;
         let locator = Locator::new(camera.clone(), &board, None, settings).expect("a locator");
         Self { camera: camera.clone(), board, locator }
     }

@@ -20,7 +20,8 @@ fn recording(seed: u64) -> Vec<Sample> {
     let mut scene = Scene::read(path).unwrap();
     scene.set_seed(seed);
     let mut simulator = Simulator::new(&scene, 0).unwrap();
-    let settings = Settings { brightness: Brightness::Threshold(200), ..Settings::default() };
+    let mut settings = Settings::default();
+    settings.brightness = Brightness::Threshold(200);
     let mut detector = Detector::new(settings).unwrap();
     let frames = (0..scene.frames / 4).step_by(STEP);
     frames

@@ -67,8 +67,9 @@ impl Args {
     }
 
     fn settings(&self) -> Settings {
-        let brightness = self.contrast.map_or_else(Brightness::default, Brightness::Contrast);
-        Settings { brightness, ..Settings::default() }
+        let mut settings = Settings::default();
+        settings.brightness = self.contrast.map_or_else(Brightness::default, Brightness::Contrast);
+        settings
     }
 }
 

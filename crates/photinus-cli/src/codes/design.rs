@@ -115,8 +115,10 @@ impl Args {
 pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<(), Failure> {
     let target = Targets::new(args.write, []).file(&args.out, Content::Codes)?;
     let times = u64::from(args.effort);
-    let usual = Effort::default();
-    let effort = Effort { seed: args.seed, work: usual.work * times, branches: usual.branches * times };
+    let mut effort = Effort::default();
+    effort.seed = args.seed;
+    effort.work *= times;
+    effort.branches *= times;
     let designed =
         args.requirements().and_then(|asked| design(&asked, effort)).map_err(|unmet| told(&unmet))?;
     let claim = args.claim(&designed);

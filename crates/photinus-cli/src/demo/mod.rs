@@ -79,8 +79,8 @@ pub(crate) fn run(args: &Args, terminal: &mut Terminal) -> std::result::Result<(
     }
     let broken = |error| Failure::running(making.tell(error));
     let flown = fly(&scene, &making, terminal)?;
-    let settings =
-        photinus_evaluate::Settings { time_tolerance_s: 0.5 / scene.rate_hz, ..Default::default() };
+    let mut settings = photinus_evaluate::Settings::default();
+    settings.time_tolerance_s = 0.5 / scene.rate_hz;
     let evaluation = evaluate(&flown.truth, &flown.records, &settings)
         .map_err(|error| Failure::Running(error.to_string()))?;
     let figures = made(folder.join(FIGURES)).map_err(broken)?;

@@ -119,14 +119,13 @@ impl Args {
     }
 
     fn settings(&self, truth: &GroundTruth) -> Settings {
-        Settings {
-            spot_gate_px: self.spot_gate,
-            bearing_gate_rad: self.bearing_gate.to_radians(),
-            time_tolerance_s: truth.time_tolerance_s,
-            gospa_cutoff_m: self.gospa_cutoff,
-            bins: self.bins.clone().unwrap_or_default(),
-            ..Settings::default()
-        }
+        let mut settings = Settings::default();
+        settings.spot_gate_px = self.spot_gate;
+        settings.bearing_gate_rad = self.bearing_gate.to_radians();
+        settings.time_tolerance_s = truth.time_tolerance_s;
+        settings.gospa_cutoff_m = self.gospa_cutoff;
+        settings.bins = self.bins.clone().unwrap_or_default();
+        settings
     }
 
     fn refuse(&self, error: &EvaluateError, truth: &GroundTruth) -> Failure {

@@ -60,7 +60,8 @@ impl Placing<'_> {
         lights: &[Spot],
         signals: &[Option<u32>],
     ) -> Result<Option<Placed>, LocatorError> {
-        let settings = Settings { min_probability: 0.0, ..Settings::default() };
+        let mut settings = Settings::default();
+        settings.min_probability = 0.0;
         let mut locator = Locator::new(self.camera.clone(), self.airframe, None, settings)?;
         let Ok(located) = locator.locate(Input::spots(lights).gravity(self.down.as_ref())) else {
             return Ok(None);

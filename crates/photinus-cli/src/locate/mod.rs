@@ -153,13 +153,13 @@ impl Args {
     }
 
     fn settings(&self) -> Settings {
-        Settings {
-            spots: self.spot_options.settings(),
-            max_tilt_rad: self.max_tilt.to_radians(),
-            pose: self.pose_options.settings(),
-            min_probability: self.min_probability,
-            budget: self.budget,
-        }
+        let mut settings = Settings::default();
+        settings.spots = self.spot_options.settings();
+        settings.max_tilt_rad = self.max_tilt.to_radians();
+        settings.pose = self.pose_options.settings();
+        settings.min_probability = self.min_probability;
+        settings.budget = self.budget;
+        settings
     }
 
     /// What looks through each camera of the input.

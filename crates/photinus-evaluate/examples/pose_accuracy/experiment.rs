@@ -6,8 +6,6 @@ use nalgebra::Matrix3;
 use photinus::airframe::{Airframe, Ring};
 use photinus::camera::{Camera, Ideal, IdealLaw, Model, Pixel};
 use photinus::locator::{Input, Located, Locator, Neighbour, Settings};
-use photinus::pose;
-use photinus::spots;
 use rand_pcg::Pcg64;
 
 use crate::render;
@@ -131,17 +129,15 @@ pub(crate) fn run(
     let unit_sigma = if source == Source::Rendered { RENDERED_UNIT_SIGMA } else { UNIT_SIGMA };
     let tilt_sigma_rad = libm::hypot(TILT_RAD, GRAVITY_RAD);
     // The airframe is exact, no LED is dead, and how it tilts is known, and so is the noise of the sensor.
-    let pose = pose::Settings {
-        tilt_sigma_rad,
-        marker_sigma_m: 0.0,
-        unit_sigma,
-        missed: 1e-5,
-        lobe_sigma: 0.002,
-        scale_sigma: 0.0,
-        ..pose::Settings::default()
-    };
-    let spots = spots::Settings { noise: render::noise(&render::PAPER), ..spots::Settings::default() };
-    let settings = Settings { pose, spots, min_probability: 0.0, ..Settings::default() };
+    let mut settings = Settings::default();
+    settings.pose.tilt_sigma_rad = tilt_sigma_rad;
+    settings.pose.marker_sigma_m = 0.0;
+    settings.pose.unit_sigma = unit_sigma;
+    settings.pose.missed = 1e-5;
+    settings.pose.lobe_sigma = 0.002;
+    settings.pose.scale_sigma = 0.0;
+    settings.spots.noise = render::noise(&render::PAPER);
+    settings.min_probability = 0.0;
     let mut locator = Locator::new(camera.clone(), airframe, None, settings).expect("a locator");
     let mut tallies = [Tally::default(); MOST_SPOTS + 1];
     let mut nothing = 0;

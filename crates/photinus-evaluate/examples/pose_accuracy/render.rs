@@ -112,7 +112,10 @@ pub(crate) fn scene(setup: &Setup, airframe: &str, seed: u64, poses: Option<Reco
 /// The noise of the pixels, as the sensor's data would tell it.
 pub(crate) fn noise(setup: &Setup) -> Noise {
     let sensor = scene(setup, "hexarotor-0.4", 0, None).preset.sensor;
-    Noise { read_dn: sensor.read_noise_e / sensor.electrons_per_dn, shot: 1.0 / sensor.electrons_per_dn }
+    let mut noise = Noise::default();
+    noise.read_dn = sensor.read_noise_e / sensor.electrons_per_dn;
+    noise.shot = 1.0 / sensor.electrons_per_dn;
+    noise
 }
 
 /// A batch of frames with a neighbour each, at random poses.

@@ -6,7 +6,6 @@ use nalgebra::Vector3;
 use photinus::airframe::{Airframe, Ring};
 use photinus::camera::{Camera, Ideal, IdealLaw, Model as Lens, Pixel};
 use photinus::locator::{Input, Located, Locator, Settings};
-use photinus::pose;
 use photinus::spots::Spot;
 use rand_pcg::Pcg64;
 
@@ -86,15 +85,14 @@ fn camera() -> Camera {
 
 /// A locator that believes what the model does.
 pub(crate) fn locator(airframe: &Airframe) -> Locator {
-    let pose = pose::Settings {
-        tilt_sigma_rad: tilt_sigma_rad(),
-        marker_sigma_m: 0.0,
-        scale_sigma: 0.0,
-        unit_sigma: UNIT_SIGMA,
-        lobe_sigma: crate::model::LOBE_SIGMA,
-        missed: crate::model::MISSED,
-        use_brightness: true,
-    };
-    Locator::new(camera(), airframe, None, Settings { pose, min_probability: 0.0, ..Settings::default() })
-        .expect("a locator")
+    let mut settings = Settings::default();
+    settings.pose.tilt_sigma_rad = tilt_sigma_rad();
+    settings.pose.marker_sigma_m = 0.0;
+    settings.pose.scale_sigma = 0.0;
+    settings.pose.unit_sigma = UNIT_SIGMA;
+    settings.pose.lobe_sigma = crate::model::LOBE_SIGMA;
+    settings.pose.missed = crate::model::MISSED;
+    settings.pose.use_brightness = true;
+    settings.min_probability = 0.0;
+    Locator::new(camera(), airframe, None, settings).expect("a locator")
 }

@@ -110,7 +110,8 @@ impl Row {
             Some(optics) => camera.with_optics(optics),
             None => camera,
         };
-        let settings = Settings { min_probability: self.min_probability, ..Settings::default() };
+        let mut settings = Settings::default();
+        settings.min_probability = self.min_probability;
         let mut locator = Locator::new(camera, &told, None, settings).expect("default settings");
         let (mut truth, mut records, mut lights) = (Vec::new(), Vec::new(), Lights::default());
         for first in (0..frames).step_by(self.spell as usize) {

@@ -32,7 +32,9 @@ pub(crate) fn book(name: &str) -> CodeBook {
 }
 
 pub(crate) fn decoder(book: &CodeBook) -> Decoder {
-    Decoder::new(book, Settings { bit_rate_hz: CAMERA_HZ, ..Settings::default() }).expect("settings")
+    let mut settings = Settings::default();
+    settings.bit_rate_hz = CAMERA_HZ;
+    Decoder::new(book, settings).expect("settings")
 }
 
 pub(crate) fn percent(count: usize, of: usize) -> String {

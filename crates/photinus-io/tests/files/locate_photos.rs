@@ -87,7 +87,8 @@ fn a_board_of_leds_is_no_quadrotor() {
     let Some(photos) = real_data("grid-960x600") else { return };
     let ring = Ring { arms: 4, radius_m: 0.245, leds_per_arm: 2, splay_rad: std::f64::consts::FRAC_PI_2 };
     let quadrotor = Airframe::from_ring("quadrotor", ring).expect("a quadrotor");
-    let settings = Settings { min_probability: 0.01, ..Settings::default() };
+    let mut settings = Settings::default();
+    settings.min_probability = 0.01;
     let mut told = Vec::new();
     for (photo, _) in PHOTOS {
         let image = read_image(photos.join(format!("grid_{photo}.png"))).expect("a photo").image;

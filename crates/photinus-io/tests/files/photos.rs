@@ -43,7 +43,8 @@ impl Picture {
 
     fn detect_by(&self, brightness: Brightness) -> Detections {
         let frame = FrameView::packed(&self.pixels, self.width, self.height).unwrap();
-        let settings = Settings { brightness, ..Settings::default() };
+        let mut settings = Settings::default();
+        settings.brightness = brightness;
         Detector::new(settings).unwrap().detect(&frame, None).unwrap().clone()
     }
 

@@ -17,6 +17,7 @@ use crate::clock_offset::ClockOffset;
 
 /// How the link behaves.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Settings {
     /// The vehicle that this computer is on.
     pub system: u8,

@@ -17,6 +17,7 @@ use crate::{cdr, topics};
 
 /// When a recording goes on in another file.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct Split {
     /// Past this many bytes of messages.
     pub bytes: Option<u64>,
@@ -26,6 +27,7 @@ pub struct Split {
 
 /// How a recording is written.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct Settings {
     /// Which pixels it keeps.
     pub pixels: Pixels,

@@ -27,6 +27,7 @@ use crate::topics;
 
 /// Who takes part in ROS.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Settings {
     /// `ROS_DOMAIN_ID`.
     pub domain: u16,

@@ -21,6 +21,7 @@ const MOST_BYTES: usize = 1 << 26;
 
 /// Who takes part in Zenoh.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Settings {
     /// What this vehicle is called in keys.
     pub vehicle: String,

@@ -19,8 +19,10 @@ use crate::sample;
 const SCRIPT: &str = include_str!("autopilot.py");
 
 fn settings() -> Settings {
-    let obstacles = Obstacles { radius_m: 0.5, reach_m: 20.0, tells_free: true };
-    Settings { system: 7, obstacles, ..Settings::default() }
+    let mut settings = Settings::default();
+    settings.system = 7;
+    settings.obstacles = Obstacles { radius_m: 0.5, reach_m: 20.0, tells_free: true };
+    settings
 }
 
 /// It looks ahead, 45 deg to both sides.

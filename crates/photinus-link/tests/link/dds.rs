@@ -34,7 +34,9 @@ const DOMAINS: u32 = 40;
 fn cyclonedds_hears_every_topic_and_its_images_are_heard() {
     let Some(mut python) = python_with(&["cyclonedds", "rosbags"]) else { return };
     let domain = FIRST_DOMAIN + std::process::id() % DOMAINS;
-    let settings = Settings { domain: domain as u16, namespace: "/uav1".to_owned(), ..Settings::default() };
+    let mut settings = Settings::default();
+    settings.domain = domain as u16;
+    settings.namespace = "/uav1".to_owned();
     let mut node = Node::new(settings.clone()).expect("there is a network");
     let mut published = Topics::new(&mut node).expect("names");
     let mut source = ImageSource::new(settings.clone(), "/camera/image").expect("a name");
@@ -210,7 +212,8 @@ fn memory_mb() -> f64 {
 #[test]
 fn datagrams_that_mean_nothing_stop_nobody_and_cost_no_memory() {
     let domain = FIRST_DOMAIN + DOMAINS + std::process::id() % DOMAINS;
-    let settings = Settings { domain: domain as u16, ..Settings::default() };
+    let mut settings = Settings::default();
+    settings.domain = domain as u16;
     let mut node = Node::new(settings.clone()).expect("there is a network");
     let publisher = node.publisher::<ros::Image<'static>>("/camera/image", Quality::Sensor).expect("a name");
     let mut images = node.images("/camera/image").expect("a name");

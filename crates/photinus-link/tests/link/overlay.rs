@@ -68,7 +68,9 @@ fn camera() -> Camera {
 fn pictures_are_drawn_while_somebody_subscribes_and_arrive_whole() {
     let Some(mut python) = python_with(&["cyclonedds", "rosbags"]) else { return };
     let domain = FIRST_DOMAIN + std::process::id() % DOMAINS;
-    let settings = Settings { domain: domain as u16, namespace: "/uav1".to_owned(), ..Settings::default() };
+    let mut settings = Settings::default();
+    settings.domain = domain as u16;
+    settings.namespace = "/uav1".to_owned();
     let mut sink = Ros2Sink::new(settings, vec![camera()]).expect("there is a network");
     let drawn = Arc::<AtomicU64>::default();
     let count = drawn.clone();

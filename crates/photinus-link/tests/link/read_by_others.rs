@@ -95,7 +95,8 @@ fn every_field_of_every_message_is_read_by_others() {
             ..TransformStamped::default()
         }],
     };
-    let settings = Settings { pixels: Pixels::Raw, ..Settings::default() };
+    let mut settings = Settings::default();
+    settings.pixels = Pixels::Raw;
     let mut recorder = Recorder::create(&path, settings, Some(fixed.clone())).expect("a file");
     let record = sample::record(17, 1_700_000_000.25);
     let image = GreyImage::new((0..=255).collect(), 16, 16).expect("a size");

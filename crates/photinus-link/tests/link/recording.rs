@@ -7,7 +7,7 @@ use photinus_io::image::GreyImage;
 use photinus_io::results::FrameRecord;
 use photinus_link::messages::Viewpoint;
 use photinus_link::recording::{
-    Frames, Located, Pixels, Recorder, Recording, Settings, Split, image_topics, recover,
+    Frames, Located, Pixels, Recorder, Recording, Settings, image_topics, recover,
 };
 use photinus_link::topics;
 use proptest::prelude::*;
@@ -46,8 +46,9 @@ proptest! {
     ) {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("r.mcap");
-        let pixels = if is_png { Pixels::Png } else { Pixels::Raw };
-        let mut recorder = Recorder::create(&path, Settings { pixels, ..Settings::default() }, None).expect("a file");
+        let mut settings = Settings::default();
+        settings.pixels = if is_png { Pixels::Png } else { Pixels::Raw };
+        let mut recorder = Recorder::create(&path, settings, None).expect("a file");
         let written: Vec<Frame> = times.iter().zip(0..).map(|(&time_s, index)| Frame {
             image: image(index, width, height),
             index: index as u64 * 3,
@@ -101,9 +102,9 @@ fn frame(index: u64) -> Frame {
 fn a_long_recording_goes_on_in_other_files() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("flight.mcap");
-    let split = Split { seconds: Some(2.0), bytes: None };
-    let mut recorder =
-        Recorder::create(&path, Settings { split, ..Settings::default() }, None).expect("a file");
+    let mut settings = Settings::default();
+    settings.split.seconds = Some(2.0);
+    let mut recorder = Recorder::create(&path, settings, None).expect("a file");
     for index in 0..10 {
         write(&mut recorder, &frame(index), index * 500_000_000);
     }
@@ -121,10 +122,10 @@ fn a_long_recording_goes_on_in_other_files() {
 fn a_frame_is_never_torn_between_two_files() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("flight.mcap");
+    let mut settings = Settings::default();
     // Full after every message.
-    let split = Split { seconds: None, bytes: Some(1) };
-    let mut recorder =
-        Recorder::create(&path, Settings { split, ..Settings::default() }, None).expect("a file");
+    settings.split.bytes = Some(1);
+    let mut recorder = Recorder::create(&path, settings, None).expect("a file");
     (0..3).for_each(|index| write(&mut recorder, &frame(index), index));
     recorder.finish().expect("it ends");
     for (name, index) in ["flight.mcap", "flight.1.mcap", "flight.2.mcap"].iter().zip(0..) {

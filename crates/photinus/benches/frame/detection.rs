@@ -71,8 +71,11 @@ fn count() {
 
 /// By a fixed threshold and by contrast.
 fn detectors() -> [Detector; 2] {
-    [Brightness::Threshold(200), Brightness::default()]
-        .map(|brightness| Detector::new(Settings { brightness, ..Settings::default() }).expect("settings"))
+    [Brightness::Threshold(200), Brightness::default()].map(|brightness| {
+        let mut settings = Settings::default();
+        settings.brightness = brightness;
+        Detector::new(settings).expect("settings")
+    })
 }
 
 /// Times floors and detectors on the frames of one scene.

@@ -1,7 +1,8 @@
 //! What is believed of markers before anything is seen of them, each with its reason.
 
-/// Priors of following.
+/// Priors of following. Begin with [`Settings::default`] and change what you must.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Settings {
     /// Standard deviation of the rate of a marker seen for the first time, each way, rad/s: 2 m/s across the view at 5 m.
     pub rate_rad_s: f64,

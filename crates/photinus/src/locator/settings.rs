@@ -4,8 +4,9 @@ use crate::pose;
 use crate::ranging::DistanceBounds;
 use crate::spots;
 
-/// What a user may choose about locating.
+/// What a user may choose about locating. Begin with [`Settings::default`] and change what you must.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Settings {
     /// What is a spot.
     pub spots: spots::Settings,

@@ -1,7 +1,8 @@
 //! What is believed of neighbours before a frame tells.
 
-/// Priors and tolerances of the estimator.
+/// Priors and tolerances of the estimator. Begin with [`Settings::default`] and change what you must.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Settings {
     /// Standard deviation of a neighbour's tilt against the vertical, per axis, with the error of the known gravity, rad.
     /// What is believed before frames tell it ([`crate::pose::Known::tilt_sigma_rad`]). Default 5 deg.

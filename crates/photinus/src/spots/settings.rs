@@ -22,6 +22,7 @@ impl Default for Brightness {
 ///
 /// The default is that of a small UV fisheye camera, from the scatter of real frames.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Noise {
     /// Noise of a dark pixel, grey levels; the frame's own background raises it where it is noisier. Default 0.45.
     pub read_dn: f64,
@@ -37,6 +38,7 @@ impl Default for Noise {
 
 /// What a marker may look like; the rest is rejected with a reason.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Shape {
     /// Widest marker, px; a disc of this diameter bounds the area. A neighbour's LEDs at half a metre are 20 px wide,
     /// the sun in a UV camera 40 and more. Default 32.
@@ -54,8 +56,9 @@ impl Default for Shape {
     }
 }
 
-/// All that a user may choose about spots.
+/// All that a user may choose about spots. Begin with [`Settings::default`] and change what you must.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct Settings {
     /// What is bright.
     pub brightness: Brightness,

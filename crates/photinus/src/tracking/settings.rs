@@ -2,8 +2,9 @@
 
 use crate::pose::SettingsError;
 
-/// Priors of a tracker. docs/tracking.md has the reason of each.
+/// Priors of a tracker. docs/tracking.md has the reason of each. Begin with [`Settings::default`] and change what you must.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Settings {
     /// White acceleration of a vehicle relative to the camera, root of its spectral density, m/s^2 per sqrt(Hz). Default 3: rms 3 m/s^2 (1 g is three
     /// sigma) that lasts half a second, sqrt(2 * 0.5 s) * 3 m/s^2.
@@ -36,6 +37,7 @@ pub struct Settings {
 
 /// How spots are given to vehicles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Association {
     /// All ways that share no spot, each with its probability.
     Joint,

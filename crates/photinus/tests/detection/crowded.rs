@@ -127,7 +127,8 @@ fn markers_none_of_which_stands_alone_tell_their_point_spread() {
         let mut rng = Pcg64::new(29, u128::from(count));
         let phase = Uniform::new(-0.5, 0.5).unwrap();
         let direction = Uniform::new(0.0, std::f64::consts::TAU).unwrap();
-        let settings = Settings { brightness: RULES[1], ..Settings::default() };
+        let mut settings = Settings::default();
+        settings.brightness = RULES[1];
         let mut detector = Detector::new(settings).unwrap();
         let (mut squares, mut towards_px, mut told) = (0.0, 0.0, 0.0);
         for frame in 0..60 {

@@ -6,7 +6,7 @@ use std::fmt;
 
 use photinus::frame::{FrameView, Mask};
 use photinus::optics::{Gaussian, HotPixels, Measured, Optics, PointSpread, Saturation, Sensor, SpreadField};
-use photinus::spots::{Brightness, Detections, Detector, Noise, Settings, Shape};
+use photinus::spots::{Brightness, Detections, Detector, Settings};
 use proptest::prelude::*;
 
 #[derive(Clone)]
@@ -56,10 +56,15 @@ fn settings() -> impl Strategy<Value = Settings> {
     ];
     let number = |most: f64| prop_oneof![Just(0.0), 0.0..most];
     (brightness, number(5.0), number(1.0), 1.0..60.0, 1.0..10.0, number(1.0)).prop_map(
-        |(brightness, read_dn, shot, widest_px, elongation, reflection_ratio)| Settings {
-            brightness,
-            noise: Noise { read_dn, shot },
-            shape: Shape { widest_px, elongation, reflection_ratio },
+        |(brightness, read_dn, shot, widest_px, elongation, reflection_ratio)| {
+            let mut settings = Settings::default();
+            settings.brightness = brightness;
+            settings.noise.read_dn = read_dn;
+            settings.noise.shot = shot;
+            settings.shape.widest_px = widest_px;
+            settings.shape.elongation = elongation;
+            settings.shape.reflection_ratio = reflection_ratio;
+            settings
         },
     )
 }
@@ -92,7 +97,8 @@ proptest! {
 
     #[test]
     fn every_qualifying_pixel_is_in_one_spot_or_rejected(frame in frames(), threshold in 1u8..) {
-        let settings = Settings { brightness: Brightness::Threshold(threshold), ..Settings::default() };
+        let mut settings = Settings::default();
+        settings.brightness = Brightness::Threshold(threshold);
         let mut detector = Detector::new(settings).unwrap();
         let found = detector.detect(&frame.view(), None).unwrap();
         let qualify = frame.pixels.iter().filter(|&&pixel| pixel >= threshold).count();

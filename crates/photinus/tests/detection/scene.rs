@@ -115,8 +115,9 @@ pub(crate) fn detect_masked(
     mask: Option<&Mask>,
 ) -> Detections {
     let frame = FrameView::packed(pixels, width, height).unwrap();
-    let mut detector = Detector::new(Settings { brightness, ..Settings::default() }).unwrap();
-    detector.detect(&frame, mask).unwrap().clone()
+    let mut settings = Settings::default();
+    settings.brightness = brightness;
+    Detector::new(settings).unwrap().detect(&frame, mask).unwrap().clone()
 }
 
 pub(crate) fn distance_px(a: Pixel, b: Pixel) -> f64 {

@@ -145,9 +145,11 @@ fn the_stride_changes_nothing() {
     let mask_pixels: Vec<u8> = (0..width * height).map(|i| u8::from(i % width < 60)).collect();
     let mask = Mask::from_frame(&FrameView::packed(&mask_pixels, width, height).unwrap());
     for rule in RULES {
+        let mut settings = Settings::default();
+        settings.brightness = rule;
         // What a frame teaches of the camera changes the next one.
         let detect = |frame: &FrameView<'_>| {
-            let mut detector = Detector::new(Settings { brightness: rule, ..Settings::default() }).unwrap();
+            let mut detector = Detector::new(settings).unwrap();
             detector.detect(frame, Some(&mask)).unwrap().clone()
         };
         let expected = detect(&FrameView::packed(&packed, width, height).unwrap());

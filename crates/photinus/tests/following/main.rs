@@ -29,7 +29,8 @@ use world::{DEGREE, EXPOSURE_S, FAINTEST, GYRO_RAD_S, Marker, Swing, World, came
 
 fn follower(acceleration_rad2_s3: f64) -> Follower {
     let decoder = Decoder::new(&CodeBook::new(words()).unwrap(), decoder::Settings::default()).unwrap();
-    let settings = Settings { acceleration_rad2_s3, ..Settings::default() };
+    let mut settings = Settings::default();
+    settings.acceleration_rad2_s3 = acceleration_rad2_s3;
     Follower::new(&camera(), Some(decoder), settings).unwrap()
 }
 
@@ -314,6 +315,7 @@ fn times_that_stand_change_nothing() {
         assert_eq!(follower.follow(&frame), Err(decoder::TimeStands));
         assert_eq!(follower.tracks(), before);
     }
-    let wrong = Settings { missed: 1.5, ..Settings::default() };
+    let mut wrong = Settings::default();
+    wrong.missed = 1.5;
     assert!(Follower::new(&camera(), None, wrong).is_err());
 }

@@ -80,14 +80,16 @@ fn settings() -> impl Strategy<Value = pose::Settings> {
     let missed = prop_oneof![Just(1e-3), Just(1e-9), Just(0.5)];
     let lobe = prop_oneof![Just(0.02), Just(0.0), Just(1.0)];
     (tilt, marker, unit, lobe, missed, any::<bool>()).prop_map(
-        |(tilt_sigma_rad, marker_sigma_m, unit_sigma, lobe_sigma, missed, use_brightness)| pose::Settings {
-            tilt_sigma_rad,
-            marker_sigma_m,
-            scale_sigma: 0.01,
-            unit_sigma,
-            lobe_sigma,
-            missed,
-            use_brightness,
+        |(tilt_sigma_rad, marker_sigma_m, unit_sigma, lobe_sigma, missed, use_brightness)| {
+            let mut settings = pose::Settings::default();
+            settings.tilt_sigma_rad = tilt_sigma_rad;
+            settings.marker_sigma_m = marker_sigma_m;
+            settings.scale_sigma = 0.01;
+            settings.unit_sigma = unit_sigma;
+            settings.lobe_sigma = lobe_sigma;
+            settings.missed = missed;
+            settings.use_brightness = use_brightness;
+            settings
         },
     )
 }

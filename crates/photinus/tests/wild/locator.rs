@@ -7,7 +7,7 @@ use nalgebra::{Matrix2, Vector3};
 use photinus::airframe::Airframe;
 use photinus::camera::{Camera, Ideal, IdealLaw, Model, Pixel};
 use photinus::locator::{Input, Located, Locator, Settings};
-use photinus::pose::{self, Pose};
+use photinus::pose::Pose;
 use photinus::ranging::SpotCurve;
 use photinus::spots::{Extent, Spot};
 use proptest::prelude::*;
@@ -120,38 +120,28 @@ fn check_located(located: &Located) -> Result<(), TestCaseError> {
 
 /// A locator per airframe, of all beliefs that there are.
 fn locators() -> Vec<Locator> {
-    let (first, last) = (
-        Settings::default(),
-        Settings {
-            max_tilt_rad: PI,
-            pose: pose::Settings {
-                tilt_sigma_rad: 3.2,
-                marker_sigma_m: 1.0,
-                scale_sigma: 1.0,
-                unit_sigma: 10.0,
-                lobe_sigma: 1.0,
-                missed: 0.5,
-                use_brightness: false,
-            },
-            ..Settings::default()
-        },
-    );
-    let strict = Settings {
-        max_tilt_rad: 0.0,
-        pose: pose::Settings {
-            tilt_sigma_rad: 1e-4,
-            marker_sigma_m: 0.0,
-            scale_sigma: 0.0,
-            unit_sigma: 1e-3,
-            lobe_sigma: 0.0,
-            missed: 1e-9,
-            use_brightness: true,
-        },
-        ..Settings::default()
-    };
+    let usual = Settings::default();
+    let mut loose = usual;
+    loose.max_tilt_rad = PI;
+    loose.pose.tilt_sigma_rad = 3.2;
+    loose.pose.marker_sigma_m = 1.0;
+    loose.pose.scale_sigma = 1.0;
+    loose.pose.unit_sigma = 10.0;
+    loose.pose.lobe_sigma = 1.0;
+    loose.pose.missed = 0.5;
+    loose.pose.use_brightness = false;
+    let mut strict = usual;
+    strict.max_tilt_rad = 0.0;
+    strict.pose.tilt_sigma_rad = 1e-4;
+    strict.pose.marker_sigma_m = 0.0;
+    strict.pose.scale_sigma = 0.0;
+    strict.pose.unit_sigma = 1e-3;
+    strict.pose.lobe_sigma = 0.0;
+    strict.pose.missed = 1e-9;
+    strict.pose.use_brightness = true;
     let curves = [None, Some(SpotCurve::paper_1000_us())];
     let locator = |(number, airframe): (usize, &Airframe)| {
-        let settings = [first, last, strict][number % 3];
+        let settings = [usual, loose, strict][number % 3];
         Locator::new(camera(), airframe, curves[number % 2], settings).expect("a locator")
     };
     airframes().iter().enumerate().map(locator).collect()

@@ -6,7 +6,6 @@ use std::path::Path;
 use nalgebra::Vector3;
 use photinus::airframe::{Airframe, Led, Lobe};
 use photinus::locator::{Input, Located, Locator, Settings};
-use photinus::pose;
 use photinus_calibrate::airframe_light::{Flight, Known, Light, calibrate};
 use photinus_sim::scene::Scene;
 use photinus_sim::{Rendered, Simulator};
@@ -115,9 +114,9 @@ pub(crate) fn learn(scene: &Scene) -> Light {
 
 /// Settings for an airframe that was learned.
 pub(crate) fn known(light: &Light) -> Settings {
-    let default = pose::Settings::default();
-    let unit_sigma = light.power_sigma().unwrap_or(default.unit_sigma);
-    Settings { pose: pose::Settings { unit_sigma, ..default }, ..Settings::default() }
+    let mut settings = Settings::default();
+    settings.pose.unit_sigma = light.power_sigma().unwrap_or(settings.pose.unit_sigma);
+    settings
 }
 
 /// Root mean squares of how far learned powers are off, as logarithms, and of what is claimed; in the turn of the airframe that

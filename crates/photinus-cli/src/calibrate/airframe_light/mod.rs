@@ -6,7 +6,6 @@ use std::path::{Path, PathBuf};
 
 use photinus::camera::Camera;
 use photinus::locator::{self, Locator, Settings};
-use photinus::pose;
 use photinus_calibrate::airframe_light::{Flight, Light, LightError, calibrate};
 use photinus_io::airframe::{AirframeFile, Tolerances, toml_text};
 use photinus_io::{Error, Place};
@@ -131,13 +130,10 @@ impl Recording {
             )
         })?;
         let camera: Camera = beforehand::camera(&path, terminal).map_err(Failure::input)?.camera;
-        let default = pose::Settings::default();
-        let marker_sigma_m = known.tolerances.position_sigma_m.unwrap_or(default.marker_sigma_m);
-        let settings = Settings {
-            spots: args.spots.settings(),
-            pose: pose::Settings { marker_sigma_m, ..default },
-            ..Settings::default()
-        };
+        let mut settings = Settings::default();
+        settings.spots = args.spots.settings();
+        settings.pose.marker_sigma_m =
+            known.tolerances.position_sigma_m.unwrap_or(settings.pose.marker_sigma_m);
         let mask = args.spots.masks(&input, terminal)?.pop().flatten();
         let refuse = |error: photinus::locator::LocatorError| Failure::Input(error.to_string());
         let mut locator =

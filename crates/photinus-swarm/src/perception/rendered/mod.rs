@@ -111,7 +111,8 @@ impl Rendered {
 fn settings(scenario: &Scenario) -> locator::Settings {
     let tilts = scenario.vehicles.iter().map(|vehicle| vehicle.kind.build.tilt_rad);
     let max_tilt_rad = tilts.fold(0.0, f64::max) + TILT_MARGIN_RAD;
-    let mut settings = locator::Settings { max_tilt_rad, ..locator::Settings::default() };
+    let mut settings = locator::Settings::default();
+    settings.max_tilt_rad = max_tilt_rad;
     // half of the largest tilt is as likely as not to be passed in a turn
     settings.pose.tilt_sigma_rad = settings.pose.tilt_sigma_rad.max(0.3 * max_tilt_rad);
     settings

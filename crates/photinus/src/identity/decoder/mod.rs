@@ -27,8 +27,9 @@ use phases::Signal;
 pub use answer::{Identity, Phase, Who};
 pub use listener::{Listener, TimeStands};
 
-/// What is believed of markers before anything is seen of them.
+/// What is believed of markers before anything is seen of them. Begin with [`Settings::default`] and change what you must.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Settings {
     /// Bits per second of the words, nominally.
     pub bit_rate_hz: f64,

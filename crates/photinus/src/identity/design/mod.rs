@@ -23,6 +23,7 @@ pub use candidates::{Requirements, Unmet};
 
 /// How long to search; the same numbers give the same book everywhere.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Effort {
     /// Where the search begins.
     pub seed: u64,

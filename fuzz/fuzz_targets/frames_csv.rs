@@ -8,7 +8,8 @@ libfuzzer_sys::fuzz_target!(|text: &str| {
     if let Ok(log) = GravityLog::parse(text, "fuzz") {
         let _ = log.at(0.5);
     }
-    let header = |text: &str| text.lines().find(|line| !line.trim().is_empty()).unwrap_or_default().to_owned();
+    let header =
+        |text: &str| text.lines().find(|line| !line.trim().is_empty()).unwrap_or_default().to_owned();
     if let Ok(rows) = parse_imu(text, "fuzz") {
         let again = rows.iter().fold(header(text), |text, row| text + "\n" + &row.line());
         assert_eq!(parse_imu(&again, "fuzz").expect("what was written is read"), rows);

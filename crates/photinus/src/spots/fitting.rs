@@ -67,6 +67,8 @@ const SHAPELESS: f32 = 0.15;
 /// A point is no further from the centroid of its part, px and radii of the part: what is has taken the light of another for its own.
 const OFF_PX: f64 = 0.3;
 const OFF_RADII: f64 = 0.1;
+/// The centroid of few pixels does not tell where in them light fell: that of one is its middle. Over how many there are, px.
+const OFF_IN_PIXELS_PX: f64 = 0.5;
 
 /// A part as fitted.
 #[derive(Clone, Copy, Debug)]
@@ -499,7 +501,13 @@ impl Fitter {
             light_variance: fitted.light_variance(),
         };
         let off_px = libm::hypot(point.centre.u - part.guess.u, point.centre.v - part.guess.v);
-        let is_off = !part.outline.cut && off_px > OFF_PX + OFF_RADII * part.radius_px;
+        // A streak of which one pixel shows is no point, and none that is fitted to it says where in that pixel.
+        let in_pixels_px = match fitted.fits() {
+            true => OFF_IN_PIXELS_PX / f64::from(part.outline.area_px.max(1)),
+            false => 0.0,
+        };
+        let most_px = OFF_PX + OFF_RADII * part.radius_px + in_pixels_px;
+        let is_off = !part.outline.cut && off_px > most_px;
         if is_off { None } else { self.point(&point, fitted, noise) }
     }
 

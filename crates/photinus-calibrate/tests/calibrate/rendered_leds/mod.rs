@@ -28,10 +28,10 @@ pub(crate) struct Eye {
 }
 
 /// An LED in a frame: column and row, and its light against that of the faintest.
-type Led = (f64, f64, f64);
+pub(crate) type Led = (f64, f64, f64);
 
 /// Lights of the faintest LEDs, likewise.
-const FAINTEST_DN: f64 = 15.0;
+pub(crate) const FAINTEST_DN: f64 = 15.0;
 
 impl Eye {
     /// A camera of the list.
@@ -127,19 +127,32 @@ impl Eye {
     }
 
     /// Frames of LEDs.
-    fn rendered(&self, frames: u64, seed: u64, mut leds: impl FnMut(u64) -> Vec<Led>) -> Collection {
+    fn rendered(&self, frames: u64, seed: u64, leds: impl FnMut(u64) -> Vec<Led>) -> Collection {
+        let mut collection = Collection::of(&self.camera);
+        self.each_frame(frames, seed, leds, |view, _| assert!(collection.add(view, None)));
+        collection
+    }
+
+    /// Hands over frames of LEDs, and where these are.
+    pub(crate) fn each_frame(
+        &self,
+        frames: u64,
+        seed: u64,
+        mut leds: impl FnMut(u64) -> Vec<Led>,
+        mut with: impl FnMut(&FrameView<'_>, &[Led]),
+    ) {
         let (width, height) = self.size();
         let sensor = &self.preset.sensor;
         let mut readout = Readout::of_unit(sensor, (width, height), 1);
         let (mut charge, mut background) = (Charge::new(width, height), Background::new(width, height));
         let electrons = |u: usize, v: usize| (self.sky_dn)(u as f64, v as f64) * sensor.electrons_per_dn;
         background.fill(|u, v| electrons(u, v) as f32);
-        let mut collection = Collection::of(&self.camera);
         let mut pixels = vec![0; width * height];
         let summit = self.truth([0.5 * width as f64, 0.5 * height as f64]).share(0.0, 0.0);
         for frame in 0..frames {
             charge.clear();
-            for (u_px, v_px, brighter) in leds(frame) {
+            let leds = leds(frame);
+            for &(u_px, v_px, brighter) in &leds {
                 let levels = FAINTEST_DN * brighter / summit;
                 if let Some(light) = self.light(u_px, v_px, levels * sensor.electrons_per_dn) {
                     self.preset.lens.spread.draw(&light, &mut charge);
@@ -153,10 +166,8 @@ impl Eye {
             for (row, pixels) in pixels.chunks_exact_mut(width).enumerate() {
                 readout.read_row(row, &background, &charge, key, pixels);
             }
-            let view = FrameView::packed(&pixels, width, height).expect("whole rows");
-            assert!(collection.add(&view, None));
+            with(&FrameView::packed(&pixels, width, height).expect("whole rows"), &leds);
         }
-        collection
     }
 
     /// The point spread at a place, its light's centroid at the point.
@@ -208,7 +219,7 @@ impl Eye {
 }
 
 /// Even numbers from 0 to 1.
-fn uniform(seed: u64, stream: u128) -> impl FnMut() -> f64 {
+pub(crate) fn uniform(seed: u64, stream: u128) -> impl FnMut() -> f64 {
     let mut random = Pcg64::new(u128::from(seed), stream);
     move || (random.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
 }

@@ -27,7 +27,12 @@ struct Scene {
 
 /// Spots of `width_px` (sigma) and `height` grey levels on a grid, each at a random phase of the pixel grid.
 fn scene(width_px: f64, height: f64, rng: &mut Pcg64) -> Scene {
-    let phase = Uniform::new(-0.5, 0.5).expect("a range");
+    scene_within(width_px, height, 0.5, rng)
+}
+
+/// The same no further than so many px from the middle of a pixel.
+fn scene_within(width_px: f64, height: f64, within_px: f64, rng: &mut Pcg64) -> Scene {
+    let phase = Uniform::new(-within_px, within_px).expect("a range");
     let mut light = vec![0.0; SIDE * SIDE];
     let mut truth = Vec::new();
     for (row, column) in (0..4).flat_map(|row| (0..4).map(move |column| (row, column))) {
@@ -187,6 +192,28 @@ fn unsaturated_spots_are_placed_to_a_hundredth_of_a_pixel() {
     let reached_px = [(100.0, 0.0096), (150.0, 0.0070), (230.0, 0.0054)];
     hold(|_| Detector::new(Settings::default()).unwrap(), &reached_px);
     hold(knowing, &reached_px);
+}
+
+/// Of light narrower than a pixel one shows, and its neighbours, below the threshold, tell how far beside its middle the light fell.
+#[test]
+fn sharp_spots_are_placed_within_their_pixel() {
+    let (mut detector, mut rng) = (knowing(0.4), Pcg64::new(7, 40));
+    let (mut errors, mut single) = (Errors::default(), 0);
+    for _ in 0..60 {
+        let scene = scene_within(0.4, 60.0, 0.4, &mut rng);
+        let frame = FrameView::packed(&scene.pixels, SIDE, SIDE).expect("a frame");
+        let found = detector.detect(&frame, None).expect("no mask");
+        for truth in &scene.truth {
+            let near = |spot: &&Spot| libm::hypot(spot.centre.u - truth.u, spot.centre.v - truth.v) < 1.0;
+            let spot = found.spots.iter().find(near).expect("a spot near every truth");
+            single += usize::from(spot.area_px == 1);
+            errors.add(spot, *truth);
+        }
+    }
+    println!("rms {}, reported/scatter {}, {single} of one pixel", errors.rms(), errors.honesty());
+    assert!(single > 480, "{single} of 960 are of one pixel");
+    assert!((0.0205..0.0240).contains(&errors.rms()), "rms {}", errors.rms());
+    assert!((errors.honesty() - 1.0).abs() < 0.15, "{}", errors.honesty());
 }
 
 #[test]

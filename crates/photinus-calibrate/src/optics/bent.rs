@@ -45,16 +45,14 @@ pub(super) fn places_px(table: &Table, start: &Table, noise: &Noise, light: f64)
     let Some(offs) = offs.collect::<Option<Vec<[f64; 2]>>>() else {
         return Bend { along_px: f64::INFINITY, across_px: f64::INFINITY };
     };
-    let mean = |axis: usize, whose: &dyn Fn(usize) -> bool| {
-        let own = || (0..offs.len()).filter(|&place| whose(place));
-        own().map(|place| offs[place][axis]).sum::<f64>() / own().count() as f64
-    };
     let (mut all, mut along) = (0.0, 0.0);
     for axis in 0..2 {
-        let middle = mean(axis, &|_| true);
-        let line = |place: usize| if axis == 0 { place % PLACES } else { place / PLACES };
+        let line_of = |place: usize| [place % PLACES, place / PLACES][axis];
+        let middle = offs.iter().map(|off| off[axis]).sum::<f64>() / offs.len() as f64;
+        let mut lines = [0.0; PLACES];
+        offs.iter().enumerate().for_each(|(place, off)| lines[line_of(place)] += off[axis]);
         for (place, off) in offs.iter().enumerate() {
-            let of_line = mean(axis, &|other| line(other) == line(place)) - middle;
+            let of_line = lines[line_of(place)] / PLACES as f64 - middle;
             all += (off[axis] - middle) * (off[axis] - middle);
             along += of_line * of_line;
         }

@@ -259,8 +259,9 @@ fn observe(marker: &MarkerTrack, signal: Option<u32>) -> Observation {
 mod tests {
     use super::*;
     use crate::camera::{Bearing, Watched};
+    use crate::identity::Level;
     use crate::identity::decoder::{Identity, Who};
-    use crate::identity::{CodeBook, Level, Word};
+    use crate::lookout::tests::book;
     use crate::lookout::{Fleet, Vehicle};
     use crate::tracking::Tracked;
     use crate::tracking::tests::simulator::{camera, hexarotor, located_by};
@@ -298,10 +299,7 @@ mod tests {
     /// One that shows a single LED is as far away as its light says, and that as surely as frames found the power of LEDs alike.
     #[test]
     fn a_lone_marker_is_as_far_away_as_light_that_spreads_so_tells() {
-        let words = ["001001010111", "001001101011"];
-        let word = |bits: &&str| Word::new(&bits.bytes().map(|bit| bit == b'1').collect::<Vec<_>>()).unwrap();
-        let book = CodeBook::new(words.iter().map(word).collect()).unwrap();
-        let fleet = Fleet::new(book, [(Vehicle { id: 7, words: vec![0] }, 60.0)]).unwrap();
+        let fleet = Fleet::new(book(), [(Vehicle { id: 7, words: vec![0] }, 60.0)]).unwrap();
         let directory = Directory::of(&fleet);
         let mut level = Level::of_first(100.0).unwrap();
         (0..100).for_each(|_| level.see(100.0, 3.0, 1.0));

@@ -16,7 +16,7 @@ const LENGTH: f64 = 12.0;
 /// A vehicle is named from this probability on.
 const SURE: f64 = 0.99;
 
-fn book() -> CodeBook {
+pub(super) fn book() -> CodeBook {
     let words =
         ["001001010111", "001001101011", "000101100111", "010001110011", "001011000111", "000110101011"];
     let word = |bits: &&str| Word::new(&bits.bytes().map(|bit| bit == b'1').collect::<Vec<_>>()).unwrap();

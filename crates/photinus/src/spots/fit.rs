@@ -101,11 +101,14 @@ pub(super) fn first<const M: usize, const N: usize>(numbers: &SVector<f64, N>) -
     SVector::from_fn(|number, _| numbers[number])
 }
 
-/// Keeps what a shape has in each four pixels of the window, and tells it what spills over from those that the model makes full.
-fn overflow<const N: usize>(window: &mut Window, shape: &impl Shape<N>, numbers: &SVector<f64, N>) {
-    window.keep(|four| shape.shares(four.row, four.column, numbers));
-    let (light, level) = (numbers[LIGHT] as f32, numbers[LEVEL] as f32);
-    window.overflow::<N>(&shape.spill(numbers), Scale { light, level, numbers: [LIGHT, LEVEL] });
+/// Places a shape in the window. Where pixels are full, keeps what it has in each four of them, and tells the window what spills over from those that the model makes full.
+fn place<const N: usize>(window: &mut Window, shape: &mut impl Shape<N>, numbers: &SVector<f64, N>) {
+    shape.place(numbers, window.reach);
+    if window.full_px > 0 {
+        window.keep(|four| shape.shares(four.row, four.column, numbers));
+        let (light, level) = (numbers[LIGHT] as f32, numbers[LEVEL] as f32);
+        window.overflow::<N>(&shape.spill(numbers), Scale { light, level, numbers: [LIGHT, LEVEL] });
+    }
 }
 
 /// A spot as fitted.
@@ -242,10 +245,7 @@ pub(super) fn fit_from<const N: usize>(
     let steps = if window.full_px > 0 { STEPS_OF_FULL } else { STEPS };
     let (mut last, mut previous, mut gain) = (None, SVector::<f64, N>::zeros(), 1.0_f64);
     for step_number in 0..steps {
-        shape.place(&numbers, window.reach);
-        if window.full_px > 0 {
-            overflow(window, shape, &numbers);
-        }
+        place(window, shape, &numbers);
         let sums = sums(window, shape, &numbers, noise, window.full_px > 0);
         let mut matrix = sums.matrix;
         let mut right = sums.right;
@@ -390,10 +390,7 @@ pub(super) fn off_alike<const N: usize>(
     fitted: Fitted<N>,
     noise: PixelNoise,
 ) -> Fitted<N> {
-    shape.place(&fitted.numbers, window.reach);
-    if window.full_px > 0 {
-        overflow(window, shape, &fitted.numbers);
-    }
+    place(window, shape, &fitted.numbers);
     let along = fitted.covariance.column(LIGHT).into_owned();
     let unknown = f64::from(noise.faint) * fitted.light();
     let mut off = 0.0;
@@ -410,10 +407,7 @@ fn with_beliefs<const N: usize, const C: usize>(
     numbers: &SVector<f64, N>,
     noise: PixelNoise,
 ) -> Sums<N> {
-    shape.place(numbers, window.reach);
-    if window.full_px > 0 {
-        overflow(window, shape, numbers);
-    }
+    place(window, shape, numbers);
     let mut sums = sums(window, shape, numbers, noise, true);
     add_beliefs(shape, numbers, WIDTH + C, &mut sums.matrix, &mut sums.right);
     // What full pixels hide may be anything: a narrow core as bright as one likes beneath them, say.
@@ -675,8 +669,7 @@ pub(super) fn each_full_pixel<const N: usize>(
     mut with: impl FnMut(FullPixel<N>),
 ) -> (SMatrix<f64, N, N>, SVector<f64, N>) {
     let numbers = &fitted.numbers;
-    shape.place(numbers, window.reach);
-    overflow(window, shape, numbers);
+    place(window, shape, numbers);
     let model = PixelModel::new(numbers, noise, window);
     let mut others = NormalEquations::<N>::ZERO;
     for (place, four) in window.fours.iter().enumerate() {
@@ -735,10 +728,7 @@ pub(super) fn residuals<const N: usize>(
     noise: PixelNoise,
     mut with: impl FnMut(Left),
 ) {
-    shape.place(&fitted.numbers, window.reach);
-    if window.full_px > 0 {
-        overflow(window, shape, &fitted.numbers);
-    }
+    place(window, shape, &fitted.numbers);
     let parts = |pixel: &Counted<N>| [1.0, pixel.light, pixel.light * pixel.light, pixel.known];
     let mut taken_by_all = [SMatrix::<f64, N, N>::zeros(); 4];
     each_counted(window, shape, fitted, noise, |pixel| {

@@ -502,10 +502,8 @@ impl Fitter {
         };
         let off_px = libm::hypot(point.centre.u - part.guess.u, point.centre.v - part.guess.v);
         // A streak of which one pixel shows is no point, and none that is fitted to it says where in that pixel.
-        let in_pixels_px = match fitted.fits() {
-            true => OFF_IN_PIXELS_PX / f64::from(part.outline.area_px.max(1)),
-            false => 0.0,
-        };
+        let pixels = f64::from(part.outline.area_px.max(1));
+        let in_pixels_px = if fitted.fits() { OFF_IN_PIXELS_PX / pixels } else { 0.0 };
         let most_px = OFF_PX + OFF_RADII * part.radius_px + in_pixels_px;
         let is_off = !part.outline.cut && off_px > most_px;
         if is_off { None } else { self.point(&point, fitted, noise) }

@@ -21,7 +21,8 @@ Program = Callable[..., str]
 @pytest.fixture(scope="session")
 def program() -> Program:
     """The program of this checkout: called with arguments, it gives its standard output."""
-    built = [ROOT / "target" / profile / "photinus" for profile in ("debug", "release")]
+    target = ROOT / os.environ.get("CARGO_TARGET_DIR", "target")
+    built = [target / profile / "photinus" for profile in ("debug", "release")]
     built = [path for path in built if path.exists()]
     named = os.environ.get("PHOTINUS_PROGRAM")
     path = named or (max(built, key=lambda path: path.stat().st_mtime) if built else None)

@@ -1,10 +1,9 @@
 //! Noise against light: what fits leave of pixels, squared, explained by darkness, light, and the error of the point spread.
 //!
-//! A table follows the noise of the pixels that it is made of, so that they are left with too little. A table of the other half of the
-//! spots follows none of it, but is wrong by its own noise, so that they are left with too much. What both leave, multiplied, is what there
-//! is: with x the row of a pixel, A the information of a half and B that of what is believed of tables beforehand, the one lacks
-//! x (2A + B)^-1 x of the pixel's variance, the noise that both tables share gives back x (2A + B)^-1 A (A + B)^-1 x, and what belief holds
-//! both back by, multiplied, is on average the rest, however strong the belief.
+//! A table follows the noise of the pixels that it is made of, so that they are left with too little. A table of other spots follows none
+//! of it, but is wrong by its own noise, so that they are left with too much. What two such tables leave, made of spots that are neither each
+//! other's nor those told, multiplied, is what there is: the noise of three has nothing in common. Where belief holds both tables back from
+//! the lens alike, their error stays, as it should: so much of it has the table of all spots, at most.
 
 use nalgebra::{SMatrix, SVector};
 use photinus::optics::Measured;
@@ -40,7 +39,7 @@ pub(super) struct LightNoise {
     pub(super) dark_sigma: f64,
     pub(super) shot_sigma: f64,
     pub(super) shape_sigma: f64,
-    /// Whether shot noise stood out; otherwise it is what is believed, and the error of the shape explains the rest.
+    /// Whether shot noise is told, better than it is believed; otherwise the error of the shape explains the rest.
     pub(super) is_shot_seen: bool,
 }
 
@@ -55,6 +54,8 @@ impl LightNoise {
 const TOLD_SHAPE: f64 = 0.05;
 /// What is believed of the shot noise of a sensor that nobody measured, grey levels^2 per grey level.
 pub(super) const SHOT_BELIEVED: Measured = Measured { value: 0.03, sigma: 0.03 };
+/// No sensor has less than this of it, grey levels^2 per grey level.
+const LEAST_SHOT: f64 = 1e-5;
 /// No sensor has less than an electron to a grey level of 8 bits: what asks for more is no noise of light.
 const MOST_SHOT: f64 = 1.0;
 /// Fewer pixels tell nothing of noise.
@@ -84,29 +85,25 @@ pub(super) fn residuals(spots: &[Spot<'_>], field: &Field, noise: &Noise) -> Vec
     })
 }
 
-/// What is left of them by a table that was made of them times what is left by one of the other half of the spots, so that the error of
-/// neither stays: `halves` are the tables of spots of even and of odd number.
-pub(super) fn free_residuals(
-    spots: &[Spot<'_>],
-    field: &Field,
-    halves: [&Field; 2],
-    noise: &Noise,
-) -> Vec<Residual> {
+/// What is left of them by the tables of two thirds of the spots that they are not of, multiplied: `thirds` are the tables of every third
+/// spot, of the first, the second and the third on.
+pub(super) fn free_residuals(spots: &[Spot<'_>], thirds: [&Field; 3], noise: &Noise) -> Vec<Residual> {
     let mut shares = Shares::default();
     residuals_by(spots, noise, |number, spot| {
-        let within = left_by_pixel(spot, field, noise);
-        let other = halves[(number + 1) % 2];
-        let mut aside = spot.clone();
-        aside.fit(other.at(spot.place_px()), noise, super::PLACE_REACH, PLACE_STEPS, &mut shares);
-        let aside = left_by_pixel(&aside, other, noise);
-        if aside.len() != within.len() {
+        let [one, other] = [1, 2].map(|further| {
+            let field = thirds[(number + further) % 3];
+            let mut spot = spot.clone();
+            spot.fit(field.at(spot.place_px()), noise, super::PLACE_REACH, PLACE_STEPS, &mut shares);
+            left_by_pixel(&spot, field, noise)
+        });
+        if one.len() != other.len() {
             return Vec::new();
         }
-        let both = |(within, aside): (Left, Left)| {
-            let row = (within.row + aside.row) * 0.5;
-            (Left { row, ..within }, within.left * aside.left)
+        let both = |(one, other): (Left, Left)| {
+            let row = (one.row + other.row) * 0.5;
+            (Left { row, ..one }, one.left * other.left)
         };
-        within.into_iter().zip(aside).map(both).collect()
+        one.into_iter().zip(other).map(both).collect()
     })
 }
 
@@ -184,38 +181,55 @@ pub(super) fn explain(residuals: &[Residual], dark_dn: Option<Measured>, before:
         };
         return unsure;
     }
-    let free = split(residuals, dark, None, before);
-    let is_shot_seen = free.noise.shot > 3.0 * free.shot_sigma && free.noise.shot < MOST_SHOT;
-    if is_shot_seen {
-        return LightNoise { is_shot_seen, ..free };
+    let (told, free) = split(residuals, dark, None, before);
+    let is_shot_seen =
+        told.value < MOST_SHOT && told.sigma < (0.5 * SHOT_BELIEVED.sigma).max(0.1 * told.value);
+    if is_shot_seen && told.value > 3.0 * told.sigma {
+        return free;
     }
-    let held = split(residuals, dark, Some(SHOT_BELIEVED.value), before);
-    LightNoise { shot_sigma: SHOT_BELIEVED.sigma, is_shot_seen, ..held }
+    // The error of the shape explains the rest.
+    let shot = with_belief(told);
+    let (_, held) = split(residuals, dark, Some(shot.value), before);
+    LightNoise { shot_sigma: shot.sigma, is_shot_seen, ..held }
 }
 
-/// The noise of all spots, and how it scatters when tenths of them are left out.
-fn split(residuals: &[Residual], dark: Option<Measured>, shot: Option<f64>, before: &Noise) -> LightNoise {
+/// What is told of shot noise, together with what is believed of it; none is below 0.
+fn with_belief(told: Measured) -> Measured {
+    let [by_told, by_belief] = [told, SHOT_BELIEVED].map(|of| 1.0 / (of.sigma * of.sigma));
+    let value = (by_told * told.value + by_belief * SHOT_BELIEVED.value) / (by_told + by_belief);
+    Measured { value: value.max(LEAST_SHOT), sigma: (1.0 / (by_told + by_belief)).sqrt() }
+}
+
+/// The shot noise that all spots tell, which by chance may be below 0, and their noise, by how they scatter when tenths of them are left out.
+fn split(
+    residuals: &[Residual],
+    dark: Option<Measured>,
+    shot: Option<f64>,
+    before: &Noise,
+) -> (Measured, LightNoise) {
     let solve = |is_used: &dyn Fn(&Residual) -> bool| solve(residuals, (dark, shot), before, is_used);
-    let whole = solve(&|_| true);
+    let (told, noise) = solve(&|_| true);
     let mut squares = [0.0; 3];
     for part in 0..PARTS {
-        let without = solve(&|residual| residual.part != part);
-        let changes = [without.dark - whole.dark, without.shot - whole.shot, without.shape - whole.shape];
+        let (told_without, without) = solve(&|residual| residual.part != part);
+        let changes = [without.dark - noise.dark, told_without - told, without.shape - noise.shape];
         squares.iter_mut().zip(changes).for_each(|(sum, change)| *sum += change * change);
     }
     let [dark_sigma, shot_sigma, shape_sigma] =
         squares.map(|sum| (sum * (PARTS - 1) as f64 / PARTS as f64).sqrt());
-    LightNoise { noise: whole, dark_sigma, shot_sigma, shape_sigma, is_shot_seen: true }
+    let light = LightNoise { noise, dark_sigma, shot_sigma, shape_sigma, is_shot_seen: true };
+    (Measured { value: told, sigma: shot_sigma.max(LEAST_SHOT) }, light)
 }
 
-/// Least squares of squared residuals on what makes them; a normal residual's square has twice its variance squared.
+/// Least squares of squared residuals on what makes them; a normal residual's square has twice its variance squared. Shot noise is also
+/// told as it comes out, which by chance may be below 0.
 fn solve(
     residuals: &[Residual],
     (dark, shot): (Option<Measured>, Option<f64>),
     before: &Noise,
     is_used: impl Fn(&Residual) -> bool,
-) -> Noise {
-    let mut noise = *before;
+) -> (f64, Noise) {
+    let (mut told, mut noise) = (before.shot, *before);
     for _ in 0..ROUNDS {
         let mut normal = SMatrix::<f64, 3, 3>::zeros();
         let mut right = SVector::<f64, 3>::zeros();
@@ -235,26 +249,28 @@ fn solve(
             right += row * ((residual.square - known) * weight);
         }
         let found = least_squares(&normal, &right);
+        told = shot.unwrap_or(found[1]);
         noise = Noise {
             dark: found[0].max(ROUNDING),
-            shot: shot.unwrap_or(found[1].max(1e-5)),
+            shot: told.max(LEAST_SHOT),
             shape: found[2].max(0.0).sqrt(),
             bend: before.bend,
             is_dark_seen: before.is_dark_seen,
         };
     }
-    noise
+    (told, noise)
 }
 
-/// The least squares, where darkness and shot noise come out as what can be. The square of the shape may then be below 0: were it held at 0
-/// there, shot noise would be too low on average.
+/// The least squares, where darkness comes out as what can be. Shot noise and the square of the shape may then be below 0: were one held at
+/// 0 there, the other would be too low on average.
 fn least_squares(normal: &SMatrix<f64, 3, 3>, right: &SVector<f64, 3>) -> SVector<f64, 3> {
     let mut matrix = *normal;
     if normal[(1, 1)] <= 0.0 {
         matrix[(1, 1)] = 1.0; // shot noise is known
     }
-    let free = matrix.lu().solve(right).filter(|found| found[0] >= 0.0 && found[1] >= 0.0);
-    free.filter(|found| found[2].is_finite()).unwrap_or_else(|| non_negative(normal, right))
+    let free = matrix.lu().solve(right).filter(|found| found[0] >= 0.0);
+    free.filter(|found| found.iter().all(|value| value.is_finite()))
+        .unwrap_or_else(|| non_negative(normal, right))
 }
 
 /// The least squares among numbers not below 0: of all choices of those that are 0, the best.
@@ -288,7 +304,7 @@ mod tests {
 
     use super::super::table::Table;
     use super::super::window::Window;
-    use super::super::{place, spot};
+    use super::super::{field_of_part, place, spot};
     use super::*;
 
     const SHOT: f64 = 0.025;
@@ -298,34 +314,64 @@ mod tests {
     }
 
     /// Spots on a level, in noise.
-    fn windows(level: f64, seed: u64) -> Vec<Window> {
+    fn windows(level: f64, shot: f64, seed: u64) -> Vec<Window> {
         let mut random = Pcg64::new(u128::from(seed), 1);
         let light = |number: usize| 25.0 + 22.0 * (number % 20) as f64;
         (0..250)
-            .map(|number| Window::drawn(number, &table(), light(number), (level, SHOT), &mut random))
+            .map(|number| Window::drawn(number, &table(), light(number), (level, shot), &mut random))
             .collect()
     }
 
-    /// Shot noise of spots whose table is right but is not taken to be.
-    fn shot(level: f64, shape: f64) -> f64 {
+    /// Noise of spots whose table is taken to be wrong by `shape`, by the tables that `thirds` makes of them.
+    fn told(
+        windows: &[Window],
+        shape: f64,
+        thirds: impl Fn(&[Spot<'_>], &Field, &Noise) -> [Field; 3],
+    ) -> LightNoise {
         let noise = Noise { dark: 0.36 + ROUNDING, shot: SHOT, shape, bend: 0.0, is_dark_seen: true };
         let dark_dn = Some(Measured { value: 0.6, sigma: 0.003 });
         let field = Field::new(table(), [200, 200], [1, 1]);
-        let of_seed = |seed: u64| {
-            let windows = windows(level, seed);
-            let mut spots = spot::of(&windows, 255);
-            place(&mut spots, &field, &noise, 6);
-            explain(&free_residuals(&spots, &field, [&field; 2], &noise), dark_dn, &noise).noise.shot
-        };
-        let seeds = 4;
-        (0..seeds).map(of_seed).sum::<f64>() / seeds as f64
+        let mut spots = spot::of(windows, 255);
+        place(&mut spots, &field, &noise, 6);
+        let thirds = thirds(&spots, &field, &noise);
+        explain(&free_residuals(&spots, thirds.each_ref(), &noise), dark_dn, &noise)
+    }
+
+    fn of_seeds(seeds: u64, shot: impl Fn(u64) -> f64) -> f64 {
+        (0..seeds).map(shot).sum::<f64>() / seeds as f64
+    }
+
+    fn given(_: &[Spot<'_>], field: &Field, _: &Noise) -> [Field; 3] {
+        std::array::from_fn(|_| field.clone())
     }
 
     #[test]
     fn shot_noise_is_told_however_wrong_a_table_is_taken_to_be() {
         for (level, shape) in [(6.0, 0.05), (6.0, 0.2), (0.3, 0.05)] {
-            let told = shot(level, shape);
-            assert!((told / SHOT - 1.0).abs() < 0.15, "{told} not {SHOT}, on {level}, shape {shape}");
+            let shot = of_seeds(4, |seed| told(&windows(level, SHOT, seed), shape, given).noise.shot);
+            assert!((shot / SHOT - 1.0).abs() < 0.15, "{shot} not {SHOT}, on {level}, shape {shape}");
+        }
+    }
+
+    #[test]
+    fn shot_noise_is_told_by_tables_that_are_made_of_the_spots() {
+        let learned = |spots: &[Spot<'_>], start: &Field, noise: &Noise| {
+            [0, 1, 2].map(|third| field_of_part(spots, start.clone(), noise, (third, 3)))
+        };
+        let shot = of_seeds(8, |seed| told(&windows(6.0, SHOT, 100 + seed), 0.01, learned).noise.shot);
+        let by_truth = of_seeds(8, |seed| told(&windows(6.0, SHOT, 100 + seed), 0.01, given).noise.shot);
+        assert!((shot / by_truth - 1.0).abs() < 0.05, "{shot} not {by_truth}");
+    }
+
+    #[test]
+    fn shot_noise_too_little_to_be_told_is_not_surely_none() {
+        for shot in [0.0, 5e-4] {
+            for seed in 0..4 {
+                let light = told(&windows(6.0, shot, seed), 0.01, given);
+                let off = (light.noise.shot - shot) / light.shot_sigma;
+                assert!(off.abs() < 3.5, "{} +- {} for {shot}", light.noise.shot, light.shot_sigma);
+                assert!(light.shot_sigma > 1e-4, "{}", light.shot_sigma);
+            }
         }
     }
 }

@@ -71,14 +71,14 @@ use table::Shares;
 
 /// Fewest spots that make a point spread.
 pub const FEWEST_SPOTS: usize = 40;
-/// Of fewer spots a half makes no table that is worth comparing with.
-const FEWEST_HALVED: usize = 4 * FEWEST_SPOTS;
+/// Of fewer spots a third makes no table that is worth comparing with.
+const FEWEST_PARTED: usize = 4 * FEWEST_SPOTS;
 /// Spots of a node of the grid over which the point spread may change.
 const SPOTS_PER_NODE: usize = 40;
 const ROUNDS_WHOLE: usize = 5;
 const ROUNDS_BY_NODE: usize = 8;
-/// Rounds in which tables of half of the spots are learned.
-const ROUNDS_OF_HALVES: usize = 6;
+/// Rounds in which tables of a part of the spots are learned.
+const ROUNDS_OF_PARTS: usize = 6;
 /// Rounds after which noise is explained anew: what the table cannot follow yet must not be taken for noise.
 const NOISE_AFTER: [usize; 2] = [8, 10];
 /// Rounds after which a bend of the response is taken out of grey levels: the table follows it otherwise.
@@ -140,17 +140,18 @@ pub fn learn(collection: &Collection) -> Result<Learned, LearnError> {
     } else {
         &clear
     };
-    let halves = [0, 1].map(|half| {
+    let of_part = |part: usize, parts: usize| {
         let start = Field::new(start.table(), size_px, nodes);
-        field_of_half(told, start, &noise, half)
-    });
+        field_of_part(told, start, &noise, (part, parts))
+    };
     let told_by = |residuals: Vec<light::Residual>| {
         let light = light::explain(&residuals, darkness.noise_dn, &noise);
         (residuals, light)
     };
-    // A few spots that are two LEDs, which tables of the two halves leave alike, make it by themselves.
-    let free = (told.len() >= FEWEST_HALVED)
-        .then(|| told_by(light::free_residuals(told, &field, halves.each_ref(), &noise)))
+    // A few spots that are two LEDs, which all tables leave alike, make it by themselves.
+    let free = (told.len() >= FEWEST_PARTED)
+        .then(|| [0, 1, 2].map(|third| of_part(third, 3)))
+        .map(|thirds| told_by(light::free_residuals(told, thirds.each_ref(), &noise)))
         .filter(|(_, light)| light.tells_shape());
     let (residuals, light) = free.unwrap_or_else(|| told_by(light::residuals(told, &field, &noise)));
     let used = spots.iter().filter(|spot| spot.is_used).count();
@@ -166,7 +167,7 @@ pub fn learn(collection: &Collection) -> Result<Learned, LearnError> {
         vignetting::learn(&clear, &field, &light.noise, camera)
     });
     // Where spots are few, what they leave of the table that follows them says too little of how far that is off.
-    let scatter = Field::scatter(&halves);
+    let scatter = Field::scatter(&[0, 1].map(|half| of_part(half, 2)));
     let shape_error = light.noise.shape.max(scatter.all).min(1.0);
     let wings_error = scatter.wings.max(shape_error).min(1.0);
     let bend = bent::places_px(field.whole(), &start.table(), &light.noise, median_light(&spots));
@@ -269,12 +270,12 @@ fn median_light(spots: &[Spot<'_>]) -> f64 {
     lights.get(lights.len() / 2).copied().unwrap_or(1.0)
 }
 
-/// Tables of the spots of even or of odd number, from a start that knows none of them.
-fn field_of_half(spots: &[Spot<'_>], start: Field, noise: &Noise, half: usize) -> Field {
-    let mut spots: Vec<Spot<'_>> = spots.iter().skip(half).step_by(2).cloned().collect();
+/// Tables of every so manieth spot from one on, from a start that knows none of them.
+fn field_of_part(spots: &[Spot<'_>], start: Field, noise: &Noise, (part, parts): (usize, usize)) -> Field {
+    let mut spots: Vec<Spot<'_>> = spots.iter().skip(part).step_by(parts).cloned().collect();
     let mut field = start;
-    for round in 0..ROUNDS_OF_HALVES {
-        if round < ROUNDS_OF_HALVES / 2 {
+    for round in 0..ROUNDS_OF_PARTS {
+        if round < ROUNDS_OF_PARTS / 2 {
             field.learn_whole(&spots, noise);
         } else {
             field.learn(&spots, noise);

@@ -41,6 +41,8 @@ const CONVERGED: f64 = 1e-4;
 const PARTS: usize = 10;
 /// What spots gain by a spill, summed, is more than this many sigmas of that.
 const TOLD_SIGMAS: f64 = 3.0;
+/// A spot that gains so much by a spill gains surely; one that gains more is no reason to doubt that the others do.
+const MOST_GAIN: f64 = 25.0;
 /// Where nothing is seen to spill: wells tried, each so many times the one before, and what spots cost by an overflow that would have been seen.
 const WELL_STEP: f64 = 1.15;
 const MOST_STEPS: i32 = 30;
@@ -101,7 +103,7 @@ pub(super) fn learn(spots: &[Spot<'_>], field: &Field, noise: &Noise, pile: &Pil
         found = model.with_best_well(&fulls, Tried { share, ..found }).1;
     }
     model.costs(&mut fulls, found);
-    if model.is_told(&fulls, found) {
+    if is_told(&model.gains(&fulls, found)) {
         let [share, well] = model.jackknife(&fulls, found);
         if share.value > 2.0 * share.sigma {
             let well = (well.value > 1.05).then_some(well);
@@ -224,14 +226,10 @@ impl Model<'_> {
             .collect()
     }
 
-    /// Whether spots together are explained better by a spill than without: a few that are two LEDs, or of no point spread that is known, may
-    /// gain by one that is none.
-    fn is_told(&self, fulls: &[Full<'_, '_>], found: Tried) -> bool {
+    /// What each spot gains by a spill.
+    fn gains(&self, fulls: &[Full<'_, '_>], found: Tried) -> Vec<f64> {
         let [without, with] = [NO_SPILL, found].map(|tried| self.costs(&mut fulls.to_vec(), tried));
-        let gains = without.iter().zip(&with).map(|(without, with)| without - with);
-        let (sum, squares) =
-            gains.fold((0.0, 0.0), |(sum, squares), gain| (sum + gain, squares + gain * gain));
-        sum > TOLD_SIGMAS * f64::sqrt(squares)
+        without.iter().zip(&with).map(|(without, with)| without - with).collect()
     }
 
     /// The largest well whose overflow would have been seen; `None` where it is no larger than what a full pixel reads.
@@ -303,6 +301,14 @@ impl Model<'_> {
     }
 }
 
+/// Whether spots together are explained better by a spill than without: a few that are two LEDs, or of no point spread that is known, may
+/// gain by one that is none.
+fn is_told(gains: &[f64]) -> bool {
+    let gains = gains.iter().map(|gain| gain.clamp(-MOST_GAIN, MOST_GAIN));
+    let (sum, squares) = gains.fold((0.0, 0.0), |(sum, squares), gain| (sum + gain, squares + gain * gain));
+    sum > TOLD_SIGMAS * f64::sqrt(squares)
+}
+
 /// Lets charge above the well go: a share of it in equal parts to the four neighbours, the rest is drained.
 fn overflow(charge: &mut [f64], well: f64, share: f64) {
     const SWEEPS: usize = 400;
@@ -340,4 +346,17 @@ fn sum(costs: &[f64]) -> f64 {
 
 fn square(left: &[f64]) -> f64 {
     left.iter().map(|left| (left * left).min(MOST_COST)).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_spot_that_gains_most_is_no_doubt_of_the_others() {
+        let even = vec![20.0; 12];
+        assert!(is_told(&even));
+        assert!(is_told(&[&even[..], &[900.0]].concat()));
+        assert!(!is_told(&[&[0.5; 40][..], &[900.0, 900.0]].concat()), "two LEDs side by side, twice");
+    }
 }
